@@ -289,5 +289,5 @@ def test_feet_that_carry_no_block(feet: Any, says: str) -> None:
 
 
 def test_parameters_of_a_number_are_refused() -> None:
-    with pytest.raises(UnknownModelError, match="a coefficient takes no parameters, got k"):
+    with pytest.raises(UnknownModelError, match="a coefficient accepts no parameters, got k"):
         rk.coefficient_of_restitution(BLOCK, 0.9, k=0.5)

@@ -85,7 +85,7 @@ def falling(law: LawNumbers, speed: float, depth: float) -> Setup:
 def dropped(law: LawNumbers, speed: float) -> tuple[float, float, float]:
     """Contact time, greatest depth and velocity ratio of a block of 1000 kg that falls flat on two points."""
     depth = speed * math.sqrt(1000.0 / law.stiffness) if law.exponent == 1.0 else 1e-3
-    results, _, _, intervals = fast.one(falling(law, speed, depth))
+    results, _, _, intervals = fast.compute_one(falling(law, speed, depth))
     assert len(intervals) == 2
     assert intervals[0, 2] == pytest.approx(intervals[1, 2], rel=1e-12, abs=0.0)
     return float(intervals[0, 2] - intervals[0, 1]), results["deepest"], results["w"] / speed
@@ -293,8 +293,8 @@ def test_another_solver_agrees(name: str) -> None:
     """SciPy's DOP853 on forces without branches gives the same r and losses to 1e-6, in a moving frame too."""
     block = slender(2.0)
     setup = setup_of(block, laws(block)[name], angular_velocity=1.0, ground_acceleration=(0.3, 0.5))
-    quick = BedImpact(setup, *fast.one(setup))
-    slow = BedImpact(setup, *reference.one(setup, tolerance=1e-12))
+    quick = BedImpact(setup, *fast.compute_one(setup))
+    slow = BedImpact(setup, *reference.compute_one(setup, tolerance=1e-12))
     assert quick.emergent.by_peak == pytest.approx(slow.emergent.by_peak, abs=1e-6)
     assert quick.emergent.by_energy == pytest.approx(slow.emergent.by_energy, abs=1e-6)
     assert quick.results["contacts"] == slow.results["contacts"]
@@ -336,8 +336,8 @@ def test_an_implicit_solver_agrees() -> None:
     """SciPy's LSODA gives the same as its explicit method and as the fast engine, to 1e-6."""
     block = slender(2.0)
     setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
-    quick = BedImpact(setup, *fast.one(setup)).coefficient
-    assert BedImpact(setup, *reference.one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
+    quick = BedImpact(setup, *fast.compute_one(setup)).coefficient
+    assert BedImpact(setup, *reference.compute_one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
 
 
 @pytest.mark.verifies(
@@ -355,7 +355,7 @@ def test_the_other_solver_ends_where_the_bed_parts() -> None:
     }
     for law, (ratio, time, depth) in cases.items():
         setup = falling(law.numbers(mass), speed, depth)
-        found = BedImpact(setup, *reference.one(setup))
+        found = BedImpact(setup, *reference.compute_one(setup))
         assert found.status is BedStatus.PARTED
         # the error that SciPy allows, 1e-13 of the speed a step, is a thousandth of what is left of it on dashpots
         assert found.results["time"] == pytest.approx(time, rel=2e-5 if law.stiffness else 5e-4, abs=0.0)
@@ -371,8 +371,8 @@ def test_the_other_solver_says_between_what_the_impact_lies() -> None:
     block = slender(2.0)
     bed = ContactBed.uniform(block, 5, sprung(block, 100.0, 0.5), kinematics="small")
     setup = setup_of(block, bed, angular_velocity=1.0)
-    found = BedImpact(setup, *reference.one(setup, tolerance=1e-9))
-    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup)).coefficient, abs=1e-6)
+    found = BedImpact(setup, *reference.compute_one(setup, tolerance=1e-9))
+    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.compute_one(setup)).coefficient, abs=1e-6)
     pressing, new, old = found.forces > 0.0, setup.new_foot, setup.old_foot
     sinks = bed.positions[new] * found.samples["angular_velocity"] - found.samples["w"]
     touch = int(np.argmax(np.delete(pressing, old, axis=1).any(axis=1)))
@@ -405,7 +405,7 @@ def test_both_solvers_say_when_time_ran_out() -> None:
     block = slender(2.0)
     setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
     short = replace(setup, longest=1e-2 * setup.depth / setup.speed)
-    for result in (fast.one(short), reference.one(short)):
+    for result in (fast.compute_one(short), reference.compute_one(short)):
         found = BedImpact(short, *result)
         assert found.status is BedStatus.TIME_OUT
         assert found.results["time"] == pytest.approx(short.longest, rel=1e-9, abs=0.0)
@@ -600,7 +600,7 @@ def test_deepest_and_greatest_force_lie_between_the_steps() -> None:
     """A mass on a spring: depth v sqrt(m / k) and force v sqrt(m k) to 1e-6, though steps are a radian long."""
     speed, law = 0.3, KelvinVoigt(1e7).numbers(1000.0)
     depth = speed * math.sqrt(1000.0 / 1e7)
-    results = fast.one(falling(law, speed, depth))[0]
+    results = fast.compute_one(falling(law, speed, depth))[0]
     assert results["deepest"] == pytest.approx(depth, rel=1e-6)
     assert results["peak_force"] == pytest.approx(speed * math.sqrt(1000.0 * 1e7), rel=1e-6)
 

@@ -70,10 +70,10 @@ def test_a_launched_body_flies_along_a_parabola(engine):
     axes = np.array(rk.dynamics.space.attitude.matrix(np.array(first.attitude)))
     places = np.array(body.points) @ axes.T
     low = places[places[:, 2].argmin()]
-    assert first.place[2] + low[2] == pytest.approx(0.05, abs=1e-12)
+    assert first.position[2] + low[2] == pytest.approx(0.05, abs=1e-12)
     begin = velocity - np.cross(spin, low)
     times = found.time
-    expected = np.array(first.place) + np.outer(times, begin) - np.outer(0.5 * G * times**2, [0.0, 0.0, 1.0])
+    expected = np.array(first.position) + np.outer(times, begin) - np.outer(0.5 * G * times**2, [0.0, 0.0, 1.0])
     np.testing.assert_allclose(found.centre, expected, atol=1e-8)
     tensor = np.array(body.tensor)
 

@@ -23,7 +23,7 @@ from rocking.dynamics.hull.ground import ZERO, HullGround, added, applied, back,
 from rocking.dynamics.hull.histories import hull_histories
 from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, standing, step
-from rocking.dynamics.hull.restitution import place_of
+from rocking.dynamics.hull.restitution import impulse_point
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
@@ -98,7 +98,7 @@ def test_steps_have_order_five():
         state = start
         for _ in range(count):
             state = step(body, state, mode, [(0.0, 0.0, -G)], (0.2 / count, 1.0), 1.0).state
-        return np.array([*state.place, *state.attitude, *state.velocity, *state.spin])
+        return np.array([*state.position, *state.attitude, *state.velocity, *state.spin])
 
     exact = end(256)
     errors = [np.abs(end(n) - exact).max() for n in (8, 16, 32, 64)]
@@ -118,7 +118,7 @@ def test_free_flight_is_a_parabola_and_keeps_momentum_and_energy():
     t, state = history.time[k], history.states[k]
     expected = np.array([0.3 * t - 8.0 * t**3 / 6.0, -0.2 * t, 3.0 + 2.0 * t - 0.5 * G * t * t])
     assert not history.contacts[k].members
-    np.testing.assert_allclose(state.place, expected, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(state.position, expected, rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(_momentum(body, state), _momentum(body, start), rtol=1e-10)
     spun = [dot(s.spin, applied(body.tensor, s.spin)) for s in (start, state)]
     assert spun[1] == pytest.approx(spun[0], rel=1e-10)
@@ -216,7 +216,7 @@ def _steps(body, law, places):
         )
         if k + 1 < len(places):
             problem = Problem(body, frame((1.0, 0.0, 0.0, 0.0)), linear_velocity, state, math.inf)
-            problem.places = {k + 1: place_of(law, places[k], places[k + 1])}
+            problem.force_points = {k + 1: impulse_point(law, places[k], places[k + 1])}
             solved = linear(problem, HullContact((k + 1,), (k + 1,)), [k + 1], {})
             linear_velocity, state = solved.linear, solved.angular
     return found
@@ -274,7 +274,7 @@ def test_a_block_slides_down_a_slope_and_stands_on_a_rough_one():
     for friction, pull in ((0.2, G * (math.sin(0.3) - 0.2 * math.cos(0.3))), (0.35, 0.0)):
         ground = HullGround(slope=0.3, azimuth=0.7)
         history = _until(HullEngine(body, ground, friction=friction), standing(body), 0.5)
-        t, x, y = history.time[-1], *history.states[-1].place[:2]
+        t, x, y = history.time[-1], *history.states[-1].position[:2]
         moved = 0.5 * pull * t * t
         np.testing.assert_allclose((x, y), (moved * math.cos(0.7), moved * math.sin(0.7)), rtol=0.0, atol=1e-9)
 
@@ -301,7 +301,7 @@ def test_a_body_tips_over_a_steep_slope_and_slides_off_a_shelf():
     flat = _box(0.5, 0.5, 0.3, 10.0)
     ground = HullGround(slope=0.3, shelf=(0.6, 0.6))
     fell = HullEngine(flat, ground, friction=0.1, settings=HullSettings(tolerance=1e-8)).run(standing(flat))
-    assert (fell.fell, fell.outcome) == (True, Outcome.OVERTURNED)
+    assert (fell.fell_off, fell.outcome) == (True, Outcome.OVERTURNED)
 
 
 def _edge_about_to_slide(rng, beyond):
@@ -411,7 +411,7 @@ def test_random_hulls_have_a_result_under_every_motion(seed):
         assert history.status is Status.GOOD, (history.status, friction)
         assert history.outcome is not Outcome.FAILED
         assert history.rocked or history.slid  # at rest nothing would be shown
-        lowest = min(s.place[2] + dot(frame(s.attitude)[2], p) for s in history.states for p in body.points)
+        lowest = min(s.position[2] + dot(frame(s.attitude)[2], p) for s in history.states for p in body.points)
         assert lowest > -1e-6 * body.size
 
 
@@ -428,7 +428,7 @@ def test_an_asymmetric_body_in_other_axes_moves_alike():
     for body, azimuth in ((one, 0.3), (two, 1.4), (one, 1.4)):
         history = _until(HullEngine(body, HullGround(), friction=0.5), standing(body, tilt=0.12, azimuth=azimuth), 0.6)
         at = [event.time for event in history.events[:2]]
-        heights.append(at + [history.states[history.time.index(t)].place[2] for t in at])
+        heights.append(at + [history.states[history.time.index(t)].position[2] for t in at])
     np.testing.assert_allclose(heights[0], heights[1], rtol=0.0, atol=1e-9)
     assert len(heights[2]) != len(heights[0]) or np.abs(np.subtract(heights[2], heights[0])).max() > 1e-3
 
@@ -442,7 +442,7 @@ def test_bad_bodies_and_grounds_are_refused():
         HullBody(np.eye(4, 3), 1.0, (0.2, 0.2, 0.2), -np.eye(3))
     with pytest.raises(InvalidValueError, match="slope"):
         HullGround(slope=2.0)
-    with pytest.raises(UnknownModelError, match="no restitution model in space is called 'wrong'"):
+    with pytest.raises(UnknownModelError, match="unknown restitution model in space 'wrong'"):
         HullEngine(_box(1, 1, 1, 1.0), HullGround(), "wrong").run(standing(_box(1, 1, 1, 1.0)))
 
 
@@ -594,7 +594,7 @@ def test_every_door_knows_the_pose_before_the_tilt():
     upright = HullEngine(body, HullGround(), friction=0.8, settings=HullSettings(tolerance=1e-8))
     lying = HullEngine(body, HullGround(), friction=0.8, settings=HullSettings(tolerance=1e-8))
     state = standing(body, facet=side)
-    assert upright.run(state, stood=body.base).outcome is Outcome.OVERTURNED
+    assert upright.run(state, initial_facet=body.base).outcome is Outcome.OVERTURNED
     assert lying.run(state).outcome is Outcome.NO_UPLIFT
 
 

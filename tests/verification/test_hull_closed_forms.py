@@ -173,7 +173,7 @@ def test_the_lowest_vertex_of_a_start_is_at_rest(spin):
     body = tower()
     state = start_of(body, SpatialStart(tilt=0.2, azimuth=0.7, yaw=0.4, angular_velocity=spin))
     axes = frame(state.attitude)
-    heights = [state.place[2] + dot(axes[2], p) for p in body.points]
+    heights = [state.position[2] + dot(axes[2], p) for p in body.points]
     low = int(np.argmin(heights))
     assert heights[low] == pytest.approx(0.0, abs=1e-12)
     assert length(point_velocity(body, state, low)) < 1e-12
@@ -185,7 +185,7 @@ def test_the_lowest_vertex_of_a_start_is_at_rest(spin):
 def test_a_body_is_displaced_by_the_straight_distance():
     """The displacement of a history is the horizontal distance between its ends."""
     history, start = HullHistory(), standing(tower())
-    history.states = [start._replace(place=(1.0, 2.0, 0.5)), start._replace(place=(4.0, 6.0, 0.7))]
+    history.states = [start._replace(position=(1.0, 2.0, 0.5)), start._replace(position=(4.0, 6.0, 0.7))]
     history.time = [0.0, 1.0]
     assert 5.0 in results_of(history)[0]
 

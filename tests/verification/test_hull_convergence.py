@@ -22,7 +22,7 @@ from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame,
 from rocking.dynamics.hull.histories import hull_histories, start_of
 from rocking.dynamics.hull.history import HullEventKind
 from rocking.dynamics.hull.motion import State, energies, standing
-from rocking.dynamics.hull.restitution import place_of
+from rocking.dynamics.hull.restitution import impulse_point
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.space import SpatialBody
 from rocking.errors import PlausibilityWarning
@@ -96,7 +96,7 @@ def _plane_loss(count, k):
         kinetic.append(0.5 * (body.mass * dot(velocity, velocity) + dot(spin, applied(body.tensor, spin))))
         if j < count:
             problem = Problem(body, frame((1.0, 0.0, 0.0, 0.0)), velocity, spin, math.inf)
-            problem.places = {j + 1: place_of(lambda _a, _b: k, places[j], places[j + 1])}
+            problem.force_points = {j + 1: impulse_point(lambda _a, _b: k, places[j], places[j + 1])}
             found = linear(problem, HullContact((j + 1,), (j + 1,)), [j + 1], {})
             velocity, spin = found.linear, found.angular
     return 1.0 - kinetic[-1] / kinetic[0]

@@ -50,7 +50,7 @@ def _both(seed):
 
 
 def _mode(response):
-    contact = response.trajectory.fell_over
+    contact = response.trajectory.overturned_over
     return (-1, -1) if contact is None else (contact.mode.code, contact.points[0])
 
 

@@ -51,7 +51,7 @@ def test_a_cylinder_keeps_its_steady_wobbles(tilt, first, second):
         if turning == first:
             np.testing.assert_allclose(run.centre, run.centre[0] * np.ones((len(run.time), 1)), rtol=0.0, atol=1e-8)
         else:  # the contact stays on one circle of the radius of the base
-            place = run.states.place
+            place = run.states.ground_point
             middle = place[0] + 0.25 * np.array([0.0, 1.0])
             np.testing.assert_allclose(np.hypot(*(place - middle).T), 0.25, rtol=0.0, atol=1e-8)
     # negative control: a rate one per mille off does not stay

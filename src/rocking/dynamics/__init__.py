@@ -1,4 +1,4 @@
-"""How a body moves: equations, engines, responses."""
+"""Dynamics: equations of motion, engines, responses."""
 
 from lazy_loader import attach_stub
 

@@ -265,9 +265,9 @@ class Response(ResponseBase):
     def _verdict(self) -> str:
         run = self.trajectory
         if run.outcome is Outcome.OVERTURNED:
-            without, one, many = _OVERTURNED["right" if run.side > 0 else "left"]
+            no_impact, singular, plural = _OVERTURNED["right" if run.side > 0 else "left"]
             facts = {"count": int(run.impacts), "time": run.overturning_time}
-            return Message(one, facts, many) if run.impacts else Message(without, facts)
+            return Message(singular, facts, plural) if run.impacts else Message(no_impact, facts)
         if run.outcome is Outcome.NO_UPLIFT:
             return str(run.outcome.value)
         ratio = self.peak_rotation / self.parameters.side(run.peak_rotation).slenderness_angle

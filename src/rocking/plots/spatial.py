@@ -63,7 +63,7 @@ def spatial_picture(response: SpatialResponse | HullResponse) -> "Figure":
 def _on_the_hull(response: HullResponse) -> "Figure":
     body, start = response.body, response.trajectory.states[0]
     turned = np.array(frame(start.attitude))
-    base = body.hull.corners(response.trajectory.stood)
+    base = body.hull.corners(response.trajectory.initial_facet)
     outline = np.array([turned @ body.points[i] for i in base])[:, :2]
     regimes = []
     for first, last, touching, sliding in response.intervals:

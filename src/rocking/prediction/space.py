@@ -209,7 +209,7 @@ class _Shape:
     def state(self, azimuth: float) -> list[float]:
         """Return initial attitude, position and velocities."""
         attitude = product(turn([0.0, 0.0, 1.0], azimuth), np.array(self.start.attitude))
-        return [*attitude.tolist(), *self.start.place, *self.start.velocity, *self.start.spin]
+        return [*attitude.tolist(), *self.start.position, *self.start.velocity, *self.start.spin]
 
     def is_other_pose(self, pose: int) -> bool:
         """Return True if a pose, by index, differs from the initial pose."""

@@ -1,4 +1,4 @@
-"""What an impact costs: published and derived restitution models, and what a coefficient implies."""
+"""Restitution: published and derived models, and the implications of a coefficient."""
 
 from lazy_loader import attach_stub
 

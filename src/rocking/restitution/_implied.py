@@ -1,4 +1,4 @@
-"""What a coefficient of restitution implies: where the impulse acts, what friction it needs, what energy it costs."""
+"""Implications of a coefficient of restitution: impulse position, friction demand and energy loss."""
 
 import math
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from rocking.bodies import Body
 from rocking.conventions import Foot, opposite
 from rocking.messages import Message
 
-# Bounds are met to rounding by the models that sit exactly on them (Housner has k = 1).
+# models exactly at a bound meet it to rounding (Housner has k = 1)
 _SLACK = 1e-9
 
 
@@ -21,19 +21,19 @@ class Implication:
     coefficient : float
         theta_dot_after / theta_dot_before [-].
     impulse_arm : float
-        Distance a of the impulse from the plumb line of the centre, towards the new foot [m].
+        Distance a of the impulse from the plumb line of the centre of mass, towards the new foot [m].
     impulse_ratio : float
-        Its ratio k to the lever of the new foot [-]; 1 is Housner, above 1 lies outside the base.
+        Ratio k of the arm to the lever of the new foot [-]; 1 is Housner, a value above 1 is outside the base.
     impulse_x : float
-        Its position on the ground in the user's coordinates [m].
+        Position of the impulse on the ground in the user's coordinates [m].
     friction_demand : float
         Friction coefficient below which the foot slips during the impact [-].
     energy_loss : float
-        Share of the kinetic energy that the impact costs, 1 - r^2 I_O'/I_O [-].
+        Energy loss of the impact over the kinetic energy before, 1 - r^2 I_O'/I_O [-].
     largest_coefficient : float
         Energy bound sqrt(I_O / I_O') on the coefficient [-].
     within_base, within_energy : bool
-        Whether the impulse acts on the base, and the impact creates no energy.
+        True if the impulse acts on the base; true if the impact creates no energy.
     """
 
     coefficient: float
@@ -48,26 +48,27 @@ class Implication:
 
     @property
     def admissible(self) -> bool:
-        """Whether one impulse on the base can produce the coefficient without creating energy."""
+        """True if one impulse on the base can produce the coefficient without creating energy."""
         return self.within_base and self.within_energy
 
     @property
     def objections(self) -> tuple[str, ...]:
-        """What is wrong with the coefficient, in sentences; empty if admissible."""
-        found = []
+        """Reasons against the coefficient, as sentences; empty if it is admissible."""
+        reasons = []
         if not self.within_base:
             facts = {"ratio": self.impulse_ratio}
-            found.append(Message("implies an impulse outside the base (k = {ratio:.3f})", facts))
+            reasons.append(Message("implies an impulse outside the base (k = {ratio:.3f})", facts))
         if not self.within_energy:
             facts = {"largest": self.largest_coefficient}
-            found.append(Message("creates energy: r must not exceed {largest:.6f} for this body", facts))
-        return tuple(found)
+            reasons.append(Message("creates energy: r must not exceed {largest:.6f} for this body", facts))
+        return tuple(reasons)
 
 
 def energy_bound(body: Body, onto: Foot) -> float:
     """Return the largest coefficient of restitution at which an impact creates no energy.
 
-    Returns sqrt(I_old / I_new), of the moments of inertia about the feet; of two that differ, one is above 1 [-].
+    The bound is sqrt(I_old / I_new) with the moments of inertia about the feet; it exceeds 1 for one of two different
+    feet [-].
 
     >>> from rocking import Block
     >>> energy_bound(Block(width=1.0, height=2.0), "left")
@@ -78,9 +79,9 @@ def energy_bound(body: Body, onto: Foot) -> float:
 
 
 def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implication:
-    """Return what a coefficient implies for a body.
+    """Return the implications of a coefficient for a body.
 
-    Angular momentum about the point of the ground where the impulse acts is conserved, so
+    Angular momentum is conserved about the point of action of the impulse on the ground:
     ``a = I_h (1 - r) / (m (b_old + r b_new))`` with ``I_h = I_C + m h^2``, and the ratio of horizontal to vertical
     impulse is ``h (1 - r) / (b_old + r b_new)``.
 
@@ -89,9 +90,9 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
     body : Body
         The body.
     coefficient : float
-        theta_dot_after / theta_dot_before, not below zero [-].
+        theta_dot_after / theta_dot_before, at least 0 [-].
     onto : {"left", "right"}
-        The foot on which it lands.
+        The foot on which the body lands.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What every restitution model is: a coefficient for an impact, and an honest account of where it comes from."""
+"""Base classes of restitution models: a coefficient for an impact, with reference, assumptions, domain and defects."""
 
 import math
 from abc import ABC, abstractmethod
@@ -20,25 +20,25 @@ _FLATTEST, _TALLEST = 1e-18, 1e18
 
 
 class Flag(Enum):
-    """Why a coefficient is not the bare number of its model; the value is the sentence a user reads."""
+    """Reason for a coefficient that differs from the equation of its model; the value is a sentence for reports."""
 
-    STOPS = Message("the model's equation gives r <= 0: the body does not step onto the new foot but stops (r = 0)")
+    STOPS = Message("the model gives r <= 0: the body stops at the impact (r = 0) and does not step onto the new foot")
 
 
 @dataclass(frozen=True, slots=True)
 class Restitution:
-    """A coefficient of restitution with what the model says about it.
+    """Coefficient of restitution with its model and flags.
 
     Parameters
     ----------
     model : RestitutionModel
-        The model that gave it.
+        The model.
     raw : float
-        What the model's equation gives, also outside its domain [-].
+        Value of the model's equation, also outside its domain [-].
     coefficient : float
-        theta_dot_after / theta_dot_before, after the model's domain has been applied [-].
+        theta_dot_after / theta_dot_before, within the domain of the model [-].
     flags : tuple of Flag
-        Why `coefficient` differs from `raw`; empty inside the domain.
+        Reasons for a difference of `coefficient` and `raw`; empty inside the domain.
     """
 
     model: "RestitutionModel"
@@ -48,7 +48,7 @@ class Restitution:
 
 
 class RestitutionModel(ABC):
-    """One published or derived model of what an impact costs.
+    """Base class of restitution models, published or derived.
 
     A model of your own is a subclass with `name` and `raw_coefficient`; see the documentation, "add a model".
 
@@ -59,29 +59,29 @@ class RestitutionModel(ABC):
     title : str
         The model in one line.
     short_name, legend : str
-        What people call it in a sentence, and in the legend of a picture if that is another; the name if empty.
+        Name in sentences, and in the legend of a picture if different; by default `name`.
     colour : str
-        Of its curves; a model without one is not drawn among the others.
+        Colour of its curves; a model without colour is not part of comparison plots.
     linestyle : str or tuple
-        Of its curves, as matplotlib takes it, so that grey print keeps them apart.
+        Line style of its curves for matplotlib, distinct in grey print.
     reference : str
         Publication with DOI, or the derivation in this project.
     assumptions, known_defects : tuple of str
-        What the model takes for granted, and where that is known to fail.
+        Assumptions of the model, and cases in which they are known to fail.
     domain : str
-        Bodies it holds for, and what happens outside.
+        Bodies to which the model applies, and its result for others.
     inertia_only : bool
-        Whether it claims to depend on mass, centre, polar inertia and feet alone.
+        True if the model depends on mass, centre, polar inertia and feet only.
     can_stop : bool
-        Whether its equation can give r <= 0, where the body stops instead of stepping on.
+        True if the equation can give r <= 0, for a body that stops at the impact.
     keeps_energy : bool
-        Whether no impact creates energy, onto the longer lever either.
+        True if no impact creates energy, including impacts onto the longer lever.
     sees_old_foot : bool
-        Whether an impact onto the foot that the body stands on, which is none, costs nothing.
+        True if an impact with coincident feet, which is no impact, has no energy loss.
     slender_limit : float
-        Coefficient that slender rectangles tend to [-].
+        Limit of the coefficient for slender rectangles [-].
     trials : tuple of str
-        Parameters, as in a label, with which the tests that every model shares try it.
+        Parameters, in the form of a label, for the common tests of all models.
 
     Examples
     --------
@@ -114,14 +114,14 @@ class RestitutionModel(ABC):
 
     @abstractmethod
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Return what the model's equation gives for a body, before its domain is applied.
+        """Return the value of the model's equation for a body, without the limits of its domain.
 
         Parameters
         ----------
         body : Body
             The body.
         onto : {"left", "right"}
-            The foot on which it lands.
+            The foot on which the body lands.
 
         Returns
         -------
@@ -130,17 +130,17 @@ class RestitutionModel(ABC):
         """
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the same for homogeneous rectangles, one by one unless a model knows better.
+        """Return the values of the model's equation for homogeneous rectangles.
 
         Parameters
         ----------
         slenderness : ndarray
-            Slenderness ratios h/b [-], checked.
+            Slenderness ratios h/b within their limits [-].
 
         Returns
         -------
         ndarray
-            Of the same shape [-].
+            Values of equal shape [-].
         """
         blocks = (Block(width=1.0, height=ratio) for ratio in slenderness.ravel().tolist())
         values = [self.raw_coefficient(block, "right") for block in blocks]
@@ -154,7 +154,7 @@ class RestitutionModel(ABC):
         body : Body
             The body.
         onto : {"left", "right"}
-            The foot on which it lands.
+            The foot on which the body lands.
 
         Returns
         -------
@@ -178,12 +178,12 @@ class RestitutionModel(ABC):
         body : Body
             The body.
         onto : {"left", "right"}
-            The foot on which it lands.
+            The foot on which the body lands.
 
         Returns
         -------
         float
-            theta_dot_after / theta_dot_before, zero where the body stops [-].
+            theta_dot_after / theta_dot_before, zero for a body that stops [-].
         """
         return self.evaluate(body, onto).coefficient
 
@@ -198,7 +198,7 @@ class RestitutionModel(ABC):
         Returns
         -------
         ndarray
-            theta_dot_after / theta_dot_before, of the same shape, zero where the body stops [-].
+            theta_dot_after / theta_dot_before, of equal shape, zero for a body that stops [-].
 
         Raises
         ------
@@ -215,7 +215,7 @@ class RestitutionModel(ABC):
         return np.maximum(raw, 0.0, out=raw) if self.can_stop else raw
 
     def stops(self, slenderness: Any) -> BoolArray:
-        """Return where a homogeneous rectangle stops instead of stepping on.
+        """Return True for homogeneous rectangles that stop at the impact.
 
         Parameters
         ----------
@@ -225,7 +225,7 @@ class RestitutionModel(ABC):
         Returns
         -------
         ndarray of bool
-            Whether `Flag.STOPS` applies.
+            True if `Flag.STOPS` applies.
         """
         return self._raw_checked(slenderness) <= 0.0
 
@@ -233,25 +233,25 @@ class RestitutionModel(ABC):
         ratios = checks.real_array("slenderness_ratio", slenderness)
         flat = ratios.ravel()
         result = np.empty_like(flat)
-        # pieces that stay in the cache: checks and arithmetic cost less than moving the data
+        # pieces fit in the cache, since moving the data costs more than the arithmetic
         for start in range(0, flat.size, _PIECE):
             piece = flat[start : start + _PIECE]
-            least = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
-            self._fill(piece, least, result[start : start + _PIECE])
+            smallest = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
+            self._fill(piece, smallest, result[start : start + _PIECE])
         return result.reshape(ratios.shape)
 
-    def _fill(self, slenderness: FloatArray, least: float, out: FloatArray) -> None:
-        """Write the coefficients of a piece, the least slenderness of which is known; a quick model writes in place."""
+    def _fill(self, slenderness: FloatArray, smallest: float, out: FloatArray) -> None:
+        """Write the coefficients of a piece; smallest: its smallest slenderness; fast models override it."""
         raw = self.raw_of_slenderness(slenderness)
         if not math.isfinite(float(raw.sum())):
             raise InvalidValueError(
-                "coefficient of model {model} must be finite for every slenderness", model=self.name
+                "the coefficient of model {model} must be finite for all slenderness ratios", model=self.name
             )
         out[...] = raw
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The model's parameters and their values, empty for most."""
+        """Parameters of the model and their values; empty for most models."""
         try:
             return {field.name: getattr(self, field.name) for field in fields(self) if field.init}  # type: ignore[arg-type]
         except TypeError:
@@ -259,17 +259,17 @@ class RestitutionModel(ABC):
 
     @property
     def label(self) -> str:
-        """Name with parameters, as the command line takes it: ``shifted-impulse:k=0.6``."""
+        """Name with parameters, in the form for the command line: ``shifted-impulse:k=0.6``."""
         values = ",".join(f"{name}={value:.4g}" for name, value in self.parameters.items())
         return f"{self.name}:{values}" if values else self.name
 
 
 class InertiaModel(RestitutionModel):
-    """A model written once, for the impact geometry of one body or of arrays of them."""
+    """Base class of models of the impact geometry, for one body or arrays of bodies."""
 
     @abstractmethod
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Return what the model's equation gives for impacts.
+        """Return the values of the model's equation for impacts.
 
         Parameters
         ----------
@@ -279,7 +279,7 @@ class InertiaModel(RestitutionModel):
         Returns
         -------
         ndarray
-            Of the shape of the geometry's fields [-].
+            Values, of the shape of the fields of the geometry [-].
         """
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:

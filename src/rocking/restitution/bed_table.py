@@ -1,4 +1,4 @@
-"""Where the impulse of a contact bed acts: a table of resolved impacts, read between its nodes by straight lines."""
+"""Impulse positions of a contact bed: a table of resolved impacts with linear interpolation."""
 
 import math
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.portable import each
 
-POINTS: Final = (2, 3, 5, 11, 41)  # numbers of contact points that were tabulated
+POINTS: Final = (2, 3, 5, 11, 41)  # tabulated numbers of contact points
 DAMPING: Final = (0.05, 5.0)  # range of the damping ratio [-]
 HARDNESS: Final = (30.0, 1000.0)  # range of the hardness [-]
-STEP: Final = 2.0**-13  # what the positions are stored in whole multiples of [-]
+STEP: Final = 2.0**-13  # quantum of the stored positions [-]
 
 BANDS: Final = (0.05, 0.1, 0.3, 0.5, 1.0)
 """Damping ratios from which each row of `STATED_ERRORS` holds, and `DAMPED` [-]."""
@@ -51,35 +51,35 @@ STATED_ERRORS: Final = {
 }
 """Largest difference in r from an impact resolved in time by points, band of damping below 1 and band of flatness [-].
 
-The median is 2e-3 and less. Two things are not smooth: on lightly damped beds a hop more or less is a kink; and a squat
-body almost stops, where r falls to zero like a square root, which straight lines through nodes cut off."""
+The median is at most 2e-3. Linear interpolation has larger errors at two singularities: the number of hops changes on
+lightly damped beds, and r of a squat body that almost stops decreases to zero like a square root."""
 
 DAMPED: Final = (0.001, 0.001, 0.0015, 0.002)
-"""The same from damping 1 on, for any number of points, by band of flatness [-]."""
+"""Largest difference for damping >= 1 and all numbers of points, by band of flatness [-]."""
 
 
 def stated_error(points: int, damping: float, flatness: FloatArray | float) -> FloatArray:
-    """Return the stated error of the table."""
+    """Return the stated error of the table [-]."""
     band = np.searchsorted(BANDS, damping, side="right") - 1
     errors = DAMPED if band == len(BANDS) - 1 else STATED_ERRORS[points][int(band)]
     return np.asarray(errors)[np.searchsorted(SQUATNESS, flatness, side="right") - 1]
 
 
-Bed = tuple[IntArray, FloatArray, FloatArray]  # cell of the table, and how far in it along hardness and damping
+Bed = tuple[IntArray, FloatArray, FloatArray]  # cell of the table, and fractions within it along hardness and damping
 
 
 @dataclass(frozen=True, eq=False)
 class BedTable:
-    """Impulse positions kappa over the half base, from its middle (0) to the new foot (1)."""
+    """Impulse positions kappa over the half base, from the middle of the base (0) to the new foot (1)."""
 
     flatness: FloatArray  # nodes of 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
-    offset: FloatArray  # nodes of the way from the plumb line back to the middle of the base, over w [-]
+    offset: FloatArray  # nodes of the distance from the plumb line back to the middle of the base, over w [-]
     damping: FloatArray  # nodes of the damping ratio [-]
     hardness: FloatArray  # nodes of the dimensionless landing speed v sqrt(k / m) / g [-]
     positions: FloatArray  # kappa by point count, flatness, offset, damping and hardness [-]
 
     def bed(self, points: IntArray | int, damping: FloatArray | float, hardness: FloatArray | float) -> Bed:
-        """Return where beds are in the table, broadcast."""
+        """Return the positions of beds in the table, broadcast."""
         (low, across), (lower, along) = map(
             _between, self._logarithms, (each(math.log, hardness), each(math.log, damping))
         )
@@ -87,18 +87,18 @@ class BedTable:
         return cell, across, along
 
     def position(self, bed: Bed, flatness: FloatArray, offset: FloatArray | float) -> FloatArray:
-        """Return the positions for bodies on beds, broadcast; those outside the table have the value at its edge."""
+        """Return the impulse positions for bodies on beds, broadcast; outside the table the value at its edge [-]."""
         cell, across, along = bed
         (j, aside), (i, up) = _between(self.offset, offset), _between(self.flatness, flatness)
         cells = np.asarray(cell + (i * self.offset.size + j) * (self.damping.size * self.hardness.size))
-        found = self.positions.ravel()[self._corners.reshape(2, 2, 2, 2, *(1,) * cells.ndim) + cells]
-        for share in (across, along, aside, up):
-            found = (1.0 - share) * found[0] + share * found[1]
-        return np.asarray(found)
+        values = self.positions.ravel()[self._corners.reshape(2, 2, 2, 2, *(1,) * cells.ndim) + cells]
+        for fraction in (across, along, aside, up):
+            values = (1.0 - fraction) * values[0] + fraction * values[1]
+        return np.asarray(values)
 
     @cached_property
     def _corners(self) -> IntArray:
-        """How far the corners of a cell are from its first: by hardness, damping, offset and flatness."""
+        """Index offsets of the corners of a cell by hardness, damping, offset and flatness."""
         strides = np.array(self.positions.strides[:0:-1]) // self.positions.itemsize
         return np.tensordot(strides, np.indices((2, 2, 2, 2)), axes=1)
 
@@ -110,10 +110,10 @@ class BedTable:
 def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the nodes of the table."""
     return (
-        # flatter bodies almost stop on two points, where r is not smooth
+        # squat bodies almost stop on two points, where r is not smooth
         np.linspace(0.005, 0.45, 15)[:13],
         np.linspace(-1.0, 1.0, 5) / 3.0,
-        # light damping makes the body hop: a hop more or less is a kink, and takes finer nodes
+        # with light damping the body hops: a change of the number of hops needs finer nodes
         np.concatenate([np.geomspace(0.05, 1.0, 25)[:-1], np.geomspace(1.0, 5.0, 9)]),
         np.geomspace(*HARDNESS, 41),
     )
@@ -121,8 +121,8 @@ def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
 
 @lru_cache(maxsize=1)
 def bed_table() -> BedTable:
-    """Return the shipped table, in whole multiples of `STEP`."""
-    # `studies.impact_laboratory.tabulated` computes it again
+    """Return the table of the package."""
+    # `studies.impact_laboratory.tabulated` recomputes it
     with files(__package__).joinpath("data", "contact_bed.npy").open("rb") as file:
         stored = np.load(file, allow_pickle=False)
     return BedTable(*nodes(), stored.astype(np.float64) * STEP)
@@ -131,6 +131,6 @@ def bed_table() -> BedTable:
 def _between(
     axis: FloatArray, value: FloatArray | float
 ) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
-    held = np.minimum(np.maximum(value, axis[0]), axis[-1])
-    low = np.searchsorted(axis[1:-1], held, side="right")
-    return low, np.asarray((held - axis[low]) / (axis[low + 1] - axis[low]))
+    limited = np.minimum(np.maximum(value, axis[0]), axis[-1])
+    low = np.searchsorted(axis[1:-1], limited, side="right")
+    return low, np.asarray((limited - axis[low]) / (axis[low + 1] - axis[low]))

@@ -1,4 +1,4 @@
-"""The calibrated default: a factor times a shifted impulse, both as the published measurements leave them open."""
+"""The calibrated default: a factor times a shifted impulse, with the posterior of the published measurements."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,31 +14,31 @@ from rocking.restitution.shifted_impulse import shifted
 
 NAMES = ("eta", "k", "s", "gamma")
 KEPT = Path(__file__).parent / "data" / "calibrated.npz"
-"""The posterior of `rocking.evidence.calibrate_hierarchy`, made by `make calibration`: a test asks whether it is."""
+"""Posterior of `rocking.evidence.calibrate_hierarchy`, written by `make calibration`; a test compares both."""
 
 
 @lru_cache(maxsize=2)
 def kept(path: Path) -> dict[str, Any]:
-    """Return a posterior that is kept: samples, marginals, joint weights of eta and k, summary, and what else there is.
+    """Return a stored posterior: samples, marginals, joint weights of eta and k, summary, and other arrays.
 
-    It is what `arrays_of` in `rocking.evidence.calibration` has made.
+    The function `arrays_of` in `rocking.evidence.calibration` writes the file.
     """
     with np.load(path, allow_pickle=False) as stored:
-        found = {name: stored[name] for name in stored.files}
-    marginals = {name: (found.pop(f"{name}_grid"), found.pop(f"{name}_weight")) for name in NAMES}
+        arrays = {name: stored[name] for name in stored.files}
+    marginals = {name: (arrays.pop(f"{name}_grid"), arrays.pop(f"{name}_weight")) for name in NAMES}
     summary = {
         name: dict(zip(("mean", "sd", "low", "high"), values, strict=True))
-        for name, values in zip(NAMES, found["summary"].tolist(), strict=True)
+        for name, values in zip(NAMES, arrays["summary"].tolist(), strict=True)
     }
-    return {**found, "marginals": marginals, "summary": summary}
+    return {**arrays, "marginals": marginals, "summary": summary}
 
 
 @dataclass(frozen=True)
 class Calibrated(InertiaModel):
-    """What the published measurements say of a body: the expected coefficient, of all that the posterior holds likely.
+    """Expected coefficient of a body, from the posterior of the published measurements.
 
-    It is the mean over a factor eta and a position k of the impulse. What is not known of it, and how single bodies
-    scatter about it, `rocking.evidence.restitution_distribution` draws.
+    The coefficient is the mean over a factor eta and a position k of the impulse. For its uncertainty, and for the
+    scatter of single bodies, see `rocking.evidence.restitution_distribution`.
 
     Examples
     --------
@@ -54,22 +54,22 @@ class Calibrated(InertiaModel):
     reference = "this project, from the measurements in Mao et al. 2024, Buildings 14(7) 2119"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "the interface is like those of the measurements, of which laboratories and materials differ",
+        "the interface is similar to those of the measurements, from different laboratories and materials",
     )
-    domain = "rectangles with 1.5 <= h/b <= 9.75 were measured; elsewhere it is an extrapolation"
+    domain = "measured for rectangles with 1.5 <= h/b <= 9.75; an extrapolation elsewhere"
     known_defects = (
-        "is no mechanics: its numbers are those of 39 tests of small blocks",
-        "does not know the interface of the body, which may cost more than its shape",
+        "an empirical fit to 39 tests of small blocks, not a mechanical model",
+        "independent of the interface of the body, which may lose more energy than its shape",
     )
     inertia_only = True
     sees_old_foot = False
 
     def __post_init__(self) -> None:
-        """Take the limit of slender bodies, where only the factor is left."""
+        """Set the limit of slender bodies, which is the mean factor."""
         object.__setattr__(self, "slender_limit", float(sum(weight * eta for eta, _, weight in _nodes())))
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Return the mean over the posterior, node by node within what energy allows."""
+        """Return the mean over the posterior, with each node limited by the energy bound [-]."""
         bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)  # Eq. 29
         means = (weight * np.minimum(eta * shifted(geometry, k), bound) for eta, k, weight in _nodes())
         return np.asarray(sum(means))  # Eq. 293
@@ -81,9 +81,9 @@ def scatter(mean: FloatArray, floor: FloatArray | float, slope: FloatArray | flo
 
 
 def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> FloatArray:
-    """Return coefficients drawn from all that the measurements leave open, each within what energy allows.
+    """Return random coefficients from the posterior of the measurements, within the energy bound [-].
 
-    Which of the posterior's samples it is, and at which probability of the scatter about that: numbers in [0, 1) [-].
+    which: position in the samples of the posterior; level: probability within the scatter; both in [0, 1).
     """
     from scipy.special import ndtr, ndtri
 
@@ -94,11 +94,11 @@ def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> Flo
     deviation = scatter(mean, floor, slope)
     low, high = ndtr(-mean / deviation), ndtr((bound - mean) / deviation)
     r = mean + deviation * ndtri(low + (high - low) * level)
-    return np.asarray(np.round(np.clip(r, 0.0, bound), 12))  # the same on processors whose powers end otherwise
+    return np.asarray(np.round(np.clip(r, 0.0, bound), 12))  # equal on all processors, in spite of different powers
 
 
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[tuple[Any, ...], ...]:
-    """Return the positions of the impulse among the samples, each with its mean factor before and its share behind."""
+    """Return the mean factor, impulse position and weight for each position in the samples."""
     eta, k = kept(KEPT)["samples"][:, :2].T
     return tuple((eta[k == node].mean(), node, (k == node).mean()) for node in map(np.float64, sorted(set(k.tolist()))))

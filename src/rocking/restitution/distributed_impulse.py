@@ -17,11 +17,11 @@ _NODES, _WEIGHTS = gauss_legendre(60)
 
 @dataclass(frozen=True)
 class DistributedImpulse(InertiaModel):
-    """A flat base lands point after point; pressure ~ (downward speed)^q while a point descends.
+    """Flat base that lands point after point, with pressure ~ (downward speed)^q while a point descends.
 
     ``r = exp(-Int kappa s_c / (1 + kappa s_c sigma) d(sigma))`` over the base, sigma the point that has just
-    stopped descending, s_c(sigma) the centre of the pressure ahead of it, kappa = m / (I_C + m h^2). Closed form
-    where the whole base touches, quadrature where only parts of it do.
+    stopped descending, s_c(sigma) the centre of the pressure ahead of it, kappa = m / (I_C + m h^2). The result is a
+    closed form for contact of the full base, and a quadrature for separate contact areas.
 
     Parameters
     ----------
@@ -50,22 +50,22 @@ class DistributedImpulse(InertiaModel):
     reference = "derived in this project (theory, Distributed impulse); no publication yet"
     assumptions = (
         "flat base, sticking, instantaneous impact",
-        "contact neither pulls nor pushes back: pressure only while a point descends",
+        "contact without tension or rebound: pressure only while a point descends",
     )
-    domain = "every body and q >= 0 for which the base leaves the ground behind it; otherwise the body stops: r = 0"
-    known_defects = ("q is an interface property that has to be chosen or fitted",)
+    domain = "bodies and q >= 0 for which the base behind the contact rises; otherwise the body stops: r = 0"
+    known_defects = ("q is an interface property that must be chosen or fitted",)
     inertia_only = True
     trials = ("", "q=0", "q=0.5", "q=4")
 
     def __post_init__(self) -> None:
-        checks.within("q", self.q, 0.0, 1e6, hint="beyond, the model is Housner's")
+        checks.within("q", self.q, 0.0, 1e6, hint="for larger q use Housner's model")
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Evaluate the closed form for a base that touches from foot to foot."""
+        """Return the closed form for a base in contact from foot to foot [-]."""
         return distributed(geometry, np.asarray(self.q))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Evaluate the closed form where the whole base touches, quadrature over its parts otherwise."""
+        """Return the closed form for contact of the full base, otherwise the quadrature over its areas [-]."""
         geometry = ImpactGeometry.of_body(body, onto)
         patches = contact_of(body, onto)
         if is_whole_base(patches, geometry):
@@ -78,7 +78,7 @@ class DistributedImpulse(InertiaModel):
         cuts = np.unique(np.concatenate([[start, end], patches.ravel()]))
         exponent = 0.0
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
-            # a quintic change of variable takes out the fractional powers at the ends of a patch
+            # a quintic change of variable removes the fractional powers at the ends of a patch
             t = 0.5 * (1.0 + _NODES)
             sigma = a + (b - a) * t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
             slope = 0.5 * (b - a) * 30.0 * t * t * (1.0 - t) ** 2
@@ -91,12 +91,12 @@ class DistributedImpulse(InertiaModel):
 
 
 def distributed(geometry: ImpactGeometry, q: FloatArray) -> FloatArray:
-    """Return the coefficients of bases that touch from foot to foot, for arrays of exponents, broadcast."""
+    """Return the coefficients of bases in contact from foot to foot, for arrays of exponents, broadcast [-]."""
     start, end = -geometry.old_lever, geometry.new_lever
     c = 1.0 / (geometry.base_gyration * (q + 2.0))
     e = c * (q + 1.0) * end
     lowest = np.clip(-0.5 * (q + 1.0) * end, start, end)
-    # D = 1 + kappa s_c sigma > 0: the stopped points stay behind
+    # D = 1 + kappa s_c sigma > 0: the stopped points rise
     leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
@@ -106,7 +106,7 @@ def distributed(geometry: ImpactGeometry, q: FloatArray) -> FloatArray:
 
 def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) -> FloatArray:
     force, moment = np.zeros_like(sigma), np.zeros_like(sigma)
-    # distances over the farthest one: powers neither overflow nor depend on the unit
+    # distances over the largest one: powers neither overflow nor depend on the unit
     reach = np.maximum(patches[-1, 1] - sigma, 0.0) if patches.size else np.zeros_like(sigma)
     ahead = reach > 0.0
     scale = np.where(ahead, reach, 1.0)
@@ -114,20 +114,20 @@ def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) 
         near, far = np.maximum(a - sigma, 0.0) / scale, np.maximum(b - sigma, 0.0) / scale
         force += _power_difference(near, far, q + 1.0)
         moment += _power_difference(near, far, q + 2.0)
-    # no flat stretch ahead: the foot itself takes the impulse
+    # no flat stretch ahead: the impulse acts at the foot
     centre = np.divide(moment, force, out=np.zeros_like(sigma), where=force > 0.0)
     return np.where(force > 0.0, sigma + reach * centre, end)  # Eq. 111
 
 
 def _power_difference(near: FloatArray, far: FloatArray, power: float) -> FloatArray:
-    """(far^power - near^power) / power, also for narrow stretches where the powers cancel."""
+    """Return (far^power - near^power) / power, without cancellation for narrow stretches."""
     ratio = np.divide(near, far, out=np.ones_like(far), where=far > 0.0)
     with np.errstate(divide="ignore"):
         return np.asarray(-(far**power) * np.expm1(power * np.log(ratio)) / power)
 
 
 def _inverse_quadratic(c: FloatArray, e: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    # Int d(sigma) / (1 + e sigma + c sigma^2), the same expression on both sides of a zero discriminant
+    # Int d(sigma) / (1 + e sigma + c sigma^2), one expression for both signs of the discriminant
     delta = 4.0 * c - e * e
     x0, x1 = 2.0 * c * start + e, 2.0 * c * end + e
     below = delta + x0 * x1

@@ -1,4 +1,4 @@
-"""A coefficient given by hand, for instance a measured one."""
+"""A fixed coefficient, for example a measured value."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from rocking.restitution._model import RestitutionModel
 
 @dataclass(frozen=True)
 class Fixed(RestitutionModel):
-    """The same coefficient for every body and both directions.
+    """Fixed coefficient for all bodies and both feet.
 
     Parameters
     ----------
@@ -35,17 +35,17 @@ class Fixed(RestitutionModel):
 
     name = "fixed"
     short_name = "given value"
-    title = "a coefficient given by hand"
+    title = "a fixed coefficient"
     reference = "the user's own value"
-    assumptions = ("the value was measured on this body or one like it",)
+    assumptions = ("the value was measured on this body or on a similar body",)
     domain = "0 <= r <= 1"
-    known_defects = ("does not know the body: it may break the energy bound of an asymmetric one",)
+    known_defects = ("independent of the body: may exceed the energy bound of an asymmetric body",)
     inertia_only = True
     keeps_energy = sees_old_foot = False
     trials = ("r=0.7",)
 
     def __post_init__(self) -> None:
-        checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
+        checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio, not an energy ratio or a percentage")
         object.__setattr__(self, "slender_limit", self.r)
         object.__setattr__(self, "sees_old_foot", self.r == 1.0)
         plausibility.warn(plausibility.of_coefficient(self.r))

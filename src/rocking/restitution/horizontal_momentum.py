@@ -1,4 +1,4 @@
-"""Horizontal momentum: vertical velocities vanish, the angular momentum of the rest is kept (cos^2 alpha)."""
+"""Horizontal momentum: vertical velocities vanish, angular momentum of horizontal velocities is conserved."""
 
 from dataclasses import dataclass
 
@@ -25,19 +25,19 @@ class HorizontalMomentum(InertiaModel):
     short_name = "horizontal momentum (cos\N{SUPERSCRIPT TWO}\N{GREEK SMALL LETTER ALPHA})"
     colour, linestyle = "#009960", "-."
     legend = r"cos$^2\,\alpha$"
-    title = "vertical velocities vanish, angular momentum of the horizontal ones is kept (cos^2 alpha)"
+    title = "vertical velocities vanish, angular momentum of the horizontal velocities is conserved (cos^2 alpha)"
     reference = "derived in this project from stage 1 of Mao et al. 2024, doi:10.3390/buildings14072119"
     assumptions = (
         "the impact removes the vertical velocity of every mass point, as in KED",
-        "what is left keeps its angular momentum about the new foot",
+        "the remaining velocities conserve their angular momentum about the new foot",
     )
     domain = "every body: r > 0"
     known_defects = (
-        "ignores where the old foot is: with coincident feet (no impact at all) it still loses energy",
+        "independent of the old foot: coincident feet (no impact) still have an energy loss",
         "depends on the second moment of height, not on the polar inertia alone",
-        "no force model stands behind it",
+        "not derived from a force model",
     )
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Ratio of the second moment of height to the polar moment about the new foot."""
+        """Return the ratio of the second moment of height to the polar moment about the new foot [-]."""
         return (geometry.spread_y + geometry.height**2) / geometry.new_gyration  # Eq. 10

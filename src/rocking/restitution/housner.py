@@ -9,7 +9,7 @@ from rocking.restitution.impact import ImpactGeometry
 
 @dataclass(frozen=True)
 class Housner(InertiaModel):
-    """The classical model: the whole impulse acts at the new foot.
+    """The classical model: the impulse acts at the new foot.
 
     ``r = (I_C + m (h^2 - b_old b_new)) / (I_C + m (h^2 + b_new^2))`` (Eq. 4 of Mao et al. 2024, generalised to
     any inertia and asymmetric feet), ``1 - 3/2 sin(alpha)^2`` for a homogeneous rectangle (Eq. 5).
@@ -28,17 +28,17 @@ class Housner(InertiaModel):
     reference = "Housner 1963, Bull. Seismol. Soc. Am. 53(2) 403-417, doi:10.1785/BSSA0530020403"
     assumptions = (
         "rigid body and rigid ground, instantaneous impact",
-        "the impulse acts at the new foot alone: the base touches at its corners only",
+        "the impulse acts at the new foot only: the base is in contact at its corners",
         "no sliding, no bouncing",
     )
-    domain = "r > 0 (rectangles with h/b > 1/sqrt(2)); below, both corners take an impulse and the body stops: r = 0"
+    domain = "r > 0 (rectangles with h/b > 1/sqrt(2)); below, impulses act at both corners and the body stops: r = 0"
     known_defects = (
-        "measured coefficients of squat blocks (h/b below about 4) lie above it",
-        "real bases touch over an area, so the impulse acts inside the base",
+        "measured coefficients of squat blocks (h/b below about 4) are larger",
+        "real bases have contact over an area, so that the impulse acts inside the base",
     )
     inertia_only = True
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Eq. 4, Mao et al. 2024, generalised."""
+        """Return r by Eq. 4, Mao et al. 2024, for any inertia and asymmetric feet [-]."""
         # Eq. 2; Eq. 4, Mao et al. 2024
         return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration

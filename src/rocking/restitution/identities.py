@@ -1,4 +1,4 @@
-"""Which identities of rigid-body mechanics a model keeps for a given body, and which it breaks."""
+"""Check of a model and a body against identities of rigid-body mechanics."""
 
 import math
 import warnings
@@ -11,36 +11,36 @@ from rocking.restitution._implied import implied
 from rocking.restitution._model import RestitutionModel
 
 _EXACT = 1e-9
-# Feet this far apart, relative to the base, stand for coincident ones; sound models are then within its square root.
+# relative distance of nearly coincident feet; correct models are within its square root
 _NEARLY_COINCIDENT = 1e-6
 _STATEMENTS = {
     "scale": "the coefficient does not depend on size",
     "density": "the coefficient does not depend on density",
     "mirror": "the mirror image has the same coefficient",
-    "coincident pivots": "with both feet in one place there is no impact and nothing is lost",
+    "coincident pivots": "with coincident feet there is no impact and no energy loss",
     "inertia alone": "bodies with the same mass, centre, inertia and base have the same coefficient",
     "energy bound": "the impact creates no energy, r^2 I_O' <= I_O",
-    "round trip": "an impact onto each foot gains nothing, r r' <= 1",
+    "round trip": "an impact onto each foot creates no energy, r r' <= 1",
     "impulse on the base": "the implied impulse acts on the base, k <= 1",
 }
 
 
 @dataclass(frozen=True, slots=True)
 class IdentityCheck:
-    """One identity, tried on one model and one body.
+    """Check of one identity for one model and one body.
 
     Parameters
     ----------
     name : str
         Short name, such as ``"coincident pivots"``.
     statement : str
-        What should hold.
+        The identity as a sentence.
     expected : float
-        The value that the identity asks for [-].
+        Value required by the identity [-].
     found : float
-        The value furthest from it that the model gave [-].
+        Value of the model with the largest difference [-].
     holds : bool
-        Whether the identity holds.
+        True if the identity holds.
     """
 
     name: str
@@ -51,7 +51,7 @@ class IdentityCheck:
 
     @property
     def sentence(self) -> str:
-        """The verdict as a user reads it."""
+        """Result of the check as a sentence."""
         if self.holds:
             return f"{self.name}: holds"
         numbers = f"expected {self.expected:.6g}, got {self.found:.6g}"
@@ -59,7 +59,7 @@ class IdentityCheck:
 
 
 def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right") -> tuple[IdentityCheck, ...]:
-    """Try every identity on a model and a body.
+    """Return the checks of all identities for a model and a body.
 
     Parameters
     ----------
@@ -86,38 +86,38 @@ def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right"
     (left, right), x = body.feet, body.centre[0]
     gap = 0.5 * _NEARLY_COINCIDENT * (right - left)
     with warnings.catch_warnings():
-        # bodies that are only tried: grown, lighter, with both feet almost at one place
+        # modified bodies need no warnings: larger, lighter, with nearly coincident feet
         warnings.simplefilter("ignore", PlausibilityWarning)
-        here, back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
+        r, r_back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
         others = {
             "scale": model.coefficient(body.scaled(size=3.7), onto),
             "density": model.coefficient(body.scaled(density=3.7), onto),
             "mirror": model.coefficient(body.mirrored(), opposite(onto)),
             "coincident pivots": model.coefficient(body.with_feet(x - gap, x + gap), onto),
             "inertia alone": max(
-                (model.coefficient(twin, onto) for twin in _dumbbells(body)), key=lambda value: abs(value - here)
+                (model.coefficient(twin, onto) for twin in _dumbbells(body)), key=lambda value: abs(value - r)
             ),
         }
-    means = implied(body, here, onto=onto)
+    implication = implied(body, r, onto=onto)
     bounds = {
-        "energy bound": (means.largest_coefficient, here, means.within_energy),
-        "round trip": (1.0, here * back, here * back <= 1.0 + _EXACT),  # Eq. 113
-        "impulse on the base": (1.0, means.impulse_ratio, means.within_base),
+        "energy bound": (implication.largest_coefficient, r, implication.within_energy),
+        "round trip": (1.0, r * r_back, r * r_back <= 1.0 + _EXACT),  # Eq. 113
+        "impulse on the base": (1.0, implication.impulse_ratio, implication.within_base),
     }
     checks = []
     for name, statement in _STATEMENTS.items():
         if name in bounds:
-            expected, found, holds = bounds[name]
+            expected, actual, holds = bounds[name]
         else:
             pivots = name == "coincident pivots"
-            expected, found = 1.0 if pivots else here, others[name]
-            holds = abs(found - expected) <= (math.sqrt(_NEARLY_COINCIDENT) if pivots else _EXACT)
-        checks.append(IdentityCheck(name, statement, expected, found, holds))
+            expected, actual = 1.0 if pivots else r, others[name]
+            holds = abs(actual - expected) <= (math.sqrt(_NEARLY_COINCIDENT) if pivots else _EXACT)
+        checks.append(IdentityCheck(name, statement, expected, actual, holds))
     return tuple(checks)
 
 
 def _dumbbells(body: Body) -> list[MassPoints]:
-    """Two equal masses with the body's mass, centre and polar inertia: lying, and standing if it fits."""
+    """Return pairs of masses with the body's mass, centre and polar inertia: horizontal, and vertical if possible."""
     moments = body.local_moments
     arm = math.sqrt(moments.polar / moments.mass)
     arms = [(arm, 0.0)] + ([(0.0, arm)] if arm <= moments.y else [])

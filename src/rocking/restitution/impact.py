@@ -1,4 +1,4 @@
-"""The impact as the models in the plane see it: levers, height and gyration, and where the base touches."""
+"""Geometry of a plane impact: levers, height, gyration, and contact of the base."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ from rocking.conventions import FloatArray, Foot, opposite
 
 @dataclass(frozen=True, slots=True)
 class ImpactGeometry:
-    """Levers and inertia of an impact, per unit mass; every field is a number or arrays of one shape.
+    """Levers and inertia of an impact, per unit mass; fields are numbers or arrays of equal shape.
 
-    The body turns about the old foot before and about the new foot after the impact; x runs from the old foot to
-    the new one, measured from the plumb line of the centre of mass.
+    The body turns about the old foot before and about the new foot after the impact; the x axis is directed from the
+    old to the new foot, with the plumb line of the centre of mass as origin.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class ImpactGeometry:
     spread_y: FloatArray
 
     def __post_init__(self) -> None:
-        """Let plain numbers stand for arrays."""
+        """Convert numbers to arrays."""
         for name in self.__slots__:
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
 
@@ -57,7 +57,7 @@ class ImpactGeometry:
         Returns
         -------
         ImpactGeometry
-            Of zero-dimensional arrays.
+            Fields are zero-dimensional arrays.
         """
         new, old, moments = body.side(onto), body.side(opposite(onto)), body.local_moments
         return cls(
@@ -80,15 +80,15 @@ class ImpactGeometry:
         Returns
         -------
         ImpactGeometry
-            Of arrays of the same shape.
+            Fields are arrays of the same shape.
         """
         h = np.asarray(slenderness, dtype=np.float64)
-        one = np.ones_like(h)
-        return cls(h, one, one, one / 3.0, h * h / 3.0)
+        ones = np.ones_like(h)
+        return cls(h, ones, ones, ones / 3.0, h * h / 3.0)
 
     @property
     def base_gyration(self) -> FloatArray:
-        """(I_C + m h^2) / m, about the point of the ground below the centre [m2]."""
+        """(I_C + m h^2) / m, about the point of the ground below the centre of mass [m2]."""
         return self.spread_x + self.spread_y + self.height**2  # Eq. 108
 
     @property
@@ -103,13 +103,13 @@ class ImpactGeometry:
 
 
 def contact_of(body: Body, onto: Foot) -> FloatArray:
-    """Return the flat stretches of the base, measured from the plumb line of the centre of mass."""
+    """Return the flat stretches of the base relative to the plumb line of the centre of mass [m], shape (n, 2)."""
     patches = np.array(body.local_contact, dtype=np.float64).reshape(-1, 2) - body.local_moments.x
     return patches if onto == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
 
 
 def is_whole_base(patches: FloatArray, geometry: ImpactGeometry) -> bool:
-    """Return whether the base touches from foot to foot without a gap."""
+    """Return True if the base is in contact from foot to foot without a gap."""
     if len(patches) != 1:
         return False
     ends = np.array([-float(geometry.old_lever), float(geometry.new_lever)])

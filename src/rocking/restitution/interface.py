@@ -1,4 +1,4 @@
-"""The interface factor: what mortar, tape, dust or rubber takes on top of the geometry."""
+"""The interface factor: additional loss by mortar, tape, dust or rubber."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,7 +12,7 @@ from rocking.restitution._model import RestitutionModel
 
 @dataclass(frozen=True)
 class Interface(RestitutionModel):
-    """Any model times a factor eta: ``r = eta * r_model``.
+    """Model times an interface factor: ``r = eta * r_model``.
 
     Parameters
     ----------
@@ -45,13 +45,15 @@ class Interface(RestitutionModel):
     sees_old_foot: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse a factor that would create energy, and wrap once only."""
+        """Refuse a factor that would create energy."""
         wrapped: object = self.model
         if not isinstance(wrapped, RestitutionModel):
             raise UnknownModelError(
-                "an interface factor wraps a model object, got {value}", parameter="model", value=wrapped
+                "{parameter} of a factor must be a model object, got {value}",
+                parameter="model",
+                value=wrapped,
             )
-        checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
+        checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor only reduces energy")
         for name in ("assumptions", "domain", "known_defects", "inertia_only", "keeps_energy"):
             object.__setattr__(self, name, getattr(self.model, name))
         object.__setattr__(self, "sees_old_foot", self.eta == 1.0 and self.model.sees_old_foot)

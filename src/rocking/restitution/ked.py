@@ -14,37 +14,37 @@ from rocking.errors import InvalidValueError
 from rocking.portable import each, gauss_legendre
 from rocking.restitution._model import RestitutionModel
 
-# Below this slenderness the closed form loses more than two digits and the series is summed instead.
+# slenderness below which the closed form loses more than two digits, and the series replaces it
 _SERIES_BELOW = 0.3
 _SERIES = np.array([(-1.0) ** j / ((2 * j - 1) * (2 * j + 3)) for j in range(14, 0, -1)])
-# Edges whose end angles differ little are summed by Gauss-Legendre: the closed form would cancel.
+# Gauss-Legendre nodes for edges with a small difference of end angles, where the closed form cancels
 _NODES, _WEIGHTS = gauss_legendre(12)
 _GAUSS_BEYOND = 5.0
 _FEW = 256
 
 
-def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
+def fill_rectangles(ratio: FloatArray, smallest: float, out: FloatArray) -> None:
     """Write KED's coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form)."""
     # ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``. ratio:
-    # slenderness ratios l = h/b > 0 [-]; least: the least of them, or less [-]; out: of the same shape; receives r,
-    # relative error below 3e-14 [-]
+    # slenderness ratios l = h/b > 0 [-]; smallest: a lower bound of them [-]; out: r, of equal shape, with a relative
+    # error below 3e-14 [-]
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
     np.subtract(ratio, t, out=out)
-    # numpy's own arctan is quick; the last digit of many at once hangs on the processor
-    room = each(math.atan, t) if t.size <= _FEW else np.arctan(t, out=np.empty(ratio.shape))
+    # numpy's arctan is fast, but its last digit depends on the processor
+    buffer = each(math.atan, t) if t.size <= _FEW else np.arctan(t, out=np.empty(ratio.shape))
     with np.errstate(over="ignore", invalid="ignore"):
-        out *= room
+        out *= buffer
         out *= 0.75
-        np.multiply(ratio, ratio, out=room)
-        room += 1.0
+        np.multiply(ratio, ratio, out=buffer)
+        buffer += 1.0
         t *= 0.375 * np.pi
         t -= 1.0
-        t /= room
+        t /= buffer
         out += t
         out += 0.25  # Eq. 7; Eq. 17, Mao et al. 2024
         np.sqrt(out, out=out)
-    if least < _SERIES_BELOW:
+    if smallest < _SERIES_BELOW:
         squat = ratio < _SERIES_BELOW
         out[squat] = _series(ratio[squat])
 
@@ -56,7 +56,7 @@ def _series(t: FloatArray) -> FloatArray:
 
 
 def ring_integral(ring: FloatArray) -> float:
-    """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring."""
+    """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring [m4]."""
     # by Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
     # elementary integral for every straight edge
     return 0.25 * float(edge_integrals(ring, np.roll(ring, -1, axis=0)).sum())  # Eq. 8
@@ -71,10 +71,10 @@ def edge_integrals(start: FloatArray, end: FloatArray) -> FloatArray:
     radial = np.abs(offset) <= 1e-300
     smooth = ~radial & _is_smooth(offset, u0, u1)
     sharp = ~(radial | smooth)
-    found = np.zeros(len(start))
-    found[smooth] = _by_gauss(*(values[smooth] for values in (start[:, 1], end[:, 1], offset, u0, u1)))
-    found[sharp] = _by_formula(*(values[sharp] for values in (tau[:, 0], tau[:, 1], offset, u0, u1)))
-    return found
+    integrals = np.zeros(len(start))
+    integrals[smooth] = _by_gauss(*(values[smooth] for values in (start[:, 1], end[:, 1], offset, u0, u1)))
+    integrals[sharp] = _by_formula(*(values[sharp] for values in (tau[:, 0], tau[:, 1], offset, u0, u1)))
+    return integrals
 
 
 def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
@@ -85,9 +85,9 @@ def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
 
 
 def _by_gauss(y0: FloatArray, y1: FloatArray, offset: FloatArray, u0: FloatArray, u1: FloatArray) -> FloatArray:
-    share = 0.5 * (1.0 + _NODES)[:, None]
-    y = y0 + (y1 - y0) * share
-    u = u0 + (u1 - u0) * share
+    fraction = 0.5 * (1.0 + _NODES)[:, None]
+    y = y0 + (y1 - y0) * fraction
+    u = u0 + (u1 - u0) * fraction
     integrand = (y * y) ** 2 * offset / (offset**2 + u**2)
     return np.asarray(0.5 * (u1 - u0) * (_WEIGHTS[:, None] * integrand).sum(axis=0))
 
@@ -108,11 +108,11 @@ def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u
 
 @dataclass(frozen=True)
 class Ked(RestitutionModel):
-    """Kinetic energy distribution over the mass points, for any plane body.
+    """Kinetic energy distribution over the mass points, for plane bodies.
 
     ``r^2 = Int y^4 / (y^2 + (x_new - x)^2) dm / Int (y^2 + (x_new - x)^2) dm`` (Eq. 17, Mao et al. 2024):
-    stage 1 removes the vertical velocity of every mass point, stage 2 the part along the line to the new foot,
-    stage 3 hands the kinetic energy that is left to the rotation about the new foot.
+    stage 1 removes the vertical velocity of every mass point, stage 2 the component along the line to the new foot,
+    stage 3 converts the remaining kinetic energy to rotation about the new foot.
 
     Examples
     --------
@@ -129,44 +129,44 @@ class Ked(RestitutionModel):
     reference = "Mao, Deng, Shen & Wang 2024, Buildings 14(7) 2119, doi:10.3390/buildings14072119"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "the vertical velocity of every mass point is lost, then its part along the line to the new foot",
-        "the kinetic energy that is left becomes rotation about the new foot without further loss",
+        "every mass point loses its vertical velocity, then its component along the line to the new foot",
+        "the remaining kinetic energy becomes rotation about the new foot without further loss",
     )
-    domain = "published for homogeneous rectangles, extended here to any plane body: 0 < r < 1 always"
+    domain = "published for homogeneous rectangles, extended here to all plane bodies: 0 < r < 1 always"
     known_defects = (
-        "angular momentum about the new foot is exact if the impulse acts there; the paper's objection to it is not "
-        "sound (gravity is not impulsive), and what is really open is where the impulse acts",
-        "implies an impulse inside the base with no force model that produces it",
-        "stage 3 turns a velocity field that is not rigid into a rigid one without loss, which rigid bodies cannot",
-        "not a function of mass, centre, inertia and feet: bodies with the same dynamics get different values",
-        "ignores the old foot: with coincident feet (no impact at all) it still loses energy",
-        "not Galilean invariant: velocities must be taken relative to the ground",
-        "the mass effect it is said to capture is explained as simply by an additive loss at the interface",
-        "a high correlation is no evidence for it: Housner's is as high on the same data",
+        "angular momentum about the new foot is conserved if the impulse acts there; the paper's objection is "
+        "not valid (gravity is not impulsive); the open question is the impulse position",
+        "implies an impulse inside the base without a force model",
+        "stage 3 converts a velocity field that is not rigid to a rigid one without loss, which is not physical",
+        "not a function of mass, centre, inertia and feet: dynamically equal bodies have different values",
+        "independent of the old foot: coincident feet (no impact) still have an energy loss",
+        "not Galilean invariant: velocities must be relative to the ground",
+        "an additive loss at the interface explains the mass effect equally well",
+        "its high correlation is not evidence: that of Housner's model is equal on the same data",
     )
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Eq. 17, Mao et al. 2024, over the body's mass distribution."""
+        """Return r by Eq. 17, Mao et al. 2024, over the mass distribution of the body [-]."""
         if isinstance(body, Block) and body.known is None and body.stands_on_corners:
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
         return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Eq. 17 for homogeneous rectangles, in closed form."""
+        """Return r by Eq. 17 for homogeneous rectangles, in closed form [-]."""
         out = np.empty(np.shape(slenderness))
         fill_rectangles(slenderness, float(np.min(slenderness, initial=1.0)), out)
         return out
 
-    def _fill(self, slenderness: FloatArray, least: float, out: FloatArray) -> None:
-        fill_rectangles(slenderness, least, out)
+    def _fill(self, slenderness: FloatArray, smallest: float, out: FloatArray) -> None:
+        fill_rectangles(slenderness, smallest, out)
 
 
 @singledispatch
 def projected_moment(body: Body, onto: Foot) -> float:
     """Return the numerator of Eq. 17, the integral of ``y^4 / |S - O'|^2 dm``.
 
-    A new kind of body registers its own way: ``@projected_moment.register``.
+    Register a new kind of body with ``@projected_moment.register``.
 
     Parameters
     ----------
@@ -183,9 +183,9 @@ def projected_moment(body: Body, onto: Foot) -> float:
     Raises
     ------
     InvalidValueError
-        If this kind of body is not known.
+        If the kind of body is not registered.
     """
-    raise InvalidValueError("model ked does not know how mass is distributed in a {type}", type=type(body).__name__)
+    raise InvalidValueError("model ked has no mass distribution for a {type}", type=type(body).__name__)
 
 
 @projected_moment.register
@@ -213,16 +213,16 @@ def _(body: MassPoints, onto: Foot) -> float:
 
 
 def _of_points(points: FloatArray, masses: FloatArray) -> float:
-    """Return the sum over mass points, seen from the new foot [m], [kg]."""
+    """Return the sum over mass points relative to the new foot [kg m2]."""
     x, y = points.T
     squared = x * x + y * y
-    # a mass on the new foot itself has no velocity after the impact and contributes nothing
+    # a mass at the new foot has no velocity after the impact: its contribution is zero
     ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)  # Eq. 9
     return float((masses * ratio).sum())
 
 
 def _of_quarters(body: Body, onto: Foot) -> float:
-    """Return it of a body of which moments are known: of mass spread in quarters of its box as `assumed` says."""
+    """Return the projected moment of a body with stated moments, with its mass in the quarters of its box [kg m2]."""
     foot = np.array([body.local_feet[onto == "right"], 0.0])
     rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
     areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
@@ -231,7 +231,7 @@ def _of_quarters(body: Body, onto: Foot) -> float:
 
 
 STAGES = ("before", "stage 1", "stage 2", "after")
-"""Before the impact; vertical part lost; part along the line to the new foot lost; redistributed."""
+"""Before the impact; without vertical component; without component along the line to the new foot; redistributed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +243,7 @@ class EnergyBalance:
     body : Body
         The body.
     onto : {"left", "right"}
-        The foot on which it lands.
+        The foot on which the body lands.
     velocity_before, velocity_after : float
         Angular velocities about the old and about the new foot [rad/s].
     totals : dict of str to float
@@ -265,24 +265,24 @@ class EnergyBalance:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Each total over the energy before the impact [-]."""
+        """Totals over the energy before the impact, by stage [-]."""
         before = self.totals["before"]
         return {stage: energy / before for stage, energy in self.totals.items()}
 
     def velocities(self, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
-        """Return the velocity that each stage leaves at points of the body.
+        """Return the velocities at points of the body after each stage.
 
         Parameters
         ----------
         x, y : ndarray
-            Points in the user's coordinates, of one shape [m].
+            Points in the user's coordinates, of equal shape [m].
 
         Returns
         -------
         dict of str to ndarray
-            Stage to velocities (v_x, v_y), one more dimension of length 2 at the end [m/s].
+            Velocities (v_x, v_y) by stage, with an additional last dimension of length 2 [m/s].
         """
-        # clockwise rotation lands on the right foot, counter-clockwise on the left
+        # a clockwise rotation leads to the right foot, a counter-clockwise one to the left
         sense = 1.0 if self.onto == "right" else -1.0
         feet = dict(zip(("left", "right"), self.body.feet, strict=True))
         up = np.asarray(y, dtype=np.float64) - self.body.ground
@@ -290,26 +290,26 @@ class EnergyBalance:
         from_new = np.asarray(x, dtype=np.float64) - feet[self.onto]
         before, after = sense * self.velocity_before, sense * self.velocity_after
         squared = up**2 + from_new**2
-        kept = np.divide(up**2, squared, out=np.zeros_like(squared), where=squared > 0.0)
+        remaining = np.divide(up**2, squared, out=np.zeros_like(squared), where=squared > 0.0)
         return {
             "before": before * np.stack([up, -from_old], axis=-1),  # Eq. 6, Mao et al. 2024
             "stage 1": before * np.stack([up, np.zeros_like(up)], axis=-1),  # Eq. 7, Mao et al. 2024
-            "stage 2": before * kept[..., None] * np.stack([up, -from_new], axis=-1),  # Eqs. 8, 9, Mao et al. 2024
+            "stage 2": before * remaining[..., None] * np.stack([up, -from_new], axis=-1),  # Eqs. 8, 9, Mao et al. 2024
             "after": after * np.stack([up, -from_new], axis=-1),  # Eq. 12, Mao et al. 2024
         }
 
     def energy_density(self, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
-        """Return the kinetic energy per volume that each stage leaves at points.
+        """Return the kinetic energy per volume at points after each stage.
 
         Parameters
         ----------
         x, y : ndarray
-            Points in the user's coordinates, of one shape [m].
+            Points in the user's coordinates, of equal shape [m].
 
         Returns
         -------
         dict of str to ndarray
-            Stage to energy density, zero outside the body [J/m3].
+            Energy density by stage, zero outside the body [J/m3].
         """
         density = known_density(self.body, x, y)
         fields = self.velocities(x, y)
@@ -317,11 +317,11 @@ class EnergyBalance:
 
 
 def known_density(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return `density_at`, refused where only moments of the body are known [kg/m3]."""
+    """Return `density_at` [kg/m3]; an error for a body with stated moments."""
     if body.known is not None:
         raise InvalidValueError(
-            "the field of energy needs the distribution of mass, and of this body only moments are known: describe it "
-            "as regions with their densities, without centre and moment_of_inertia"
+            "the energy field needs the distribution of mass, but this body has moments only; describe the body by "
+            "regions with densities, without centre and moment_of_inertia"
         )
     return body.density_at(x, y)
 
@@ -334,14 +334,14 @@ def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float 
     body : Body
         Block, Section or MassPoints.
     onto : {"left", "right"}
-        The foot on which it lands.
+        The foot on which the body lands.
     angular_velocity : float
         Angular velocity before the impact [rad/s].
 
     Returns
     -------
     EnergyBalance
-        Totals, shares, and fields over the body (Eqs. 6-17, Mao et al. 2024, doi:10.3390/buildings14072119).
+        Totals, fractions, and fields over the body (Eqs. 6-17, Mao et al. 2024, doi:10.3390/buildings14072119).
 
     Raises
     ------
@@ -357,13 +357,13 @@ def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float 
     onto = checks.foot("onto", onto)
     speed = checks.positive("angular_velocity", angular_velocity, "rad/s")
     moments, half = body.local_moments, 0.5 * speed**2
-    kept = projected_moment(body, onto)
+    projected = projected_moment(body, onto)
     inertia = body.side(onto).moment_of_inertia
     totals = {
         "before": half * body.side(opposite(onto)).moment_of_inertia,
         "stage 1": half * (moments.yy + moments.mass * moments.y**2),
-        "stage 2": half * kept,  # Eq. 11, Mao et al. 2024
+        "stage 2": half * projected,  # Eq. 11, Mao et al. 2024
     }
-    after = speed * float(np.sqrt(kept / inertia))  # Eq. 16, Mao et al. 2024
+    after = speed * float(np.sqrt(projected / inertia))  # Eq. 16, Mao et al. 2024
     # Eq. 15, Mao et al. 2024
     return EnergyBalance(body, onto, speed, after, {**totals, "after": 0.5 * inertia * after**2})

@@ -1,4 +1,4 @@
-"""Restitution models by name, a new one in one line here or by one call of `register`; the coefficient of a body."""
+"""Registry of restitution models by name, and the coefficient of a body."""
 
 import inspect
 import numbers
@@ -24,7 +24,7 @@ from rocking.restitution.plastic_winkler import PlasticWinkler
 from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 BOUND_ROUNDING = 1e-9
-"""A coefficient may exceed its energy bound by this, relative to the bound: rounding of I_O and r together."""
+"""Allowed excess of a coefficient over its energy bound, relative to the bound: rounding of I_O and r."""
 
 _MODELS: dict[str, type[RestitutionModel]] = {
     kind.name: kind
@@ -36,7 +36,7 @@ _MODELS: dict[str, type[RestitutionModel]] = {
 
 
 def models() -> dict[str, type[RestitutionModel]]:
-    """Return every registered restitution model.
+    """Return the registered restitution models.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def models() -> dict[str, type[RestitutionModel]]:
 
 
 def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
-    """Register a model class under its name, so that it can be asked for by name; usable as a decorator.
+    """Register a model class under its name; usable as a decorator.
 
     Parameters
     ----------
@@ -68,17 +68,17 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     Raises
     ------
     InvalidValueError
-        If it is no such class, has no name, or another model has that name.
+        If the class is not a model, has no name, or its name is in use.
     """
     return put(kind)
 
 
 def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = ()) -> type[RestitutionModel]:
-    """Register a model class, in the place of one of those that it may be put over."""
+    """Register a model class; over: classes that it may replace."""
     candidate: object = kind
     if not (inspect.isclass(candidate) and issubclass(candidate, RestitutionModel)):
         raise InvalidValueError(
-            "a restitution model is a subclass of RestitutionModel, got {value}", parameter="kind", value=kind
+            "a restitution model must be a subclass of RestitutionModel, got {value}", parameter="kind", value=kind
         )
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
@@ -93,12 +93,12 @@ def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = (
 
 
 def check_complete(kind: type[RestitutionModel]) -> None:
-    """Refuse a class of models that lacks a method."""
+    """Refuse a model class without a required method."""
     lacking = sorted(kind.__abstractmethods__)
     if lacking:
         raise InvalidValueError(
-            "the model {type} has no method {methods}; a model has {method}, which returns the coefficient of a body "
-            "that lands on a foot", type=kind.__name__, methods=", ".join(lacking), method=_METHOD,
+            "the model {type} has no method {methods}; define {method}, which returns the coefficient of a body for "
+            "landing on a foot", type=kind.__name__, methods=", ".join(lacking), method=_METHOD,
         )  # fmt: skip
 
 
@@ -106,7 +106,7 @@ _METHOD = "raw_coefficient(self, body, onto)"
 
 
 def withdraw(kind: type[RestitutionModel]) -> None:
-    """Let a model no longer be asked for by its name."""
+    """Remove a model from the registry."""
     if _MODELS.get(kind.name) is kind:
         _MODELS.pop(kind.name, None)
 
@@ -121,7 +121,7 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
     eta : float
         Interface factor in (0, 1] [-].
     **parameters
-        The model's parameters: ``k``, ``q`` or ``r``.
+        Parameters of the model: ``k``, ``q`` or ``r``.
 
     Returns
     -------
@@ -142,105 +142,105 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
     """
     eta = _factor(eta)
     if isinstance(which, str):
-        found, factor = _parsed(which, parameters)
+        base, factor = _parsed(which, parameters)
         eta *= factor
     elif isinstance(which, RestitutionModel):
         if parameters:
             raise UnknownModelError(
-                "a model object takes no further parameters, got {names}", names=", ".join(parameters)
+                "a model object accepts no further parameters, got {names}", names=", ".join(parameters)
             )
-        found = which
+        base = which
     else:
         raise UnknownModelError(
-            "a restitution model is a name or a RestitutionModel object, got {type}", type=of_no_kind(which)
+            "a restitution model must be a name or a RestitutionModel object, got {type}", type=of_no_kind(which)
         )
     if eta == 1.0:
-        return found
+        return base
     from rocking.restitution.interface import Interface
 
-    return Interface(found, eta=eta)
+    return Interface(base, eta=eta)
 
 
 def _factor(eta: Any) -> float:
     return checks.within("eta", eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
 
 
-def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, float]:
-    factor, star, rest = words.partition("*")
+def _parsed(text: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, float]:
+    factor, star, remainder = text.partition("*")
     eta = _factor(number("eta", factor)) if star else 1.0
-    name, _, tail = (rest if star else words).strip().partition(":")
-    given = parameters_in(tail, words, parameters)
+    name, _, tail = (remainder if star else text).strip().partition(":")
+    values = parameters_in(tail, text, parameters)
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
         raise UnknownModelError(
-            "no restitution model named {name!r}; there are {names}", name=name, names=", ".join(list(_MODELS)),
+            "unknown restitution model {name!r}; models: {names}", name=name, names=", ".join(list(_MODELS)),
             hint=checks.nearest(name, _MODELS),
         )  # fmt: skip
-    return built(_MODELS[name], name, given), eta
+    return built(_MODELS[name], name, values), eta
 
 
-def parameters_in(text: str, words: str, beside: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are written behind a name, and those given beside it."""
-    given = dict(beside)
+def parameters_in(text: str, label: str, others: dict[str, Any]) -> dict[str, Any]:
+    """Return the parameters in the text after a name, with other parameters."""
+    values = dict(others)
     for item in filter(None, text.split(",")):
         key, equals, value = item.partition("=")
         if not equals:
             raise UnknownModelError(
                 "write parameters as name:k=0.6, and a model of your own as my_file.py:MyModel, got {model!r}",
-                model=words, hint=checks.number_hint(words),
+                model=label, hint=checks.number_hint(label),
             )  # fmt: skip
-        if key.strip() in given:
-            raise UnknownModelError("{key} is given twice for model {model!r}", key=key.strip(), model=words)
-        given[key.strip()] = number(key.strip(), value)
-    return given
+        if key.strip() in values:
+            raise UnknownModelError("{key} appears twice for model {model!r}", key=key.strip(), model=label)
+        values[key.strip()] = number(key.strip(), value)
+    return values
 
 
-def built(kind: type[RestitutionModel], name: str, given: dict[str, Any]) -> RestitutionModel:
+def built(kind: type[RestitutionModel], name: str, values: dict[str, Any]) -> RestitutionModel:
     """Return a model with its parameters."""
     check_complete(kind)
     try:
-        return kind(**given)
+        return kind(**values)
     except TypeError as error:
         names = ", ".join(getattr(kind, "__dataclass_fields__", {}))
         raise UnknownModelError(
-            "model {model!r} takes the parameter {names}, got {stated}" if names
-            else "model {model!r} takes no parameters, got {stated}",
-            model=name, names=names, stated=", ".join(given) or "none",
+            "model {model!r} accepts {names}, got {stated}" if names
+            else "model {model!r} accepts no parameters, got {stated}",
+            model=name, names=names, stated=", ".join(values) or "none",
         ) from error  # fmt: skip
 
 
-def number(name: str, words: str) -> float:
-    """Return the number that a parameter was given in words."""
+def number(name: str, text: str) -> float:
+    """Return the number in the text of a parameter."""
     try:
-        return float(words)
+        return float(text)
     except ValueError as error:
         raise InvalidValueError(
-            parameter=name, allowed="a number", value=words, hint=checks.number_hint(words)
+            parameter=name, allowed="a number", value=text, hint=checks.number_hint(text)
         ) from error
 
 
 def of_no_kind(restitution: object) -> str:
-    """Return what an object is that is no restitution, and what it lacks to be one."""
+    """Return the description of an object that is not a restitution, with its missing members."""
     kind = restitution if isinstance(restitution, type) else type(restitution)
     if kind is restitution:
-        return f"the class {kind.__name__}: create an object, {kind.__name__}()"
+        return f"the class {kind.__name__}; use an object, {kind.__name__}()"
     if isinstance(restitution, (str, int, float, complex, list, tuple, dict, set, np.ndarray)) or restitution is None:
         return f"{restitution!r:.60}"
     if hasattr(kind, "factor"):
-        return f"a {kind.__name__} object, a law that changes from impact to impact: it has no single coefficient"
+        return f"a {kind.__name__} object, a law that varies from impact to impact, without a single coefficient"
     if not hasattr(kind, "raw_coefficient"):
         return (
-            f"a {kind.__name__} object, which has no method raw_coefficient; a model of your own is a subclass of "
+            f"a {kind.__name__} object without method raw_coefficient; a model of your own must be a subclass of "
             f"RestitutionModel with {_METHOD}"
         )
     return f"a {kind.__name__} object, which is not a subclass of RestitutionModel"
 
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
-    """Return the coefficients for landing left and right, and their label [-]."""
+    """Return the coefficients for landing left and right [-], and their label."""
     if isinstance(restitution, (str, RestitutionModel)):
-        found = model(restitution)
-        return {foot: found.coefficient(body, foot) for foot in FEET}, found.label
+        resolved = model(restitution)
+        return {foot: resolved.coefficient(body, foot) for foot in FEET}, resolved.label
     if isinstance(restitution, Mapping):
         if set(restitution) != set(FEET):
             raise InvalidValueError(
@@ -262,18 +262,18 @@ def _coefficient(name: str, value: Any) -> float:
             "{parameter} must be {allowed}, got {shown}", parameter=name, allowed=allowed, value=value,
             shown=of_no_kind(value),
         )  # fmt: skip
-    r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
+    r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities, not a percentage")
     plausibility.warn(plausibility.of_coefficient(r))
     return r
 
 
-def energy_refusal(onto: Foot, most: float, largest: float) -> InvalidValueError:
-    """Return the refusal of a coefficient [-] above the energy bound of a side."""
+def energy_refusal(onto: Foot, bound: float, largest: float) -> InvalidValueError:
+    """Return the error for a coefficient [-] above the energy bound of a side."""
     return InvalidValueError(
         "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], got "
         "{largest:.6g}: the impact would create energy",
         foot=onto,
-        most=most,
+        most=bound,
         largest=largest,
     )
 
@@ -293,20 +293,20 @@ def coefficient_of_restitution(
     body : Body
         Block, Section or MassPoints. For a Solid see `rocking.restitution.space.edge_coefficient`.
     restitution : str, RestitutionModel, float or mapping
-        As for `simulate`: name of a model (see `rocking.restitution.models`), a model object, which may be your own, a
-        coefficient, or ``{"left": r, "right": r}`` with one coefficient for each foot. A law such as
-        `SpeedRestitution` changes from impact to impact and has no single coefficient.
+        As for `simulate`: name of a model (see `rocking.restitution.models`), a model object, a coefficient, or
+        ``{"left": r, "right": r}`` with one coefficient per foot. A law such as `SpeedRestitution` varies from impact
+        to impact and has no single coefficient.
     onto : {"left", "right"}
         The foot on which the body lands.
     eta : float
         Interface factor in (0, 1] that multiplies the coefficient [-].
     **parameters
-        Parameters of the model that is named: ``k``, ``q`` or ``r``.
+        Parameters of a model given by name: ``k``, ``q`` or ``r``.
 
     Returns
     -------
     float
-        theta_dot_after / theta_dot_before; zero where the body stops instead of stepping on [-].
+        theta_dot_after / theta_dot_before; zero for a body that stops at the impact [-].
 
     Raises
     ------
@@ -337,11 +337,11 @@ def coefficient_of_restitution(
     if isinstance(restitution, (str, RestitutionModel)):
         return model(restitution, eta=eta, **parameters).coefficient(body, onto)
     if parameters:
-        raise UnknownModelError("a coefficient takes no parameters, got {names}", names=", ".join(parameters))
+        raise UnknownModelError("a coefficient accepts no parameters, got {names}", names=", ".join(parameters))
     onto = checks.foot("onto", onto)
     checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
     coefficients, _ = coefficients_of(restitution, body)
-    r, most = coefficients[onto], energy_bound(body, onto)
-    if r > most * (1.0 + BOUND_ROUNDING):
-        raise energy_refusal(onto, most, r)
+    r, bound = coefficients[onto], energy_bound(body, onto)
+    if r > bound * (1.0 + BOUND_ROUNDING):
+        raise energy_refusal(onto, bound, r)
     return _factor(eta) * r

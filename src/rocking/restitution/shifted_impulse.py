@@ -14,7 +14,7 @@ from rocking.restitution.impact import ImpactGeometry
 class ShiftedImpulse(InertiaModel):
     """Angular momentum is conserved about a point of the base, a = k b_new ahead of the plumb line.
 
-    ``r = (I_C + m (h^2 - a b_old)) / (I_C + m (h^2 + a b_new))``; k = 1 is Housner, k = 0 loses nothing.
+    ``r = (I_C + m (h^2 - a b_old)) / (I_C + m (h^2 + a b_new))``; k = 1 is Housner, k = 0 has no loss.
 
     Parameters
     ----------
@@ -48,26 +48,26 @@ class ShiftedImpulse(InertiaModel):
     )
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "the resultant of all contact impulses passes through one known point of the base",
+        "the resultant of all contact impulses passes through one given point of the base",
     )
     domain = "0 <= k <= 1; the body stops (r = 0) where 3 k >= 1 + 4 (h/b)^2 for a rectangle"
     known_defects = (
-        "k is not predicted: it has to be measured or fitted",
-        "for asymmetric feet a small k (below 1/2) can break the energy bound",
+        "k is not predicted: it must be measured or fitted",
+        "for asymmetric feet a small k (below 1/2) can exceed the energy bound",
     )
     inertia_only = True
     trials = ("", "k=0", "k=1")
 
     def __post_init__(self) -> None:
         checks.within("k", self.k, 0.0, 1.0, hint="the impulse acts between the plumb line (0) and the foot (1)")
-        object.__setattr__(self, "keeps_energy", self.k >= 0.5)  # one behind may leave more than there was
+        object.__setattr__(self, "keeps_energy", self.k >= 0.5)  # a smaller k may create energy
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Conservation of angular momentum about the point of the impulse."""
+        """Return r from conservation of angular momentum about the impulse position [-]."""
         return shifted(geometry, np.asarray(self.k))
 
 
 def shifted(geometry: ImpactGeometry, k: FloatArray) -> FloatArray:
-    """Return the coefficients for arrays of impulse positions."""
+    """Return the coefficients for arrays of impulse positions k [-]."""
     arm, gyration = k * geometry.new_lever, geometry.base_gyration
     return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))  # Eq. 3

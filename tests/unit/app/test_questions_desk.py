@@ -455,7 +455,7 @@ def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
     pulses = [{"pulse": ["sine:amplitude=3,period=0.8"]}]
     tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"samples": 40}}
     asked = desk.ask("overturning-pga", tables, {})
-    assert "no restitution model named 'own'" in ended(desk, asked.id).message
+    assert "unknown restitution model 'own'" in ended(desk, asked.id).message
     monkeypatch.setenv("ROCKING_MODELS", str(tmp_path / "own.py"))
     asked = desk.ask("overturning-pga", tables, {})
     assert ended(desk, asked.id).state == "done", desk.get(asked.id).message

@@ -186,8 +186,8 @@ REFUSED = {
     "file": ({"body": {"file": "/etc/passwd"}}, "reads no file by its name"),
     "dxf": ({"body": {"units": "m", "section": {"region": [{"dxf": "/etc/x.dxf"}]}}}, "reads no file by its name"),
     "geojson": ({"body": {"units": "m", "section": {"region": [{"geojson": "a.json"}]}}}, "reads no file by its name"),
-    "model": ({"restitution": {"model": "best"}}, "no restitution model named 'best'"),
-    "model in a file": ({"restitution": {"model": "/tmp/x.py"}}, "no restitution model named"),
+    "model": ({"restitution": {"model": "best"}}, "unknown restitution model 'best'"),
+    "model in a file": ({"restitution": {"model": "/tmp/x.py"}}, "unknown restitution model"),
     "drawn per history": (
         {"restitution": {"distribution": {"mean": 0.9, "deviation": 0.01, "each": "history"}}},
         'must be "impact"',

@@ -64,7 +64,7 @@ def test_model_of_the_user_is_told_like_the_others(run, own):
     code, out, _ = run("models", f"{own}:Mine", "--json")
     assert (code, json.loads(out)[f"{own}:Mine"]["title"]) == (0, "of mine")
     code, _, err = run("models", f"{own}:Yours")
-    assert (code, "mine.py has no restitution model Yours; it has Mine" in err) == (2, True)
+    assert (code, "mine.py has no restitution model Yours; its models: Mine" in err) == (2, True)
 
 
 @pytest.fixture(scope="module")

@@ -113,7 +113,7 @@ REFUSED = {
     "assess": {
         "SIZE": "what moves the ground?",
         "SIZE PULSE --set assess.margin=0": "margin",
-        "SIZE PULSE --restitution kde": "no restitution model named 'kde'",
+        "SIZE PULSE --restitution kde": "unknown restitution model 'kde'",
         "SIZE PULSE --set settings.normal_restitution=0.1": "do not bounce",
     },
     "campaign": {
@@ -156,7 +156,7 @@ REFUSED = {
         "--width 1": "--width and --height",
         "": "got none of them",
         "x.toml --width 1": "not both",
-        "SIZE --restitution kde": "no restitution model named 'kde'",
+        "SIZE --restitution kde": "unknown restitution model 'kde'",
         "SIZE --units gal": "one of m, cm, mm, ft, in",
         "missing.toml": "missing.toml: there is no such file",
         "SIZE --restitution 1.5*ked": "eta must be in (0, 1]",
@@ -178,7 +178,7 @@ REFUSED = {
         "a.stl --units mm --width 1": "give a body file or dimensions, not both",
         "a.stl --units mm --onto left": "it takes no --onto",
         "a.stl --units mm --identities --output stages=s.png": "it takes no --identities, --output stages=FILE",
-        "a.stl --units mm --restitution best": "no restitution model in space is called 'best'",
+        "a.stl --units mm --restitution best": "unknown restitution model in space 'best'",
         "a.stl --units mm --set settings.gravity=0": "settings.gravity must be a number > 0",
         "a.stl --units mm --output a.bmp": ".png, .svg or .pdf",
         "a.stl --units mm --output none/a.csv": "no folder",
@@ -351,7 +351,7 @@ REFUSED = {
         "SIZE PULSE --samples 9 --set minimum.samples=20": "--samples and --set minimum.samples say the same",
     },
     "models": {
-        "kde": "no restitution model named 'kde'",
+        "kde": "unknown restitution model 'kde'",
         "hausner": "did you mean 'housner'",
     },
     "record show": {
@@ -438,7 +438,7 @@ REFUSED = {
         "SIZE none.at2": "none.at2: no such file",
         "SIZE sinus:amplitude=1": "unknown pulse",
         "SIZE PULSE --units g": "a pulse takes no --units",
-        "SIZE PULSE --restitution best": "no restitution model named 'best'",
+        "SIZE PULSE --restitution best": "unknown restitution model 'best'",
         "SIZE PULSE --restitution 90": "a percentage?",
         "SIZE PULSE --restitution 1.1": "would create energy",
         "SIZE PULSE --restitution nan": "restitution must be finite",
@@ -458,7 +458,7 @@ REFUSED = {
         "SIZE PULSE --friction -1": "--friction must be a number > 0",
         "SIZE PULSE --friction nan": "--friction must be a finite number",
         "SIZE PULSE --friction 1 --normal-restitution 1": "normal_restitution must be in [0, 1)",
-        "SIZE PULSE --normal-restitution 0.1": "normal_restitution does not apply to a body without friction",
+        "SIZE PULSE --normal-restitution 0.1": "normal_restitution does not apply to a plane body without friction",
         "SIZE PULSE --set body.up=z": "unknown key 'up'",
         "SIZE PULSE --motion y=PULSE": "a plane body has one horizontal motion",
         "prism.toml": "what moves the ground?",

@@ -190,7 +190,7 @@ def test_a_record_that_ends_in_mid_motion() -> None:
     assert not same(fast, run("fast", motions=(Segments(0.05, cut.horizontal[:25]).extended(3.0),))), "control"
     lines = cut.horizontal.copy()
     lines[5] = 0.0
-    with pytest.raises(InvalidValueError, match="records without jumps between their samples, got 3"):
+    with pytest.raises(InvalidValueError, match="records without jumps between samples, got 3"):
         library_of([Segments(0.05, lines)])
 
 
@@ -210,7 +210,7 @@ def test_libraries() -> None:
         ([], "motions must be at least one, got none"),
         ([MOTION, pulse], "all records or all pulses; sample the pulses"),
         ([Segments(0.1, np.zeros((3, 4)))], "all records or all pulses"),
-        ([Segments(0.1, np.zeros((3, 8)), np.zeros((3, 8)))], "a pulse has no vertical part; sample it"),
+        ([Segments(0.1, np.zeros((3, 8)), np.zeros((3, 8)))], "a pulse cannot have a vertical component; sample it"),
     ):
         with pytest.raises(InvalidValueError, match=message):
             library_of(motions)

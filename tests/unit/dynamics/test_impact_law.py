@@ -118,7 +118,7 @@ def test_a_law_of_ones_own() -> None:
         assert response.engine.startswith("reference")
         expected = 0.99 ** np.arange(response.impacts.size)
         np.testing.assert_allclose(response.impacts["coefficient"], expected, rtol=1e-15)
-    with pytest.raises(InvalidValueError, match="fast engine knows tables, not Worn"):
+    with pytest.raises(InvalidValueError, match="fast engine does not support Worn"):
         rk.free_rocking(block, 0.1, Worn(), engine="fast")
 
 

@@ -295,13 +295,13 @@ def test_starts_of_one_history_and_of_many_have_the_same_words() -> None:
     assert many.sizes["start"] == 1
     assert "start" not in rk.simulate_many(STATUE, MOTIONS[0], 0.9).sizes
     for how, says in (
-        ({"start": rk.dynamics.Start(height=0.1)}, "without friction= a start has rotation and angular_velocity alone"),
+        ({"start": rk.dynamics.Start(height=0.1)}, "without friction= start has rotation and angular_velocity only"),
         ({"start": [start, 0.1]}, r"start\[1\] must be a Start\(...\) or a list of these, got 0.1"),
         ({"start": []}, "start must be at least one"),
-        ({"start": start, "rotation": 0.1}, "either start or rotation and angular_velocity"),
+        ({"start": start, "rotation": 0.1}, "use start, or rotation and angular_velocity"),
         ({"rotation": [0.1, 2.0]}, "rotation must be in"),
         ({"rotation": [0.1, math.nan]}, "rotation must be finite"),
-        ({"rotation": [0.1, 0.2], "angular_velocity": [0.1, 0.2, 0.3]}, "rows of one length"),
+        ({"rotation": [0.1, 0.2], "angular_velocity": [0.1, 0.2, 0.3]}, "rows of equal length"),
         ({"angular_velocity": 1e4}, "angular_velocity must be in"),
     ):
         with pytest.raises(rk.errors.InvalidValueError, match=says):

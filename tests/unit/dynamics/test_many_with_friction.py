@@ -125,8 +125,8 @@ def test_a_history_without_a_result_is_neither():
         ({"friction": []}, "friction must be"),
         ({"friction": 0.3, "start": 0.1}, r"start must be a Start\(...\)"),
         ({"friction": 0.3, "progress": 3}, "progress must be a function"),
-        ({"normal_restitution": 0.5}, "normal_restitution does not apply to a body without friction,"),
-        ({"duration": 3.0}, "duration does not apply to a body without friction,"),
+        ({"normal_restitution": 0.5}, "normal_restitution does not apply to a plane body without friction,"),
+        ({"duration": 3.0}, "duration does not apply to a plane body without friction,"),
     ],
 )
 def test_what_is_refused(options, says):

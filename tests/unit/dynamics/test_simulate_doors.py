@@ -164,7 +164,7 @@ def test_error_estimate_at_the_shortest_step() -> None:
 @pytest.mark.filterwarnings("ignore::rocking.errors.SlowEngineWarning")
 def test_one_history_has_order_8(order: int, name: str) -> None:
     """Orders 4 and 6 are refused for one history, not passed over; the reference engine has an order of its own."""
-    message = f"order must be 8 for one history, got {order}: orders 4 and 6 exist only in batches"
+    message = f"order must be 8 for one history, got {order}: orders 4 and 6 apply only to batches"
     with pytest.raises(InvalidValueError, match=message):
         rk.simulate(BLOCK, PULSE, order=order, engine=name)
     with pytest.raises(InvalidValueError, match=message):
@@ -179,7 +179,7 @@ def test_orders_of_batches(order: int) -> None:
     pytest.importorskip("xarray")
     with pytest.raises(InvalidValueError, match=f"order must be 8 for the linear equations, got {order}: orders 4 and"):
         rk.simulate_many(BLOCK, PULSE, order=order, linear=True)
-    with pytest.raises(InvalidValueError, match=f"order must be 8 for motions with a vertical part, got {order}"):
+    with pytest.raises(InvalidValueError, match=f"order must be 8 for motions with a vertical component, got {order}"):
         rk.simulate_many(BLOCK, VERTICAL, order=order)
     good = rk.simulate_many(BLOCK, PULSE, order=order)["peak_rotation"].item()
     # order 4 errs by about 1e-6 at the default step

@@ -194,7 +194,7 @@ class Balance(Body):
 def test_an_unknown_distribution_of_mass_is_said():
     """KED needs one; the models that need mass, centre and inertia alone serve."""
     found = recommend(Balance())
-    assert found["ked"].reasons == ("model ked does not know how mass is distributed in a Balance",)
+    assert found["ked"].reasons == ("model ked has no mass distribution for a Balance",)
     assert found["housner"].reasons == ()
     assert found.prediction == "calibrated"
 
@@ -320,7 +320,7 @@ def test_a_body_in_space():
     assert "nothing measured prefers a model" in found.advice[0]
     drum = recommend(Solid(cylinder(1.0, 2.0)))
     assert drum.models == ()
-    assert "rolls round its rim" in drum.notes[0]
+    assert "rolls around its rim" in drum.notes[0]
 
 
 def test_a_leaning_tower_in_space_rocks_over_its_weakest_edge():

@@ -98,7 +98,7 @@ def test_an_edited_file_takes_the_place_of_what_it_was(own):
         for _ in range(2):
             with pytest.raises(RockingError):
                 register_own()
-            with pytest.raises(RockingError, match="no restitution model named 'edited'"):
+            with pytest.raises(RockingError, match="unknown restitution model 'edited'"):
                 r()
     own(f"0.9 * {HOUSNER}", "edited")
     register_own()
@@ -123,8 +123,8 @@ def test_the_page_lists_it(own):
     ("value", "name", "reason"),
     [
         ("1 / 0", "raises", "model 'raises': .*line 12: ZeroDivisionError"),
-        ("1.2", "above", r"above.py: model 'above': r must lie in \[0, 1\], is 1.2"),
-        ("1.0", "gains", "model 'gains': an impact creates energy"),
+        ("1.2", "above", r"above.py: model 'above': r must be in \[0, 1\], got 1.2"),
+        ("1.0", "gains", "model 'gains': an impact must not create energy"),
         ("1.0 / (2.0 + side.half_width)", "metres", "model 'metres': r must not depend on size"),
         ("0.5 if onto == 'left' else 0.4", "sided", "model 'sided': r must not depend on side"),
         ("float('nan')", "nan", "model 'nan': .*finite"),

@@ -46,7 +46,7 @@ def test_names():
 @pytest.mark.parametrize("which", ["", "K E D", "kdd", "housner ked", "0.9*", "*", "ked;", "interface"])
 def test_unknown_names(which):
     """An unknown name is refused with the list of those that exist."""
-    with pytest.raises(RockingError, match=r"no restitution model named .*housner.*ked|must be a number"):
+    with pytest.raises(RockingError, match=r"unknown restitution model .*housner.*ked|must be a number"):
         rk.coefficient_of_restitution(BODY, which)
 
 
@@ -57,14 +57,14 @@ def test_what_is_no_model(which):
     """What is neither a name, a model object nor a number is refused: also the class instead of an object."""
     with pytest.raises(InvalidValueError, match="restitution must be a model, its name, a coefficient"):
         rk.coefficient_of_restitution(BODY, which)
-    with pytest.raises(UnknownModelError, match="a restitution model is a name or a RestitutionModel object"):
+    with pytest.raises(UnknownModelError, match="a restitution model must be a name or a RestitutionModel object"):
         rk.restitution.model(which)
 
 
 PARAMETERS = {
-    "unknown": ("ked", {"k": 0.5}, UnknownModelError, "'ked' takes no parameters, got k"),
-    "other": ("shifted-impulse", {"q": 0.5}, UnknownModelError, "takes the parameter k, got q"),
-    "missing": ("fixed", {}, UnknownModelError, "takes the parameter r, got none"),
+    "unknown": ("ked", {"k": 0.5}, UnknownModelError, "'ked' accepts no parameters, got k"),
+    "other": ("shifted-impulse", {"q": 0.5}, UnknownModelError, "accepts k, got q"),
+    "missing": ("fixed", {}, UnknownModelError, "accepts r, got none"),
     "k above 1": (
         "shifted-impulse",
         {"k": 1.2},
@@ -94,13 +94,13 @@ PARAMETERS = {
     "text k": ("shifted-impulse:k=1.2", {}, InvalidValueError, r"k must be in \[0, 1\]"),
     "text word": ("shifted-impulse:k=x", {}, InvalidValueError, "k must be a number, got 'x'"),
     "text without value": ("shifted-impulse:k", {}, UnknownModelError, "write parameters as name:k=0.6"),
-    "text other": ("shifted-impulse:q=1", {}, UnknownModelError, "takes the parameter k, got q"),
+    "text other": ("shifted-impulse:q=1", {}, UnknownModelError, "accepts k, got q"),
     "text eta": ("1.2*ked", {}, InvalidValueError, r"eta must be in \(0, 1\]"),
     "text eta word": ("x*ked", {}, InvalidValueError, "eta must be a number, got 'x'"),
     "text eta NaN": ("nan*ked", {}, InvalidValueError, "eta must be finite"),
     "eta 2 times 1/2": ("0.5*ked", {"eta": 2.0}, InvalidValueError, r"eta must be in \(0, 1\]"),
     "eta -1 times -1": ("-1*ked", {"eta": -1.0}, InvalidValueError, r"eta must be in \(0, 1\]"),
-    "object and parameters": (Ked(), {"k": 0.5}, UnknownModelError, "takes no further parameters, got k"),
+    "object and parameters": (Ked(), {"k": 0.5}, UnknownModelError, "accepts no further parameters, got k"),
     "object, eta bool": (Ked(), {"eta": True}, InvalidValueError, "eta must be a number"),
     "object, eta array": (Ked(), {"eta": np.ones(2)}, InvalidValueError, "eta must be one number"),
 }
@@ -161,7 +161,7 @@ def test_own_model():
     assert Half().of_slenderness([1.0, 4.0]).tolist() == [0.5, 0.5]
     assert Half().parameters == {}
     assert Half().label == "half"
-    with pytest.raises(UnknownModelError, match="no restitution model named 'half'"):
+    with pytest.raises(UnknownModelError, match="unknown restitution model 'half'"):
         model("half")
 
 
@@ -183,7 +183,7 @@ def test_register():
 @pytest.mark.usefixtures("clean_registry")
 def test_register_refuses(value):
     """Only subclasses of RestitutionModel with a name can be registered."""
-    with pytest.raises(InvalidValueError, match="a restitution model is a subclass"):
+    with pytest.raises(InvalidValueError, match="a restitution model must be a subclass"):
         register(value)
 
     class Nameless(rk.restitution.RestitutionModel):

@@ -17,11 +17,11 @@ BOTH = (LEFT, RIGHT)
 
 @dataclass(frozen=True)
 class PlaneBase:
-    """Where the feet are, seen from the centre of mass."""
+    """Inertia of a body and positions of its feet relative to the centre of mass."""
 
-    mass: float  # mass m [kg]
+    mass: float  # m [kg]
     inertia: float  # polar moment about the centre over the mass, I_C / m [m2]
-    height: float  # height h of the centre above the ground when the body stands [m]
+    height: float  # height h of the centre above the ground at rest [m]
     left: float  # left, right: horizontal distances of the feet from the centre, both above zero [m]
     right: float
 
@@ -32,8 +32,7 @@ class PlaneBase:
         mass = body.mass
         if not body.moment_of_inertia > 0.0:
             raise InvalidValueError(
-                "with friction a body needs a moment of inertia about its centre of mass, and mass at one point has "
-                "none: say where the mass is"
+                "with friction a body needs a moment of inertia about its centre of mass above 0; distribute its mass"
             )
         return cls(mass, body.moment_of_inertia / mass, right.centre_height, left.half_width, right.half_width)
 
@@ -48,7 +47,7 @@ class PlaneBase:
         return math.hypot(max(self.left, self.right), self.height)
 
     def lever(self, foot: int) -> float:
-        """Return the lever d of a foot; below zero for the left foot [m]."""
+        """Return the lever d of a foot; negative for the left foot [m]."""
         return self.right if foot > 0 else -self.left
 
     def slenderness_angle(self, foot: int) -> float:
@@ -56,7 +55,7 @@ class PlaneBase:
         return math.atan2(abs(self.lever(foot)), self.height)
 
     def arm(self, foot: int, rotation: float) -> tuple[float, float]:
-        """Return where a foot is, seen from the centre; to the right and upwards [m] (rotation: theta [rad])."""
+        """Return the position of a foot relative to the centre, to the right and upwards [m]; rotation: theta [rad]."""
         d, sine, cosine = self.lever(foot), math.sin(rotation), math.cos(rotation)
         return d * cosine - self.height * sine, -d * sine - self.height * cosine  # Eq. 58
 
@@ -68,12 +67,12 @@ class PlaneBase:
 class Mode(NamedTuple):
     """One smooth piece of the motion."""
 
-    feet: tuple[int, ...]  # feet that carry: none, -1 (left), +1 (right) or both
-    slip: int = 0  # direction in which they slide: -1, 0 (they stick) or +1
+    feet: tuple[int, ...]  # feet in contact: none, -1 (left), +1 (right) or both
+    slip: int = 0  # direction of sliding: -1, 0 (sticking) or +1
 
     @property
     def regime(self) -> Regime:
-        """What the body does."""
+        """Regime of the mode."""
         if not self.feet:
             return Regime.FLIGHT
         if len(self.feet) == 2:
@@ -82,7 +81,7 @@ class Mode(NamedTuple):
 
     @property
     def carrier(self) -> str:
-        """Feet in words: ``"none"``, ``"left"``, ``"right"`` or ``"both"``."""
+        """Feet in contact: ``"none"``, ``"left"``, ``"right"`` or ``"both"``."""
         return {(): "none", (LEFT,): "left", (RIGHT,): "right", BOTH: "both"}[self.feet]
 
 
@@ -91,31 +90,31 @@ FLIGHT = Mode(())
 
 
 class ContactState(NamedTuple):
-    """Where the body is and how it moves."""
+    """Position and velocity of the body."""
 
-    # x, rise, rotation: displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and
-    # theta [rad]
+    # x, rise, rotation: displacement of the centre of mass from its initial position, to the right [m] and upwards
+    # [m], and theta [rad]
     x: float = 0.0
     rise: float = 0.0
     rotation: float = 0.0
     u: float = 0.0  # u, w, spin: their rates [m/s, m/s, rad/s]
     w: float = 0.0
     spin: float = 0.0
-    touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
+    touching: tuple[int, ...] = BOTH  # feet with zero gap
 
 
 def along(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return velocity of a foot along the ground, to the right; exactly zero where the foot was made to stick [m/s]."""
+    """Return the velocity of a foot along the ground, to the right; exactly zero if it was set to stick [m/s]."""
     return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
 def away(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return velocity of a foot away from the ground, upwards; exactly zero where the foot was put to rest [m/s]."""
+    """Return the velocity of a foot away from the ground, upwards; exactly zero if it was set to rest [m/s]."""
     return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
 def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
-    """Return the state without rounding in what contacts fix: ``v_n = 0``, and ``v_t = 0`` if they stick, exactly."""
+    """Return the state with exact contact conditions: ``v_n = 0``, and ``v_t = 0`` if the feet stick."""
     if not feet:
         return state
     if len(feet) == 2:
@@ -128,26 +127,26 @@ def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: 
 
 
 def kinetic(base: PlaneBase, state: ContactState) -> float:
-    """Return kinetic energy seen from the ground, per unit of mass, (x'^2 + z'^2 + (I_C / m) theta'^2) / 2 [J/kg]."""
+    """Return the kinetic energy relative to the ground per mass, (x'^2 + z'^2 + (I_C / m) theta'^2) / 2 [J/kg]."""
     return 0.5 * (state.u**2 + state.w**2 + base.inertia * state.spin**2)  # Eq. 62
 
 
 @dataclass(frozen=True)
 class Start:
-    """Position and velocity at time zero, relative to the ground.
+    """Start of a plane body: position and velocity at time zero, relative to the ground.
 
     Parameters
     ----------
     rotation : float
-        theta, within a quarter turn; the body stands on the lower foot [rad].
+        theta, within a quarter turn; the lower foot is on the ground unless `height` is given [rad].
     angular_velocity : float
         theta' [rad/s].
     horizontal_velocity : float
-        Of the lower foot, to the right [m/s].
+        Velocity of the lower foot, to the right [m/s].
     height : float
-        Of the lower foot above the ground [m].
+        Height of the lower foot above the ground [m].
     vertical_velocity : float
-        Of the lower foot, upwards [m/s].
+        Velocity of the lower foot, upwards [m/s].
 
     Raises
     ------
@@ -156,7 +155,7 @@ class Start:
 
     Notes
     -----
-    Without friction a body has `rotation` and `angular_velocity` alone: it neither slides nor flies.
+    Without friction only `rotation` and `angular_velocity` apply: the body neither slides nor flies.
 
     Examples
     --------
@@ -182,37 +181,37 @@ class Start:
 
     @property
     def rocks_alone(self) -> bool:
-        """Whether the lower foot is at rest on the ground, as that of a body without friction is."""
+        """True if the lower foot is at rest on the ground, as for a body without friction."""
         return not (self.horizontal_velocity or self.height or self.vertical_velocity)
 
 
 def rocking_start(start: Start) -> tuple[float, float]:
-    """Return theta [rad] and theta' [rad/s] of a start; one that lifts or pushes the body along is refused."""
+    """Return theta [rad] and theta' [rad/s] of a start; refuse a height or another velocity."""
     if not start.rocks_alone:
         raise InvalidValueError(
-            "without friction= a {parameter} has rotation and angular_velocity alone, since the body neither slides "
+            "without friction= {parameter} has rotation and angular_velocity only, since the body neither slides "
             "nor flies, got {value}", parameter="start", value=start,
         )  # fmt: skip
     return start.rotation, start.angular_velocity
 
 
 def starts_of(start: Any, rotation: Any = 0.0, angular_velocity: Any = 0.0) -> list[Start] | None:
-    """Return the starts of plane bodies, from `start` or from numbers or rows of them; None where none is stated."""
+    """Return the starts of plane bodies, from `start` or from numbers or rows; None if no start is stated."""
     stated = np.ndim(rotation) or np.ndim(angular_velocity) or rotation != 0.0 or angular_velocity != 0.0
     if start is None:
         return _starts_of_numbers(rotation, angular_velocity) if stated else None
     if stated:
-        raise InvalidValueError("give either start or rotation and angular_velocity, got both")
-    several = list(start) if isinstance(start, (list, tuple)) else [start]
-    if not several:
+        raise InvalidValueError("use start, or rotation and angular_velocity, not both")
+    starts = list(start) if isinstance(start, (list, tuple)) else [start]
+    if not starts:
         raise InvalidValueError("start must be at least one Start(...), got none")
-    for k, each in enumerate(several):
-        if not isinstance(each, Start):
+    for k, item in enumerate(starts):
+        if not isinstance(item, Start):
             raise InvalidValueError(
-                parameter="start" if each is start else f"start[{k}]", allowed="a Start(...) or a list of these",
-                value=each,
+                parameter="start" if item is start else f"start[{k}]", allowed="a Start(...) or a list of these",
+                value=item,
             )  # fmt: skip
-    return several
+    return starts
 
 
 def _starts_of_numbers(rotation: Any, angular_velocity: Any) -> list[Start]:
@@ -220,19 +219,19 @@ def _starts_of_numbers(rotation: Any, angular_velocity: Any) -> list[Start]:
         np.atleast_1d(checks.real_array(name, values, unit))
         for name, values, unit in (("rotation", rotation, "rad"), ("angular_velocity", angular_velocity, "rad/s"))
     ]
-    sizes = [row.shape for row in rows]
-    if any(row.ndim != 1 or not row.size for row in rows) or len(set(sizes) - {(1,)}) > 1:
+    shapes = [row.shape for row in rows]
+    if any(row.ndim != 1 or not row.size for row in rows) or len(set(shapes) - {(1,)}) > 1:
         raise InvalidValueError(
-            "rotation and angular_velocity must be numbers, or rows of one length: one entry for each start, got "
-            "shapes {rotation} and {angular_velocity}", rotation=sizes[0], angular_velocity=sizes[1],
+            "rotation and angular_velocity must be numbers, or rows of equal length with one entry per start, got "
+            "shapes {rotation} and {angular_velocity}", rotation=shapes[0], angular_velocity=shapes[1],
         )  # fmt: skip
     return [Start(*values) for values in zip(*(row.tolist() for row in np.broadcast_arrays(*rows)), strict=True)]
 
 
 def state_at_start(start: Start, base: PlaneBase) -> ContactState:
-    """Return the state of the centre of mass; x is zero where the body would stand upright on the same foot."""
-    turned = start.rotation or start.angular_velocity
-    foot = RIGHT if turned > 0.0 else LEFT
+    """Return the state of the centre of mass; x is zero for the upright body on the same foot."""
+    direction = start.rotation or start.angular_velocity
+    foot = RIGHT if direction > 0.0 else LEFT
     r_x, r_z = base.arm(foot, start.rotation)
     touching: tuple[int, ...] = ()
     if start.height == 0.0:

@@ -1,4 +1,4 @@
-"""Many histories with friction: rows of a study, which tell all that it takes of a body, and every combination."""
+"""Many histories with friction: rows of a study, and all combinations of `simulate_many`."""
 
 import math
 import warnings
@@ -42,16 +42,15 @@ NUMBERS = (
     "inertia", "height", "left", "right", "friction", "bounce", "imposed_left", "imposed_right", "scale", "end",
     "x", "rise", "rotation", "u", "w", "spin",
 )  # fmt: skip
-"""What makes a history, beside its motion, its law and the feet that touch: as `PlaneBase`, `GroundContact`,
-`ContactState` name it; imposed coefficients are NaN where there are none, `end` is how long to follow it [s]."""
+"""Columns of a history, in addition to motion, law and feet in contact; names as in `PlaneBase`, `GroundContact` and
+`ContactState`. Imposed coefficients are NaN if there are none; `end` is the end of the history [s]."""
 
 FAST = "fast: Taylor series with events and complementarity, compiled"
 REFERENCE = "reference: Taylor series with events and complementarity"
 
 _COMPILED = CompiledEngine(
     "rocking.dynamics._contact",
-    "the fast engine with friction was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
-    "`make engine`)",
+    "the fast engine with friction was not built; install rocking with a C++17 compiler (in a checkout, `make engine`)",
     "the reference engine runs instead, one history at a time",
     ("peak_rotation", "peak_time", "peak_velocity", "overturning_time", "first_uplift", "sliding_distance",
      "residual_displacement", "friction_usage", "end_time"),
@@ -61,15 +60,15 @@ available, module, chosen = _COMPILED.available, _COMPILED.module, _COMPILED.cho
 
 
 def library_of(motions: Sequence[Segments]) -> Any:
-    """Return motions as the compiled engine keeps them."""
-    data, places, used = [], [], 0
+    """Return motions in the form of the compiled engine."""
+    data, offsets, size = [], [], 0
     for motion in motions:
-        parts = [motion.horizontal] if motion.vertical is None else [motion.horizontal, motion.vertical]
-        places.append((used, motion.count, motion.degree + 1, len(parts) - 1))
-        data += [part.ravel() for part in parts]
-        used += sum(part.size for part in parts)
+        components = [motion.horizontal] if motion.vertical is None else [motion.horizontal, motion.vertical]
+        offsets.append((size, motion.count, motion.degree + 1, len(components) - 1))
+        data += [component.ravel() for component in components]
+        size += sum(component.size for component in components)
     steps = np.array([motion.step for motion in motions])
-    return module().Library(np.concatenate(data, dtype=np.float64), np.array(places, np.int64), steps)
+    return module().Library(np.concatenate(data, dtype=np.float64), np.array(offsets, np.int64), steps)
 
 
 def run_compiled(
@@ -81,12 +80,12 @@ def run_compiled(
     settings: ContactSettings,
     threads: int,
 ) -> dict[str, np.ndarray]:
-    """Return results by name of histories of `NUMBERS`; motion: their numbers."""
-    # touching: 1 for the left foot plus 2 for the right
+    """Return results by name of histories with columns `NUMBERS`; motion: indices of the motions."""
+    # touching: feet in contact, 1 for left plus 2 for right
     bounce_law = BOUNCE_LAWS.index(settings.normal_restitution_law)
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, bounce_law, touching)
-    numbers: FloatArray = np.column_stack([np.ravel(each) for each in columns[:-3]]).astype(np.float64)
-    choices = np.column_stack([np.ravel(each) for each in columns[-3:]]).astype(np.int64)
+    numbers: FloatArray = np.column_stack([np.ravel(column) for column in columns[:-3]]).astype(np.float64)
+    choices = np.column_stack([np.ravel(column) for column in columns[-3:]]).astype(np.int64)
     results, counts = _COMPILED.empty_tables(len(numbers))
     library.run(
         numbers, choices, results, counts, settings.gravity, settings.rest_speed, settings.tolerance,
@@ -96,40 +95,40 @@ def run_compiled(
 
 
 class RowsWithContact:
-    """Motions as the compiled engine with friction keeps them, and histories under them as rows of a study."""
+    """Motions in the form of the compiled engine with friction; runs histories given as rows of a study."""
 
     def __init__(self, motions: Sequence[Segments], law: ImpactLaw, settings: ContactSettings, engine: str) -> None:
         if engine == "reference":
             raise InvalidValueError(
-                'studies with friction run on the compiled engine; engine="reference" is for simulate and simulate_many'
+                'studies with friction need the compiled engine; engine="reference" is for simulate and simulate_many'
             )
         if not isinstance(law, ConstantRestitution):
             raise InvalidValueError(
-                "with friction a history has one coefficient of restitution, or one that is drawn once for it, got "
-                "{law}", parameter="restitution", law=type(law).__name__,
+                "with friction the coefficient of restitution must be constant within a history, got {law}",
+                parameter="restitution", law=type(law).__name__,
             )  # fmt: skip
         self.motions, self.settings = motions, settings
 
     @cached_property
     def library(self) -> Any:
-        """Motions as the compiled engine keeps them."""
+        """Motions in the form of the compiled engine."""
         return library_of(self.motions)
 
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
-        """Return the results of a piece by the names that studies know, and the steps taken."""
-        # a coefficient r that is `UNIMPOSED` is not imposed, a friction that is NaN is that of the settings; rows of
-        # another r below zero, or not finite, are refused by themselves
+        """Return the results of a piece by their names in studies, and counts of steps."""
+        # r = `UNIMPOSED` is not imposed; a NaN friction means that of the settings; a row with another r that is
+        # negative or not finite gets an error status
         values, motion = piece.values, piece.motion
         right, left = _side(values, "right", self.settings), _side(values, "left", self.settings)
         same = np.isclose(right["height"], left["height"], rtol=1e-6) & np.isclose(
             right["inertia"], left["inertia"], rtol=1e-6
         )
         coefficients = np.array([values[f"r_{foot}"] for foot in FEET])
-        known = np.all(((coefficients >= 0.0) & (coefficients <= 100.0)) | (coefficients == UNIMPOSED), axis=0)
+        is_valid = np.all(((coefficients >= 0.0) & (coefficients <= 100.0)) | (coefficients == UNIMPOSED), axis=0)
         size = np.maximum(right["size"], left["size"])
         friction = np.where(np.isnan(values["friction"]), self.settings.friction, values["friction"])
         table: dict[str, Any] = {
-            "inertia": np.where(same & known, right["inertia"], np.nan), "height": right["height"],
+            "inertia": np.where(same & is_valid, right["inertia"], np.nan), "height": right["height"],
             "left": left["half_width"], "right": right["half_width"],
             "friction": friction, "bounce": self.settings.normal_restitution,
             "imposed_left": _imposed(values["r_left"]), "imposed_right": _imposed(values["r_right"]),
@@ -138,23 +137,23 @@ class RowsWithContact:
         touching = np.full(motion.size, 3)
         if values["rotation"].any() or values["velocity"].any():
             touching = _start(table, values["rotation"], values["velocity"])
-        found = run_compiled(self.library, table, motion, touching, settings=self.settings, threads=threads)
-        demand = {"friction_demand": found["friction_usage"] * friction}
-        return found | demand, {"steps": int(found["steps"].sum())}
+        results = run_compiled(self.library, table, motion, touching, settings=self.settings, threads=threads)
+        demand = {"friction_demand": results["friction_usage"] * friction}
+        return results | demand, {"steps": int(results["steps"].sum())}
 
     def _ends(self, motion: np.ndarray, size: FloatArray) -> FloatArray:
-        """When the histories end [s]."""
+        """Return the ends of the histories [s]."""
         number = np.clip(motion, 0, len(self.motions) - 1)
         duration, step, pulse = (
-            np.array(each)[number]
-            for each in zip(*((m.duration, m.step, m.degree > 1) for m in self.motions), strict=True)
+            np.array(values)[number]
+            for values in zip(*((m.duration, m.step, m.degree > 1) for m in self.motions), strict=True)
         )
         slow = np.sqrt(size / self.settings.gravity)
         return ends_of(duration + AFTER * slow, step, pulse, slow)
 
 
 def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
-    """Return when histories end: on a sample of what the reference engine follows, which cuts pulses finer [s]."""
+    """Return the ends of histories, at a sample of the reference engine, which divides pulses into finer steps [s]."""
     # slow: sqrt(R / g) [s]
     with np.errstate(invalid="ignore"):
         step = np.where(pulse, step / np.maximum(1.0, np.ceil(step / (FINE * slow))), step)
@@ -162,21 +161,21 @@ def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
 
 
 def _side(values: dict[str, FloatArray], foot: str, settings: ContactSettings) -> dict[str, FloatArray]:
-    """Return what alpha, p and q say of a side: R, h, b [m], and I_C / m [m2]."""
+    """Return R, h, b [m] and I_C / m [m2] of a side from alpha, p and q."""
     alpha, p, q = (values[f"{name}_{foot}"] for name in ("alpha", "p", "q"))
-    with np.errstate(all="ignore"):  # a row that is no body is refused by itself
+    with np.errstate(all="ignore"):  # an invalid row gets an error status
         size = settings.gravity * q / p**2  # Eq. 26
         inertia = size**2 * (1.0 / q - 1.0)  # Eq. 27
         return {"size": size, "height": size * np.cos(alpha), "half_width": size * np.sin(alpha), "inertia": inertia}
 
 
 def _imposed(coefficient: FloatArray) -> FloatArray:
-    """Return coefficients as the compiled engine takes them, NaN where none is imposed."""
+    """Return coefficients for the compiled engine, NaN if none is imposed."""
     return np.where(coefficient == UNIMPOSED, np.nan, coefficient)
 
 
 def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) -> np.ndarray:
-    """Put bodies on the foot that they lean on, which does not slide; returns which feet touch, as bits."""
+    """Add the state of bodies tilted about a foot without sliding to the table; return feet in contact as bits."""
     foot = np.where(rotation + np.where(rotation == 0.0, velocity, 0.0) < 0.0, -1.0, 1.0)
     lever = np.where(foot > 0.0, table["right"], -table["left"])
     with np.errstate(all="ignore"):
@@ -191,31 +190,34 @@ def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) ->
 
 
 PIECE = 1 << 14
-"""Histories that are handed to the fast engine at a time."""
+"""Histories per call of the fast engine."""
 
 
 def many_with_contact(cases: Combinations, settings: ContactSettings) -> "xr.Dataset":
-    """Return the results of every combination of plane bodies."""
+    """Return the results of all combinations of plane bodies."""
     bodies, motions, scales, starts = plane_inputs(cases)
     check_progress(cases.progress)
     threads, restitutions = thread_count(cases.threads), cases.restitutions
     for mu in cases.frictions[1:].tolist():
         checked_friction("friction", mu)
     if chosen(cases.engine) == "fast":
-        imposed = [[imposed_on(body, each, settings) or (np.nan, np.nan) for each in restitutions] for body in bodies]
+        imposed = [
+            [imposed_on(body, restitution, settings) or (np.nan, np.nan) for restitution in restitutions]
+            for body in bodies
+        ]
         bases = [PlaneBase.of_body(body) for body in bodies]
         table = _Table(
             bases, motions, scales, np.array(imposed), cases.frictions, starts or [Start()], cases.duration, settings
         )
-        results, ran = table.run(threads, cases.progress), FAST
+        results, engine = table.run(threads, cases.progress), FAST
     else:
-        results, ran = _one_by_one(cases, bodies, motions, scales, starts or [Start()], settings), REFERENCE
+        results, engine = _one_by_one(cases, bodies, motions, scales, starts or [Start()], settings), REFERENCE
     labels = list(map(label_of, restitutions))
     return dataset_of(
         bodies, motions, {"scale": scales, "restitution": labels, "friction": cases.frictions, "start": starts},
         results, settings,
         {
-            "engine": ran, "normal_restitution": settings.normal_restitution,
+            "engine": engine, "normal_restitution": settings.normal_restitution,
             "normal_restitution_law": settings.normal_restitution_law,
             "duration": np.nan if cases.duration is None else cases.duration,
         },
@@ -227,9 +229,9 @@ def _one_by_one(
     settings: ContactSettings,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     rows = []
-    every = product(bodies, motions, scales.tolist(), cases.restitutions, cases.frictions.tolist(), starts)
-    for body, motion, scale, restitution, mu, start in every:
-        with warnings.catch_warnings():  # said once, before
+    combinations = product(bodies, motions, scales.tolist(), cases.restitutions, cases.frictions.tolist(), starts)
+    for body, motion, scale, restitution, mu, start in combinations:
+        with warnings.catch_warnings():  # warned once, before
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(
                 body, motion, restitution, replace(settings, friction=mu), start=start, scale=scale,
@@ -243,12 +245,12 @@ def _one_by_one(
 
 @dataclass(frozen=True)
 class _Table:
-    """Every combination of bodies, motions, scales, restitutions, friction and starts, for the fast engine."""
+    """All combinations of bodies, motions, scales, restitutions, frictions and starts, for the fast engine."""
 
     bases: Sequence[PlaneBase]
     motions: Sequence[GroundMotion | Pulse]
     scales: FloatArray
-    imposed: FloatArray  # of each body and restitution, landing left and right [-]
+    imposed: FloatArray  # coefficients by body, restitution, and foot of landing (left, right) [-]
     friction: FloatArray
     starts: Sequence[Start]
     duration: float | None
@@ -260,8 +262,10 @@ class _Table:
         library = library_of(segments)
         numbers = [(base.inertia, base.height, base.left, base.right) for base in self.bases]
         states = [[state_at_start(start, base) for start in self.starts] for base in self.bases]
-        state = np.array([[each[:6] for each in row] for row in states])
-        touching = np.array([[sum(1 if foot < 0 else 2 for foot in each.touching) for each in row] for row in states])
+        state = np.array([[initial[:6] for initial in row] for row in states])
+        touching = np.array(
+            [[sum(1 if foot < 0 else 2 for foot in initial.touching) for initial in row] for row in states]
+        )
         ends = self._ends(segments)
         shape = (
             len(self.bases), len(self.motions), self.scales.size, self.imposed.shape[1], self.friction.size,
@@ -284,11 +288,11 @@ class _Table:
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
 
     def _ends(self, segments: Sequence[Segments]) -> list[FloatArray]:
-        """Return the durations to which histories may be followed, shortest first, each by body and motion [s]."""
+        """Return the possible durations of histories, shortest first, each by body and motion [s]."""
         return [
             np.array([
-                [ends_of(length_of(motion, slow, self.duration, after), each.step, isinstance(motion, Pulse), slow)
-                 for motion, each in zip(self.motions, segments, strict=True)]
+                [ends_of(length_of(motion, slow, self.duration, after), segment.step, isinstance(motion, Pulse), slow)
+                 for motion, segment in zip(self.motions, segments, strict=True)]
                 for slow in (math.sqrt(base.size / self.settings.gravity) for base in self.bases)
             ])
             for after in ((AFTER, *LONGER) if self.duration is None else (AFTER,))
@@ -298,7 +302,7 @@ class _Table:
         self, library: Any, values: dict[str, Any], motion: IntArray, feet: IntArray, ends: list[FloatArray],
         threads: int,
     ) -> dict[str, np.ndarray]:  # fmt: skip
-        """Return results of rows; what still rocks at one end is followed to the next, unless that run fails."""
+        """Return results of rows; histories that still rock at one end run to the next, unless that run fails."""
 
         def computed(rows: IntArray, end: FloatArray) -> dict[str, np.ndarray]:
             own = {name: column[rows] for name, column in values.items()} | {"end": end[rows]}
@@ -323,19 +327,19 @@ _MEASURED = ("peak_rotation", "sliding_distance", "residual_displacement", "fric
 COLUMNS = ("outcome", "status", "side", "overturned", "overturning_time", *_MEASURED, *_COUNTED)
 
 
-def _columns(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    outcome = found["outcome"]
+def _columns(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    outcome = results["outcome"]
     return {
-        **{name: found[name] for name in ("outcome", "status", "side")},
+        **{name: results[name] for name in ("outcome", "status", "side")},
         "overturned": overturned(outcome),
-        "overturning_time": found["overturning_time"],
-        **{name: found[name] for name in _MEASURED},
-        **{name: of_results(outcome, found[name]) for name in _COUNTED},
+        "overturning_time": results["overturning_time"],
+        **{name: results[name] for name in _MEASURED},
+        **{name: of_results(outcome, results[name]) for name in _COUNTED},
     }
 
 
 def _row_of(response: ContactResponse) -> dict[str, float]:
-    """Results of one history; NaN where it has none."""
+    """Return the results of one history; NaN without a result."""
     good = response.outcome is not Outcome.FAILED
     rotation = response.rotation
     side = np.sign(rotation[np.argmax(np.abs(rotation))]) if rotation.size else 0.0

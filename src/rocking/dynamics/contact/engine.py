@@ -1,7 +1,7 @@
-"""The planar engine: Taylor series between events, events to rounding, complementarity at each of them.
+"""The planar engine: Taylor series between events, events located to rounding, complementarity at each event.
 
-Every step ends on a sample of the motion, so that nothing is integrated across a kink; an event is a zero of a
-polynomial. When nothing moves, the next stretch that could lift or move the body is looked up instead of stepped to.
+Every step ends at a sample of the motion at the latest, so that no step crosses a kink; an event is a zero of a
+polynomial. A body at rest skips the stretches that cannot move it.
 """
 
 import math
@@ -37,14 +37,14 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Status
 
 _ORDER = 30
-_WHOLE = 1.0 - 1e-13
+_STRETCH_END = 1.0 - 1e-13
 _CLOSED = 1e-13
-_MOST_CHANGES = 40
+_MAX_CHANGES = 40
 _AFTER = 60.0
 
 
 class ContactEngine:
-    """One history."""
+    """Engine of one history."""
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class ContactEngine:
         return (self.stretch + self.tau) * self.step
 
     def _over(self) -> bool:
-        """Whether the motion is over, and the body does not stand where it might yet fall."""
+        """Return True if the motion is over, and the body is not near overturning."""
         if self.stretch < self.count:
             return False
         side = 1 if self.state.rotation > 0.0 else -1
@@ -115,84 +115,84 @@ class ContactEngine:
             return
         ground = self._ground((1.0 - self.tau) * self.step)
         full = mode_series(self.base, self.state, self.mode, ground, self.law.friction, _ORDER)
-        part = self._trusted(full)
-        if not part > 0.0:
+        fraction = self._trusted(full)
+        if not fraction > 0.0:
             self._shocked(Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE)
             return
-        whole, here = full.shortened(part), ground.shortened(part)
-        stretch = whole.unit * self.pace
-        found = event_functions(self.base, self.mode, whole, self.law.friction, weight_of(here))
-        if full.stiff <= 0.0 or not consistent(found, stretch, self.tolerance):
+        trusted, trusted_ground = full.shortened(fraction), ground.shortened(fraction)
+        stretch = trusted.unit * self.pace
+        functions = event_functions(self.base, self.mode, trusted, self.law.friction, weight_of(trusted_ground))
+        if full.stiff <= 0.0 or not consistent(functions, stretch, self.tolerance):
             self._change()
             return
-        end = first_end(found, stretch, self.tolerance)
+        end = first_end(functions, stretch, self.tolerance)
         at, kind = end or (1.0, None)
-        self.history.pass_through(self._now, whole, here, at, self.law.friction)
-        self._watch_top(whole, at)
-        self.latest = whole
+        self.history.pass_through(self._now, trusted, trusted_ground, at, self.law.friction)
+        self._watch_top(trusted, at)
+        self.latest = trusted
         self.tolerance, self.changed = TOLERANCE, 0
-        reached = whole.state(at, self.mode.feet)
-        self._move(self.tau + at * part * (1.0 - self.tau) if at * part < 1.0 else 1.0, reached, at)
+        reached = trusted.state(at, self.mode.feet)
+        self._move(self.tau + at * fraction * (1.0 - self.tau) if at * fraction < 1.0 else 1.0, reached, at)
         if kind is not None:
-            self._end(kind, whole, at)
+            self._end(kind, trusted, at)
 
     def _trusted(self, full: ModeSeries) -> float:
-        """Part of a series over which its last terms stay below the tolerance."""
+        """Return the fraction of a series over which its last terms stay below the tolerance."""
         if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
             return 0.0
         if full.rotation.size <= _ORDER:
             return 1.0
-        part, size = 1.0, self.base.size
+        fraction, size = 1.0, self.base.size
         series = [(full.rotation, 1.0), (full.x, size), *((gap, size) for gap in full.gaps.values())]
         for c, unit in series:
             for k in (_ORDER - 1, _ORDER):
                 over = abs(c[k]) / (self.settings.tolerance * unit)
                 if over > 1.0:
-                    part = min(part, float(over) ** (-1.0 / k))  # Eq. 52
-        return part
+                    fraction = min(fraction, float(over) ** (-1.0 / k))  # Eq. 52
+        return fraction
 
     def _move(self, tau: float, reached: ContactState, at: float) -> None:
         self.state = kept(self.base, reached, self.mode.feet, stick=self.mode.slip == 0)
-        if tau > _WHOLE:
+        if tau > _STRETCH_END:
             self.stretch, self.tau = self.stretch + 1, 0.0
             self.history.sample(self.stretch, self.state, self.mode, self.latest, at)
         else:
             self.tau = tau
 
-    def _watch_top(self, whole: ModeSeries, at: float) -> None:
-        """Note when the centre passes over the foot."""
-        side = 1 if value(whole.rotation, at) > 0.0 else -1
-        gap = -side * whole.rotation
+    def _watch_top(self, series: ModeSeries, at: float) -> None:
+        """Record the passage of the centre over the foot."""
+        side = 1 if value(series.rotation, at) > 0.0 else -1
+        gap = -side * series.rotation
         gap[0] += self.base.slenderness_angle(side)
         if value(gap, at) >= 0.0:
             self.passed = math.nan
         elif gap[0] > 0.0 or math.isnan(self.passed):
-            self.passed = self._now + ((first_fall(gap.tolist()) or 0.0) if gap[0] > 0.0 else 0.0) * whole.unit
+            self.passed = self._now + ((first_fall(gap.tolist()) or 0.0) if gap[0] > 0.0 else 0.0) * series.unit
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
-    def _end(self, kind: ModeEnd, whole: ModeSeries, at: float) -> None:
-        """Let a mode end."""
+    def _end(self, kind: ModeEnd, series: ModeSeries, at: float) -> None:
+        """Process the end of a mode."""
         self.events += 1
         if self.events >= self.settings.most_events:
             self.ended = Status.TOO_MANY_EVENTS
         if kind is ModeEnd.LYING:
             self.lies, self.ended = True, Status.GOOD
         elif kind is ModeEnd.LANDING:
-            self._land(whole, at)
+            self._land(series, at)
         else:
             if kind is ModeEnd.STICKING:
                 self.state = kept(self.base, self.state, self.mode.feet, stick=True)
             self._change()
 
-    def _land(self, whole: ModeSeries, at: float) -> None:
+    def _land(self, series: ModeSeries, at: float) -> None:
         before, mode = self.state, self.mode
         if mode.feet:
             upright = before._replace(rotation=0.0, rise=0.0)
             self.state = kept(self.base, upright, mode.feet, stick=mode.slip == 0)._replace(touching=BOTH)
         else:
             slack = _CLOSED * self.base.size
-            feet = tuple(foot for foot in BOTH if value(whole.gaps[foot], at) <= slack)
+            feet = tuple(foot for foot in BOTH if value(series.gaps[foot], at) <= slack)
             if len(feet) == 2:
                 self.state = before._replace(rotation=0.0, rise=0.0, touching=feet)
             else:
@@ -201,26 +201,26 @@ class ContactEngine:
         self._strike(mode, self.settings.gravity * (before.rise - self.state.rise))
 
     def _strike(self, mode: Mode, dropped: float = 0.0) -> None:
-        """Resolve an impact of the feet that touch; rounding in its place is booked with it."""
+        """Resolve an impact of the feet in contact; dropped: energy of position corrections [J/kg]."""
         struck = self._struck(self.state, mode)
         if isinstance(struck, Status):
             self.ended = struck
             return
-        self._go_on(struck, dropped)
+        self._continue_after(struck, dropped)
 
     def _shocked(self, otherwise: Status) -> None:
-        """Strike a foot that slides where no contact force is possible; end with a status where that is not it."""
+        """Apply an impact without collision; end with a status where it does not apply."""
         self.events, self.changed = self.events + 1, self.changed + 1
-        stopped = self.events >= self.settings.most_events or self.changed > _MOST_CHANGES
+        stopped = self.events >= self.settings.most_events or self.changed > _MAX_CHANGES
         struck = otherwise if stopped else shock(self.base, self.state, self.law)
         if isinstance(struck, Status):
             self.ended = otherwise
             return
         self.history.shocks += 1
-        self._go_on(struck)
+        self._continue_after(struck)
 
-    def _go_on(self, struck: Struck, dropped: float = 0.0) -> None:
-        """Note an impact, and what follows it."""
+    def _continue_after(self, struck: Struck, dropped: float = 0.0) -> None:
+        """Record an impact, and choose the next mode."""
         before = self.state
         rounding = 1e-13 * largest_speed(self.base, before)
         after = self._calmed(cleaned(self.base, struck, rounding))
@@ -239,34 +239,36 @@ class ContactEngine:
                 return imposed
         bounces = {foot: law.bounce * -away(self.base, before, foot) for foot in before.touching}
         bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
-        found, replaced = impact_of(self.base, before, law, bounce)
+        struck, replaced = impact_of(self.base, before, law, bounce)
         self.history.replaced += replaced
-        return found
+        return struck
 
     def _calmed(self, after: ContactState) -> ContactState:
-        """Let a body that hardly moves after an impact stand, if the ground lets it."""
+        """Return a body with small velocities after an impact at rest on both feet, if its forces allow it."""
         slow = max(abs(after.w), abs(after.spin) * self.base.size) <= self.slowest
         if after.touching != BOTH or not slow:
             return after
         calm = kept(self.base, after, BOTH, stick=False)
         if abs(calm.u) <= self.slowest * 1e-3:
             calm = calm._replace(u=0.0)
-        found = choose(self.base, calm, self._ground(1.0 / self.pace), self.law.friction)
-        return calm if isinstance(found, NextMode) and found.mode.feet == BOTH else after
+        mode = choose(self.base, calm, self._ground(1.0 / self.pace), self.law.friction)
+        return calm if isinstance(mode, NextMode) and mode.mode.feet == BOTH else after
 
     def _change(self) -> None:
-        """Choose the mode that follows."""
+        """Choose the next mode."""
         if self.ended is not None:
             return
         self.changed += 1
-        found = choose(self.base, self.state, self._ground(1.0 / self.pace), self.law.friction)
-        if isinstance(found, Status):
-            self._shocked(found)
+        next_mode = choose(self.base, self.state, self._ground(1.0 / self.pace), self.law.friction)
+        if isinstance(next_mode, Status):
+            self._shocked(next_mode)
             return
-        if self.changed > _MOST_CHANGES:
+        if self.changed > _MAX_CHANGES:
             self.ended = Status.STUCK
-        self.tolerance = max(found.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0)
-        self.mode = found.mode
+        self.tolerance = max(
+            next_mode.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0
+        )
+        self.mode = next_mode.mode
         self.history.change(self._now, self.mode)
         if self.mode.feet != BOTH and len(self.mode.feet) == 1 and self.state.rotation != 0.0:
             self.state = kept(self.base, self.state, self.mode.feet, stick=self.mode.slip == 0)
@@ -274,11 +276,11 @@ class ContactEngine:
     # ---- rest -------------------------------------------------------------------------------------------------------
 
     def _skip(self) -> bool:
-        """Rest through stretches that cannot move the body; whether there were any."""
+        """Rest through stretches that cannot move the body; return True if there were any."""
         if not hasattr(self, "_excited"):
             self._excited = excited_stretches(self.base, self.push, self.lift, self.law.friction)
-        at = int(np.searchsorted(self._excited, self.stretch))
-        until = int(self._excited[at]) if at < self._excited.size else self.count
+        index = int(np.searchsorted(self._excited, self.stretch))
+        until = int(self._excited[index]) if index < self._excited.size else self.count
         if until <= self.stretch:
             return False
         while self.stretch < until:

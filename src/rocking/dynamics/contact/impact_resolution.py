@@ -1,4 +1,4 @@
-"""Impacts on one or two feet: impulses by complementarity, or as a process in which the impulse at one place grows.
+"""Impacts on one or two feet: impulses by complementarity, or as a process with an impulse that grows at one point.
 
 Newton's law, Poisson's and Stronge's, and the impact without collision: docs/theory/contact.md.
 """
@@ -17,7 +17,7 @@ from rocking.outcome import Status
 
 @dataclass(frozen=True)
 class GroundContact:
-    """What happens where the feet touch the ground.
+    """Friction and restitution at the contact of feet and ground.
 
     Parameters
     ----------
@@ -29,9 +29,9 @@ class GroundContact:
         Imposed coefficients theta_dot_after / theta_dot_before for landing left and right, which replace the
         complementarity problem at rocking impacts [-].
     bounce_law : {"newton", "poisson", "stronge"}
-        What `bounce` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared, the work of
-        the normal impulses (Stronge 1990). Where Newton's or Poisson's law would create energy, as they may with
-        friction, or has no solution, Stronge's stands in; it never creates any.
+        Definition of `bounce`: ratio of normal velocities (Newton), of normal impulses (Poisson), or, squared, of the
+        work of the normal impulses (Stronge 1990). Newton's and Poisson's laws may create energy with friction, or
+        have no solution; Stronge's law, which never creates energy, then replaces them.
 
     Raises
     ------
@@ -52,7 +52,7 @@ class GroundContact:
 
     @property
     def is_lossless(self) -> bool:
-        """Whether imposed coefficients lose no energy at rocking impacts, so that the body never comes to rest."""
+        """True if imposed coefficients lose no energy at rocking impacts, so that the body never comes to rest."""
         return self.restitution is not None and self.restitution[0] * self.restitution[1] >= 1.0
 
 
@@ -60,33 +60,35 @@ _ROUNDING = 1e-13
 
 
 class Struck(NamedTuple):
-    """What an impact does."""
+    """Result of an impact."""
 
-    state: ContactState  # the state after it
+    state: ContactState  # state after the impact
     normal: dict[int, float]  # vertical impulse at each foot, per unit of mass [m/s]
     tangential: float  # sum of the impulses along the ground, per unit of mass [m/s]
-    slip: int  # direction in which the feet slide while they are struck; 0 if they stick
+    slip: int  # direction of sliding during the impact; 0 if the feet stick
 
 
 def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
-    """Return what an impact does, e_N by foot [-]."""
-    # a status where there is no solution, where two differ, or where energy would be created
-    good = list(placed(base, state, friction, bounce))
-    if not good:
+    """Return the result of an impact; bounce: coefficient e_N by foot [-]."""
+    # a status without a solution, with two different ones, or with an energy gain
+    solutions = list(placed(base, state, friction, bounce))
+    if not solutions:
         return Status.NO_CONTACT_FORCE
     speed = largest_speed(base, state)
-    first = good[0].state
-    for other in (struck.state for struck in good[1:]):
-        gap = max(abs(first.u - other.u), abs(first.w - other.w), base.height * abs(first.spin - other.spin))
+    first_state = solutions[0].state
+    for other in (struck.state for struck in solutions[1:]):
+        gap = max(
+            abs(first_state.u - other.u), abs(first_state.w - other.w), base.height * abs(first_state.spin - other.spin)
+        )
         if gap > 1e-8 * speed:
             return Status.AMBIGUOUS
-    if kinetic(base, first) > kinetic(base, state) * (1.0 + 10.0 * _ROUNDING):
+    if kinetic(base, first_state) > kinetic(base, state) * (1.0 + 10.0 * _ROUNDING):
         return Status.ENERGY_GAIN
-    return good[0]
+    return solutions[0]
 
 
 def placed(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Iterator[Struck]:
-    """Every solution of Newton's law and Coulomb's, sticking before sliding; bounce: e of each foot [-]."""
+    """Return all solutions of Newton's and Coulomb's laws, sticking before sliding; bounce: e by foot [-]."""
     targets = {foot: -bounce[foot] * away(base, state, foot) for foot in state.touching}  # Eq. 70
     speed = largest_speed(base, state)
     # Eq. 20
@@ -94,18 +96,18 @@ def placed(base: PlaneBase, state: ContactState, friction: float, bounce: dict[i
 
 
 def cleared(base: PlaneBase, struck: Struck, before: ContactState) -> bool:
-    """Whether no foot that touches moves into the ground after an impact."""
+    """Return True if no foot in contact moves into the ground after an impact."""
     slack = _ROUNDING * largest_speed(base, before)
     return all(away(base, struck.state, foot) >= -slack for foot in before.touching)
 
 
 def largest_speed(base: PlaneBase, state: ContactState) -> float:
-    """Return the size of velocities whose differences are those of the feet: it measures their rounding [m/s]."""
+    """Return the velocity scale of the feet, which sets their rounding [m/s]."""
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
 def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: dict[int, float]) -> Iterator[Struck]:
-    """Every choice of feet that take part and of how they slide, whether or not it is valid."""
+    """Yield the results of all combinations of feet and directions of sliding, valid or not."""
     for slip, n in product((0, 1, -1), range(1, len(targets) + 1)):
         pull = slip * friction
         for feet in combinations(state.touching, n):
@@ -118,7 +120,7 @@ def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: d
 
 
 def _on_one(base: PlaneBase, state: ContactState, foot: int, target: float) -> Struck:
-    """Momentum about the foot is kept but for what the bounce takes."""
+    """Return the impact on a foot that sticks; angular momentum about the foot changes by the bounce only."""
     r_x, r_z = base.arm(foot, state.rotation)
     j = base.inertia
     spin = (j * state.spin - r_z * state.u + r_x * (state.w - target)) / (j + r_x**2 + r_z**2)  # Eq. 71
@@ -179,53 +181,52 @@ _IMPOSED_ROUNDING = 1e-12
 
 
 def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
-    """Return what a rocking impact does when its coefficient of restitution is imposed."""
-    # r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns the state after it with the
-    # impulses; a status where energy would be created; None where an impulse at that place would pull, or press the old
-    # foot into the ground.
-    place = foot * (1.0 - r) * (base.inertia + base.height**2)
-    place /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4
+    """Return the result of a rocking impact with an imposed coefficient of restitution."""
+    # r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns a status for an energy gain; None
+    # for a tensile impulse, or an old foot pressed into the ground.
+    lever = foot * (1.0 - r) * (base.inertia + base.height**2)
+    lever /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4
     speed = abs(away(base, state, foot)) + abs(along(base, state, foot))
     slack = _IMPOSED_ROUNDING * speed
-    found = _stuck(base, state, foot, place)
-    if abs(found.tangential) > friction * sum(found.normal.values()) + slack:
-        tried = [_slid(base, state, foot, place, slip, slip * friction) for slip in (1, -1)]
-        valid = [s for s in tried if s is not None and s.slip * along(base, s.state, foot) >= -slack]
+    struck = _stuck(base, state, foot, lever)
+    if abs(struck.tangential) > friction * sum(struck.normal.values()) + slack:
+        sliding = [_slid(base, state, foot, lever, slip, slip * friction) for slip in (1, -1)]
+        valid = [s for s in sliding if s is not None and s.slip * along(base, s.state, foot) >= -slack]
         if len(valid) != 1:
             return None
-        found = valid[0]
-    if sum(found.normal.values()) < -slack or away(base, found.state, -foot) < -slack:
+        struck = valid[0]
+    if sum(struck.normal.values()) < -slack or away(base, struck.state, -foot) < -slack:
         return None
-    gained = kinetic(base, found.state) > kinetic(base, state) * (1.0 + _IMPOSED_ROUNDING)
-    return Status.ENERGY_GAIN if gained else found
+    is_gain = kinetic(base, struck.state) > kinetic(base, state) * (1.0 + _IMPOSED_ROUNDING)
+    return Status.ENERGY_GAIN if is_gain else struck
 
 
-def _stuck(base: PlaneBase, state: ContactState, foot: int, place: float) -> Struck:
+def _stuck(base: PlaneBase, state: ContactState, foot: int, lever: float) -> Struck:
     h, d, j = base.height, base.lever(foot), base.inertia
-    spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)  # Eq. 74
+    spin = (j * state.spin + h * state.u + lever * state.w) / (j + h * h + lever * d)  # Eq. 74
     if abs(spin) <= _IMPOSED_ROUNDING * abs(state.spin):
         spin = 0.0
     after = state._replace(u=h * spin, w=d * spin, spin=spin)
-    return Struck(after, _shared(base, place, after.w - state.w), after.u - state.u, 0)
+    return Struck(after, _shared(base, lever, after.w - state.w), after.u - state.u, 0)
 
 
-def _slid(base: PlaneBase, state: ContactState, foot: int, place: float, slip: int, pull: float) -> Struck | None:
+def _slid(base: PlaneBase, state: ContactState, foot: int, lever: float, slip: int, pull: float) -> Struck | None:
     d = base.lever(foot)
-    turn = (pull * base.height - place) / base.inertia
+    turn = (pull * base.height - lever) / base.inertia
     stiff = 1.0 - d * turn
     if not stiff > 0.0:
         return None
     normal = (d * state.spin - state.w) / stiff  # Eq. 75
     spin = state.spin + turn * normal
     after = state._replace(u=state.u - pull * normal, w=d * spin, spin=spin)
-    return Struck(after, _shared(base, place, normal), -(pull * normal), slip)
+    return Struck(after, _shared(base, lever, normal), -(pull * normal), slip)
 
 
-def _shared(base: PlaneBase, place: float, normal: float) -> dict[int, float]:
-    """Both feet's parts of a resultant; beyond a foot the other one pulls."""
+def _shared(base: PlaneBase, lever: float, normal: float) -> dict[int, float]:
+    """Return the impulses of both feet for a resultant at a lever; beyond a foot the other impulse is tensile."""
     return {
-        LEFT: normal * (base.right - place) / base.width,
-        RIGHT: normal * (base.left + place) / base.width,
+        LEFT: normal * (base.right - lever) / base.width,
+        RIGHT: normal * (base.left + lever) / base.width,
     }
 
 
@@ -235,19 +236,19 @@ _GROWTH_ROUNDING, _ALMOST = 1e-13, 1e-6
 def impact_of(
     base: PlaneBase, state: ContactState, law: GroundContact, bounce: dict[int, float]
 ) -> tuple[Struck | Status, bool]:
-    """Return what an impact does, and whether Stronge's law had to stand in for the one that was asked for."""
-    # it does where that one has no solution, two of them, or would create energy. bounce: e of each foot [-]
+    """Return the result of an impact, and True if Stronge's law replaces the requested one."""
+    # it does if the other law has no solution, two of them, or an energy gain. bounce: e by foot [-]
     if law.bounce_law == "newton":
-        found = strike(base, state, law.friction, bounce)
+        struck = strike(base, state, law.friction, bounce)
     else:
-        found = _grown(base, state, law.friction, bounce, law.bounce_law)
-    if isinstance(found, Struck):
-        return found, False
+        struck = _grown(base, state, law.friction, bounce, law.bounce_law)
+    if isinstance(struck, Struck):
+        return struck, False
     return _grown(base, state, law.friction, bounce, "stronge"), True
 
 
 def shock(base: PlaneBase, state: ContactState, law: GroundContact) -> Struck | Status:
-    """Return what a foot does that slides where no contact force is possible: the impact without collision."""
+    """Return the impact without collision of a foot that slides where no contact force is possible."""
     for foot in state.touching:
         speed = along(base, state, foot)
         if speed == 0.0 or away(base, state, foot) != 0.0:
@@ -256,10 +257,10 @@ def shock(base: PlaneBase, state: ContactState, law: GroundContact) -> Struck | 
         normal, mixed, _ = _inverse_masses(base, arm)
         if normal - math.copysign(law.friction, speed) * mixed > _ALMOST:
             continue
-        own = (0.0 if law.bounce_law == "newton" else law.bounce, law.bounce_law)
-        for e, name in (own, (0.0, "stronge")):
-            found = _grow(base, state, arm, law.friction, e, name, shocked=True)
-            struck = found._replace(normal={foot: found.normal[0]})
+        options = (0.0 if law.bounce_law == "newton" else law.bounce, law.bounce_law)
+        for e, name in (options, (0.0, "stronge")):
+            grown = _grow(base, state, arm, law.friction, e, name, shocked=True)
+            struck = grown._replace(normal={foot: grown.normal[0]})
             if _fine(base, state, struck):
                 return struck
     return Status.NO_CONTACT_FORCE
@@ -268,12 +269,12 @@ def shock(base: PlaneBase, state: ContactState, law: GroundContact) -> Struck | 
 def _grown(
     base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float], law: str
 ) -> Struck | Status:
-    """At the foot that lands; where the other one would be pressed down, where the plastic impact has its resultant."""
+    """Return an impact with a growing impulse at the foot of landing, or at the resultant of the plastic impact."""
     falling = [foot for foot in state.touching if away(base, state, foot) < 0.0]
     if len(falling) == 1:
         (foot,) = falling
-        found = _grow(base, state, base.arm(foot, state.rotation), friction, bounce[foot], law)
-        struck = found._replace(normal={foot: found.normal[0]})
+        grown = _grow(base, state, base.arm(foot, state.rotation), friction, bounce[foot], law)
+        struck = grown._replace(normal={foot: grown.normal[0]})
         if cleared(base, struck, state):
             return struck if _fine(base, state, struck) else Status.ENERGY_GAIN
     plastic = next(placed(base, state, friction, dict.fromkeys(state.touching, 0.0)), None)
@@ -282,24 +283,24 @@ def _grown(
     left, right = plastic.normal.get(LEFT, 0.0), plastic.normal.get(RIGHT, 0.0)
     e = max(bounce.values())
     if e > 0.0 and left > 0.0 and right > 0.0:
-        place = (left * base.lever(LEFT) + right * base.lever(RIGHT)) / (left + right)
-        found = _grow(base, state, (place, -base.height), friction, e, law)
-        total = found.normal[0]
-        shared = {LEFT: total * left / (left + right), RIGHT: total * right / (left + right)}
-        struck = found._replace(normal=shared)
+        lever = (left * base.lever(LEFT) + right * base.lever(RIGHT)) / (left + right)
+        grown = _grow(base, state, (lever, -base.height), friction, e, law)
+        total = grown.normal[0]
+        normal = {LEFT: total * left / (left + right), RIGHT: total * right / (left + right)}
+        struck = grown._replace(normal=normal)
         if _fine(base, state, struck):
             return struck
     return plastic if _fine(base, state, plastic) else Status.ENERGY_GAIN
 
 
 def _fine(base: PlaneBase, before: ContactState, struck: Struck) -> bool:
-    """Whether no energy is created and no foot pressed into the ground."""
-    gained = kinetic(base, struck.state) > kinetic(base, before) * (1.0 + 10.0 * _GROWTH_ROUNDING)
-    return not gained and cleared(base, struck, before)
+    """Return True without energy gain and without a foot pressed into the ground."""
+    is_gain = kinetic(base, struck.state) > kinetic(base, before) * (1.0 + 10.0 * _GROWTH_ROUNDING)
+    return not is_gain and cleared(base, struck, before)
 
 
 def _inverse_masses(base: PlaneBase, arm: tuple[float, float]) -> tuple[float, float, float]:
-    """A_nn, A_nt and A_tt of a place [-]."""
+    """Return A_nn, A_nt and A_tt at an arm [-]."""
     r_x, r_z = arm
     return 1.0 + r_x * r_x / base.inertia, -(r_x * r_z) / base.inertia, 1.0 + r_z * r_z / base.inertia
 
@@ -314,7 +315,7 @@ def _grow(
     *,
     shocked: bool = False,
 ) -> Struck:
-    """Let the impulse at one place grow; the impulses are of the place 0."""
+    """Return the impact with an impulse that grows at one point; key 0 of `normal` is that point."""
     r_x, r_z = arm
     nn, nt, tt = _inverse_masses(base, arm)
     v_n, v_t = state.w - r_x * state.spin, state.u + r_z * state.spin
@@ -350,8 +351,8 @@ def _grow(
     return Struck(after, {0: normal}, tangential, slip)
 
 
-def _slip(v_t: float, drift: float, most: float) -> int:
-    """Direction in which a place slides, or starts to slide where friction cannot hold it."""
+def _slip(v_t: float, drift: float, capacity: float) -> int:
+    """Return the direction of sliding of a point, or of its start where friction is too small."""
     if v_t:
         return 1 if v_t > 0.0 else -1
-    return 0 if abs(drift) <= most else 1 if drift > 0.0 else -1
+    return 0 if abs(drift) <= capacity else 1 if drift > 0.0 else -1

@@ -1,4 +1,4 @@
-"""The response with contact: positions, regimes, impacts, sliding, forces, energy, outcome."""
+"""Response of a plane body with friction: positions, regimes, impacts, sliding, forces, energy, outcome."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.combined import label_of
 from rocking.dynamics.contact.base import PlaneBase, Start, state_at_start
 from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, places_of, regimes_of
+from rocking.dynamics.contact.history import SAMPLED, History, impacts_of, positions_of, regimes_of
 from rocking.dynamics.contact.impact_resolution import GroundContact
 from rocking.dynamics.contact.settings import ContactSettings
 from rocking.dynamics.impact_laws import ImpactLaw
@@ -37,7 +37,7 @@ class ContactEnergy:
     """Energy in the frame of the ground."""
 
     time: FloatArray  # times of the samples [s]
-    kinetic: FloatArray  # kinetic, potential: of the body; the potential one above where it stands [J]
+    kinetic: FloatArray  # kinetic energy, and potential energy above rest [J]
     potential: FloatArray
     work: FloatArray  # done by the ground since the start [J]
     lost_in_impacts: FloatArray  # lost_in_impacts, lost_in_friction: since the start [J]
@@ -45,16 +45,16 @@ class ContactEnergy:
 
     @property
     def gap(self) -> FloatArray:
-        """What does not add up: kinetic + potential + lost - work - initial [J]."""
+        """Energy balance error: kinetic + potential + lost - work - initial [J]."""
         stored = self.kinetic + self.potential
         lost = self.lost_in_impacts + self.lost_in_friction
         return np.asarray(stored + lost - self.work - (stored[0] + lost[0]), dtype=np.float64)  # Eq. 45
 
     @property
     def closure(self) -> float:
-        """Largest gap over the largest energy that was stored, lost, or worked [-]."""
-        parts = (self.kinetic + self.potential, self.lost_in_impacts, self.lost_in_friction, self.work)
-        scale = max(1e-300, *(float(np.abs(part).max()) for part in parts))
+        """Largest energy balance error over the largest stored energy, loss or work [-]."""
+        energies = (self.kinetic + self.potential, self.lost_in_impacts, self.lost_in_friction, self.work)
+        scale = max(1e-300, *(float(np.abs(energy).max()) for energy in energies))
         return float(np.abs(self.gap).max()) / scale
 
 
@@ -63,7 +63,7 @@ class ContactForces:
     """Forces of the ground on the body."""
 
     time: FloatArray  # times of the samples [s]
-    horizontal: FloatArray  # on both feet together, to the right [N]
+    horizontal: FloatArray  # total of both feet, to the right [N]
     left: FloatArray  # left, right: vertical force on each foot [N]
     right: FloatArray
     usage: FloatArray  # |horizontal| over mu times the vertical force; zero in flight [-]
@@ -76,7 +76,7 @@ class ContactForces:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactResponse(ResponseBase):
-    """What `simulate` returns of a plane body with friction.
+    """Response of a plane body with friction, as returned by `simulate`.
 
     Parameters
     ----------
@@ -85,17 +85,17 @@ class ContactResponse(ResponseBase):
     motion : GroundMotion or Pulse, optional
         The motion; None on ground at rest.
     base : PlaneBase
-        The body as the equations see it.
-    law : ContactLaw
+        Inertia and feet of the body.
+    law : GroundContact
         Friction and restitution.
     settings : ContactSettings
-        How it was integrated, and the ground.
+        Settings of the integration, and of the ground.
     segments : Segments
-        The motion as it was integrated [m/s2].
+        The integrated motion [m/s2].
     scale : float
         Factor on the motion [-].
     trajectory : History
-        What the engine returned.
+        Result of the engine.
     restitution : str
         Name of the restitution.
     """
@@ -117,12 +117,12 @@ class ContactResponse(ResponseBase):
         return rows[: int(bad[0])] if bad.size else rows
 
     def _sampled(self, name: str) -> FloatArray:
-        """Return one column of the record, per unit of mass where it is a force or an energy."""
+        """Return one column of the record; forces and energies are per unit of mass."""
         return np.asarray(self._record[:, SAMPLED.index(name)], dtype=np.float64)
 
     @cached_property
     def time(self) -> FloatArray:
-        """Times of the samples, to the end or until the body lies [s]."""
+        """Times of the samples, up to the end or until the body lies [s]."""
         return np.asarray(np.arange(len(self._record)) * self.segments.step, dtype=np.float64)
 
     @property
@@ -132,7 +132,7 @@ class ContactResponse(ResponseBase):
 
     @property
     def rise(self) -> FloatArray:
-        """Height z of the centre of mass above where it is when the body stands [m]."""
+        """Height z of the centre of mass above its position at rest [m]."""
         return self._sampled("rise")
 
     @property
@@ -162,17 +162,17 @@ class ContactResponse(ResponseBase):
 
     @cached_property
     def regimes(self) -> np.ndarray:
-        """Regimes in order: start, end, regime, feet, slip, and the distance that the feet slid."""
+        """Regimes in order, with the fields of `REGIME`: start, end, regime, feet, slip, sliding distance."""
         return regimes_of(self.trajectory, self.base)
 
     @cached_property
     def impacts(self) -> np.ndarray:
-        """Impacts in order: time, feet, velocities, impulses at each foot, energy lost, whether the feet slid."""
+        """Impacts in order, with the fields of `IMPACT`: time, feet, velocities, impulses, energy loss, slip."""
         return impacts_of(self.trajectory, self.base)
 
     @property
     def sliding_distance(self) -> float:
-        """Total path of the feet that carried, along the ground [m]."""
+        """Total path of the feet in contact along the ground [m]."""
         return self.trajectory.slid
 
     @cached_property
@@ -188,11 +188,11 @@ class ContactResponse(ResponseBase):
 
     @cached_property
     def forces(self) -> ContactForces:
-        """Forces of the ground on the feet [N], and how much of the friction is used; as limits from before."""
+        """Forces of the ground on the feet [N] and friction usage [-]; at an event, the values before it."""
         along, left, right = (self._sampled(name) for name in ("tangential", "normal_left", "normal_right"))
-        most, mass = self.law.friction * (left + right), self.base.mass
-        usage = np.zeros(most.size)
-        np.divide(np.abs(along), most, out=usage, where=most > 0.0)  # Eq. 78
+        capacity, mass = self.law.friction * (left + right), self.base.mass
+        usage = np.zeros(capacity.size)
+        np.divide(np.abs(along), capacity, out=usage, where=capacity > 0.0)  # Eq. 78
         return ContactForces(self.time, mass * along, mass * left, mass * right, usage)
 
     @property
@@ -202,7 +202,7 @@ class ContactResponse(ResponseBase):
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation, between the samples too; a quarter turn if it overturned [rad]."""
+        """Largest rotation, also between the samples; a quarter turn after overturning [rad]."""
         return self.trajectory.peak
 
     @property
@@ -245,9 +245,9 @@ class ContactResponse(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or before the start or after the end by more than rounding.
+            If a time is not finite, or outside the response by more than rounding.
         """
-        return places_of(self.trajectory, self._times_within(time, self.trajectory.end))
+        return positions_of(self.trajectory, self._times_within(time, self.trajectory.end))
 
     @property
     def _values(self) -> dict[str, Any]:
@@ -316,11 +316,11 @@ class ContactResponse(ResponseBase):
 
 
 FINE, AFTER = 0.1, 15.0
-"""sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion."""
+"""sqrt(g / R) times the step between samples under a pulse, and times the duration after the motion."""
 
-_FREE = 60.0  # the same on ground at rest
+_FREE = 60.0  # sqrt(g / R) times the duration on ground at rest
 LONGER = 30.0, 60.0, 120.0, 240.0, 300.0
-"""The same where the body still rocks at the end of the one before."""
+"""The next durations after the motion, while the body still rocks."""
 
 
 def response_with_contact(
@@ -333,10 +333,9 @@ def response_with_contact(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> ContactResponse:
-    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion."""
-    # restitution: None for impacts by complementarity alone; duration: how long to follow the body [s]; if not given,
-    # the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest, and where the body then still rocks
-    # 300 sqrt(R / g)
+    """Return the response of a plane body with friction; on ground at rest if motion is None."""
+    # restitution: None for impacts by complementarity; duration [s]: by default the motion and 15 sqrt(R / g) after
+    # it, 60 sqrt(R / g) on ground at rest, and up to 300 sqrt(R / g) while the body still rocks
     base = PlaneBase.of_body(body)
     imposed = imposed_on(body, restitution, settings)
     law = GroundContact(settings.friction, settings.normal_restitution, imposed, settings.normal_restitution_law)
@@ -362,20 +361,20 @@ def response_with_contact(
 
 
 def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple[float, float] | None:
-    """Return the coefficients that a restitution imposes, landing left and right; None where it imposes none."""
+    """Return the imposed coefficients for landing left and right [-]; None without any."""
     if is_none(restitution):
         return None
     if isinstance(restitution, ImpactLaw):
         raise InvalidValueError(
-            "{parameter} must be {allowed}, got {law}: laws that change from impact to impact are for simulate()",
-            parameter="restitution", allowed="a model, a name or a number here", law=type(restitution).__name__,
+            "{parameter} must be {allowed} with friction, got {law}; simulate() without friction accepts laws",
+            parameter="restitution", allowed="a model, a name or a number", law=type(restitution).__name__,
         )  # fmt: skip
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
     return parameters.left.coefficient, parameters.right.coefficient
 
 
 def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None, after: float = AFTER) -> float:
-    """Return how long to follow a body [s]; slow: sqrt(R / g), after: how many of these after the motion."""
+    """Return the duration of a history [s]; slow: sqrt(R / g) [s], after: number of these after the motion."""
     if duration is not None:
         return checks.positive("duration", duration, "s")
     return motion.duration + after * slow

@@ -1,4 +1,4 @@
-"""How to integrate a plane body that may slide, hop and fly, and the ground under it."""
+"""Settings of the integration of a plane body that may slide, hop and fly, and of its ground."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -13,15 +13,15 @@ _BOUNCE = "a ratio of velocities, impulses or, squared, of energies; at 1 bounce
 
 @dataclass(frozen=True)
 class ContactSettings(Settings):
-    """How to integrate a plane body with `friction`, and the ground under it.
+    """Settings of the integration of a plane body with `friction`, and of its ground.
 
     Parameters
     ----------
     gravity, most_events
         As for all mechanics, `Settings`.
     rest_speed : float
-        Speed of a bounce or of a rocking motion after an impact, over sqrt(g R), below which it ends at once; its
-        energy is booked as lost in that impact [-].
+        Speed after an impact over sqrt(g R); a slower bounce or rocking motion ends at once, and the impact loses
+        its energy [-].
     tolerance : float
         Bound on the last two terms of a Taylor step, over the angle alpha and the size R [-].
     friction : float
@@ -29,10 +29,10 @@ class ContactSettings(Settings):
     normal_restitution : float
         Coefficient of normal restitution, in [0, 1) [-].
     normal_restitution_law : {"newton", "poisson", "stronge"}
-        What `normal_restitution` is the ratio of, as for `simulate`.
+        Definition of `normal_restitution`, as for `simulate`.
     """
 
-    rest_speed: float = ranged(1e-7, 1e-12, 0.1, hint="bounces accumulate: zero would never end")
+    rest_speed: float = ranged(1e-7, 1e-12, 0.1, hint="with zero, bounces never end")
     tolerance: float = ranged(1e-15, 1e-17, 1e-3)
     friction: float = checked(NEVER_SLIDES, checked_friction)
     normal_restitution: float = ranged(0.0, 0.0, 1.0, open_high=True, hint=_BOUNCE)

@@ -1,4 +1,4 @@
-"""What a body at rest starts to do when the ground suddenly moves: Shenton's map (1996; docs/theory/contact.md)."""
+"""Regime of a body at rest after a sudden ground acceleration: Shenton's map (1996; docs/theory/contact.md)."""
 
 import numpy as np
 
@@ -13,24 +13,24 @@ from rocking.outcome import Regime
 
 
 def friction_demand(body: Body, acceleration: float) -> float:
-    """Return the friction that a body takes which starts to rock.
+    """Return the friction demand of a body at the start of rocking.
 
     Parameters
     ----------
     body : Body
         The body.
     acceleration : float
-        Horizontal acceleration of the ground, over gravity; above b / h of the foot that it turns about [-].
+        Horizontal acceleration of the ground, over gravity; above b / h of the foot of rotation [-].
 
     Returns
     -------
     float
-        mu below which the foot slides [-].
+        Coefficient of friction below which the foot slides [-].
 
     Raises
     ------
     InvalidValueError
-        If the acceleration does not lift the body.
+        If the acceleration is too small for uplift.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def friction_demand(body: Body, acceleration: float) -> float:
     lever, height = abs(base.lever(LEFT if push > 0.0 else RIGHT)), base.height
     if not abs(push) * height >= lever:
         raise InvalidValueError(
-            ("acceleration must be at least b / h = {slenderness:g} to lift it, got {acceleration:g}"),
+            "acceleration must be at least b / h = {slenderness:g} for uplift, got {acceleration:g}",
             slenderness=lever / height,
             acceleration=push,
         )
@@ -54,7 +54,7 @@ def friction_demand(body: Body, acceleration: float) -> float:
 def regime_at_start(
     body: Body, acceleration: float, friction: float, *, vertical: float = 0.0, gravity: float = conventions.g
 ) -> Regime:
-    """Return what a body at rest starts to do, by complementarity.
+    """Return the regime at the start of motion of a body at rest, by complementarity.
 
     Parameters
     ----------
@@ -90,17 +90,17 @@ def regime_at_start(
     push, lift = checks.number("acceleration", acceleration), checks.number("vertical", vertical)
     mu = checks.within("friction", friction, 0.0, 1e6)
     ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(base.size / gravity)))
-    found = choose(base, ContactState(), ground, mu)
-    if not isinstance(found, NextMode):
+    mode = choose(base, ContactState(), ground, mu)
+    if not isinstance(mode, NextMode):
         raise InvalidValueError(
-            "friction and acceleration must leave one contact force, got {friction:g} and {acceleration:g}",
+            "no contact force with friction {friction:g} and acceleration {acceleration:g}; reduce one of them",
             friction=mu, acceleration=push,
         )  # fmt: skip
-    return found.mode.regime
+    return mode.mode.regime
 
 
 def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
-    """Return what a body at rest starts to do, by Shenton's boundaries.
+    """Return the regime at the start of motion of a body at rest, by Shenton's boundaries.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
     Returns
     -------
     Regime
-        The regime; on a boundary the calmer one.
+        The regime; on a boundary the one with less motion.
     """
     base = PlaneBase.of_body(body)
     push = checks.number("acceleration", acceleration)

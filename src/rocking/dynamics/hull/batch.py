@@ -1,4 +1,4 @@
-"""Every body on its hull under every motion at every scale with every restitution, friction and start."""
+"""All combinations of bodies on their hulls, motions, scales, restitutions, frictions and starts."""
 
 import json
 import math
@@ -19,7 +19,7 @@ from rocking.dynamics.mechanics_base import Combinations, listed, row_of
 from rocking.dynamics.parameters import UNIMPOSED
 from rocking.dynamics.rows import Rows
 from rocking.dynamics.space.attitude import SpatialStart
-from rocking.dynamics.space.batch import SpatialBatch, made_or_refused, motions_in_space, provenance_of
+from rocking.dynamics.space.batch import SpatialBatch, converted_or_refused, motions_in_space, provenance_of
 from rocking.dynamics.space.ground import SpatialGround, ground_of
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components
@@ -27,91 +27,91 @@ from rocking.motions.segments import Segments
 from rocking.outcome import UNCOUNTED, Outcome
 
 RENAMED = {"held": "contacts_held", "replaced": "landings_replaced"}
-"""Results whose names in the engine mean something else in `rocking.quantities`."""
+"""Results of the engine with another meaning of their name in `rocking.quantities`."""
 
 
 def many_on_hulls(cases: Combinations, settings: HullSettings) -> SpatialBatch:
-    """Return the outcome of every combination; the motions of which are those of `motions_in_space`."""
+    """Return the outcome of all combinations."""
     bodies, motions, scales = listed(cases.bodies), motions_in_space(cases.motions), row_of("scale", cases.scales)
     frictions, duration = cases.frictions, cases.duration
     starts = [None] if cases.start is None else listed(cases.start)
-    made, refused = made_or_refused(HullBody.of, bodies)
-    if not made or not motions or not cases.restitutions or not starts:
+    hull_bodies, refused = converted_or_refused(HullBody.of, bodies)
+    if not hull_bodies or not motions or not cases.restitutions or not starts:
         raise InvalidValueError("bodies, motions, restitution and start must be at least one each, got none")
     if (frictions < 0.0).any():
         raise InvalidValueError("friction must be in [0, 1e+06], got {smallest:g}", smallest=frictions.min())
     until = math.inf if duration is None else duration
-    shaken = [tuple(part for part in motion or () if part is not None) for motion in motions]
-    for parts in shaken:
-        plausibility.warn(plausibility.of_scaled(parts, scales))
-    laws = [law_on_hull(each) for each in cases.restitutions]
+    components = [tuple(component for component in motion or () if component is not None) for motion in motions]
+    for group in components:
+        plausibility.warn(plausibility.of_scaled(group, scales))
+    laws = [law_on_hull(restitution) for restitution in cases.restitutions]
     grounds = [
         HullGround.placed(ground_of(*motion or (), until=until), np.eye(3), (math.inf, math.inf), settings.gravity)
         for motion in motions
     ]
-    leaning = [start or SpatialStart() for start in starts]
-    found = hull_histories(
-        made, grounds, laws, frictions, scales, leaning, horizon=duration or 0.0,
+    initial_states = [start or SpatialStart() for start in starts]
+    batch = hull_histories(
+        hull_bodies, grounds, laws, frictions, scales, initial_states, horizon=duration or 0.0,
         settings=settings, engine=cases.engine, threads=cases.threads, progress=cases.progress,
     )  # fmt: skip
     # hull_histories has its own order: body, motion, scale, restitution, friction, start
-    values = {RENAMED.get(name, name): array for name, array in found.values.items()}
+    values = {RENAMED.get(name, name): array for name, array in batch.values.items()}
     labels: dict[str, list[object]] = {
-        "motion": [", ".join(part.name for part in parts) or "none" for parts in shaken], "scale": scales.tolist(),
-        "restitution": [str(law) for law in laws], "friction": frictions.tolist(),
+        "motion": [", ".join(component.name for component in group) or "none" for group in components],
+        "scale": scales.tolist(), "restitution": [str(law) for law in laws], "friction": frictions.tolist(),
     }  # fmt: skip
     stated = {name: value for name, value in settings.stated.items() if name != "friction"}
-    facts = [None if b is None else [b.mass, b.centre.tolist(), len(b.points)] for b in made]
-    under = [motion or () for motion in motions]
-    source = provenance_of(stated, under, leaning, duration, "until it rests after the motion")
-    source |= {"bodies": json.dumps(facts)}
-    return replace(found, values=values, labels=labels, refused=refused, provenance=source)
+    summaries = [None if b is None else [b.mass, b.centre.tolist(), len(b.points)] for b in hull_bodies]
+    component_lists = [motion or () for motion in motions]
+    source = provenance_of(stated, component_lists, initial_states, duration, "until it rests after the motion")
+    source |= {"bodies": json.dumps(summaries)}
+    return replace(batch, values=values, labels=labels, refused=refused, provenance=source)
 
 
 class RowsOnHull:
-    """Motions of a study, and histories of one body under them as rows: the runner behind every study of solids."""
+    """Motions of a study of solids; runs histories of one body given as rows."""
 
     def __init__(
         self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: HullSettings, engine: str
     ) -> None:
         self.law, self.gravity, self.friction = law, settings.gravity, settings.friction
         grounds = [_ground(motion) for motion in motions]
-        which = histories.chosen(engine)
+        engine_name = histories.chosen(engine)
         laws = {histories.CODES[law.model]} if isinstance(law.model, str) else set()
-        self.rows = HullRows([law.on_hull], grounds, settings, which, laws)
+        self.rows = HullRows([law.on_hull], grounds, settings, engine_name, laws)
 
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
-        """Return the results of a piece by the names that studies know, and the steps taken.
+        """Return the results of a piece by their names in studies, and counts of steps.
 
-        A body of c times the size moves as the one at hand does under gravity and ground accelerations over c, in the
-        same time; p says c.
+        A body of c times the size moves like the given body under gravity and ground accelerations over c, in the same
+        time; p determines c.
         """
         law, values, motion, count = self.law, piece.values, piece.motion, len(piece)
         if values["rotation"].any() or values["velocity"].any():
-            raise InvalidValueError("rows of a body in space start upright and at rest")
-        with np.errstate(all="ignore"):  # a row that is no body is refused by itself
+            raise InvalidValueError("rows of a body in space must start upright and at rest")
+        with np.errstate(all="ignore"):  # an invalid row gets an error status
             size = (law.frequency / values["p_right"]) ** 2 * (self.gravity / law.gravity)
             size = np.where(np.all([values[f"alpha_{foot}"] > 0.0 for foot in FEET], axis=0), size, np.nan)
             pull, scale = self.gravity / size, values["scale"] / size
         friction = np.where(np.isnan(values["friction"]), self.friction, values["friction"])
         r = values["r_right"]
-        modelled = r == UNIMPOSED
+        is_modelled = r == UNIMPOSED
         code = histories.CODES.get(str(law.model), 0)
-        turned, plane = np.nan_to_num(values["azimuth"]), np.tile(histories.LEVEL, (count, 1))
-        plane[:, [0, 4]], plane[:, 1], plane[:, 3] = np.cos(turned)[:, None], -np.sin(turned), np.sin(turned)
+        azimuth, plane = np.nan_to_num(values["azimuth"]), np.tile(histories.LEVEL, (count, 1))
+        plane[:, [0, 4]], plane[:, 1], plane[:, 3] = np.cos(azimuth)[:, None], -np.sin(azimuth), np.sin(azimuth)
         state = np.tile(numbers_of(law.on_hull, SpatialStart()), (count, 1))
-        numbers = histories.numbers_of_rows(np.where(modelled, 0.0, r), scale, friction, state, pull, plane)
-        codes = np.where(modelled, code, histories.COEFFICIENT)
+        numbers = histories.numbers_of_rows(np.where(is_modelled, 0.0, r), scale, friction, state, pull, plane)
+        codes = np.where(is_modelled, code, histories.COEFFICIENT)
         base = np.full(count, law.on_hull.base)
         choices = np.column_stack([np.zeros(count, np.int64), motion, codes, base]).astype(np.int64)
-        found = self.rows.run(numbers, choices, threads)
-        fell = found["outcome"] == Outcome.OVERTURNED.code
+        results = self.rows.run(numbers, choices, threads)
+        overturns = results["outcome"] == Outcome.OVERTURNED.code
         names = ("outcome", "status", "uplifts", "still_rocking", "overturning_time", "peak_time", "first_uplift")
-        return {name: found[name] for name in names} | {
-            "peak_rotation": np.where(fell, 0.5 * math.pi, found["peak_tilt"]), "peak_velocity": found["peak_spin"],
-            "impacts": np.where(fell, UNCOUNTED, found["impacts"]),
-            "side": np.where(fell, np.where(np.cos(found["direction"]) < 0.0, -1, 1), 0),
-        }, {"steps": int(found["steps"].sum())}  # fmt: skip
+        return {name: results[name] for name in names} | {
+            "peak_rotation": np.where(overturns, 0.5 * math.pi, results["peak_tilt"]),
+            "peak_velocity": results["peak_spin"], "impacts": np.where(overturns, UNCOUNTED, results["impacts"]),
+            "side": np.where(overturns, np.where(np.cos(results["direction"]) < 0.0, -1, 1), 0),
+        }, {"steps": int(results["steps"].sum())}  # fmt: skip
 
 
 def _ground(motion: Segments | Components) -> SpatialGround:

@@ -1,4 +1,4 @@
-"""A body as its convex hull meets the ground: vertices, mass, centre of mass and inertia."""
+"""Rigid body on the vertices of its convex hull: vertices, mass, centre of mass and inertia."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,7 +18,7 @@ from rocking.portable import inverse
 
 @dataclass(frozen=True, eq=False)
 class HullBody:
-    """A rigid body that touches the ground with the vertices of its convex hull.
+    """Rigid body with contact at the vertices of its convex hull.
 
     >>> from rocking.bodies.solid import box
     >>> cube = HullBody.of(Solid(box(1.0, 1.0, 1.0)))
@@ -26,12 +26,12 @@ class HullBody:
     (8, 6, True)
     """
 
-    vertices: FloatArray  # points of the body; those inside the hull, or within a facet, are left out [m]; shape (k, 3)
+    vertices: FloatArray  # points of the body; points inside the hull or a facet are ignored [m]; shape (k, 3)
     mass: float  # [kg]
     centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
     inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)
-    solid: Solid | None = None  # distribution of mass, for laws that need it; its own frame is that of the vertices
-    footprint: Base | None = None  # base of a body that stands upright, in the axes of the vertices
+    solid: Solid | None = None  # distribution of mass, for laws that need it, in the axes of the vertices
+    footprint: Base | None = None  # base of the upright body, in the axes of the vertices
     hull: Polytope = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -42,34 +42,32 @@ class HullBody:
         object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
         if not self.hull.heights.min() > 0.0:
             raise GeometryError(
-                "the centre of mass {centre} m must lie inside the hull of the vertices: it is {outside:.3g} m outside",
+                "the centre of mass {centre} m must be inside the hull of the vertices, got {outside:.3g} m outside",
                 parameter="centre", centre=self.centre.tolist(), outside=float(-self.hull.heights.min()),
-                hint="are both in the same axes and unit?",
+                hint="check axes and units",
             )  # fmt: skip
 
     @classmethod
     def of(cls, solid: Any) -> "HullBody":
-        """Return a solid, or a body that knows of which it is made, on the vertices of its hull, as it stands."""
-        # round faces are those of `Solid.equilibria`, of 360 corners
+        """Return a solid, or a body with a distribution of mass, as a `HullBody`."""
+        # round faces have 360 corners, as in `Solid.equilibria`
         if isinstance(solid, cls):
             return solid
         if isinstance(solid, SpatialBody) and solid.matter is not None:
             solid = solid.matter()[0]
         if not isinstance(solid, Solid):
             raise InvalidValueError(
-                "with friction a body touches with all its hull: it must be {allowed}, got {type}, of which the base "
-                "is known alone", parameter="body", allowed="a Solid, or a box or cylinder made of one",
-                type=type(solid).__name__,
+                "with friction a body must be {allowed}, got {type}, which has a base but no hull",
+                parameter="body", allowed="a Solid, a box or a cylinder", type=type(solid).__name__,
             )  # fmt: skip
         moments = solid.local_moments
         points = solid.equilibria().hull_vertices - solid.origin
-        known = solid.known is not None  # then only these moments are known
-        spread = None if known else solid
-        return cls(points, moments.mass, moments.centre, moments.inertia, spread, solid.local_base)
+        mass_distribution = solid if solid.known is None else None  # stated moments have no distribution of mass
+        return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
 
     @cached_property
     def points(self) -> list[Vector]:
-        """Vertices, from the centre of mass [m]."""
+        """Vertices relative to the centre of mass [m]."""
         return [(float(x), float(y), float(z)) for x, y, z in self.hull.vertices]
 
     @cached_property
@@ -89,12 +87,12 @@ class HullBody:
 
     @cached_property
     def facets(self) -> list[Vector]:
-        """Facets as the dual of the hull has them: outward unit normals over distances from the centre [1/m]."""
+        """Facets as points of the dual hull: outward unit normals over distances from the centre [1/m]."""
         return [(float(x), float(y), float(z)) for x, y, z in self.hull.normals / self.hull.heights[:, None]]
 
     @cached_property
     def poses(self) -> list[int]:
-        """Number of the stable pose to which each facet leads; the pose with the lowest centre is 0."""
+        """Index of the stable pose to which each facet leads; the pose with the lowest centre is 0."""
         hull = self.hull
         order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
         number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}
@@ -102,12 +100,12 @@ class HullBody:
 
     @cached_property
     def base(self) -> int:
-        """Facet on which the body stands in the axes of its vertices, before it is tilted."""
+        """Index of the facet on which the body stands in the axes of its vertices, before the tilt."""
         return self.under((0.0, 0.0, 1.0))
 
     def under(self, up: Vector) -> int:
-        """Return the facet through which the vertical through the centre of mass leaves the hull, downward."""
-        # up: in the axes of the body [-]
+        """Return the index of the facet under the centre of mass."""
+        # up: vertical in body axes [-]
         return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
 
 

@@ -1,4 +1,4 @@
-"""When a contact ends within a step: what must stay above zero, and where it falls below."""
+"""End of a contact within a step: event functions and their zeros."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -8,16 +8,16 @@ from rocking.dynamics.hull.body import HullBody
 from rocking.dynamics.hull.ground import HullGround, added, applied, dot, frame, length
 from rocking.dynamics.hull.motion import HullMode, Rates, State, StepResult, gap, point_velocity, slip_direction
 
-CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of vertices that land together, and at which one lands
+CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of simultaneous landings, and of a landing
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
 _SLIP = 5e-6
-HALVINGS = 80
+MAX_ITERATIONS = 80
 
 
 def stops_at(tolerance: float) -> float:
     """Return the speed over sqrt(g size) at which sliding stops, and below which a vertex may stick.
 
-    Its square is what a stop costs over m g size.
+    Its square is the energy loss of a stop over m g size.
 
     >>> stops_at(1e-12), stops_at(1e-6)
     (5e-06, 0.001)
@@ -26,18 +26,18 @@ def stops_at(tolerance: float) -> float:
 
 
 Step = Callable[[float], StepResult]
-"""The step up to a part of it."""
+"""Function that returns the step up to a fraction of it."""
 
 
 @dataclass(frozen=True)
 class EventFunctions:
-    """What must stay above zero while a contact lasts: heights, normal forces, friction left over, slip."""
+    """Functions that are positive during a contact: heights, normal forces, friction margin, slip."""
 
     body: HullBody
     ground: HullGround
     mode: HullMode
     start: State
-    span: float  # of the whole step [s]
+    span: float  # duration of the step [s]
     stop: float  # speed at which sliding stops [m/s]
 
     @property
@@ -51,23 +51,23 @@ class EventFunctions:
         return _FORCE * self.ground.gravity
 
     def first(self, result: StepResult, to: Step) -> tuple[float, str]:
-        """Return when the first margin falls below zero: part of the step, kind of the margin."""
-        part, first = 1.0, ""
-        for _, low, high, kind, i in sorted(self._fallen(result, to)):
-            # stages lie beside the motion: what is below zero there may fall a little later
-            for end in (min(high, part), part):
+        """Return the first zero as a fraction of the step, and the kind of its function."""
+        fraction, event_kind = 1.0, ""
+        for _, low, high, kind, i in sorted(self._sign_changes(result, to)):
+            # stages are approximate: a negative value at a stage may belong to a slightly later zero
+            for end in (min(high, fraction), fraction):
                 if self._at(kind, i, to(end)) < 0.0:
-                    part, first = self._located(kind, i, (min(low, end), end), to), kind
+                    fraction, event_kind = self._located(kind, i, (min(low, end), end), to), kind
                     break
-        return part, first
+        return fraction, event_kind
 
-    def _fallen(self, result: StepResult, to: Step) -> Iterator[tuple[float, float, float, str, int]]:
-        """Yield margins that fall below zero between samples: about where, the bracket, kind and vertex."""
+    def _sign_changes(self, result: StepResult, to: Step) -> Iterator[tuple[float, float, float, str, int]]:
+        """Yield functions that become negative between samples: estimated zero, bracket, kind and vertex."""
         nodes = [node for node, _, _ in result.samples]
         for kind, i in self._functions(result):
             values = [self._value(kind, i, state, rates) for _, state, rates in result.samples]
             if values[0] < 0.0:
-                # a vertex that has just left is on the ground but for rounding
+                # a vertex just after its release is on the ground to rounding
                 rises = point_velocity(self.body, self.start, i)[2] >= -1e-12 * self.speed
                 if kind != "gap" or not rises:
                     yield 0.0, 0.0, 0.0, kind, i
@@ -82,7 +82,7 @@ class EventFunctions:
                 yield 0.9 * dip, 0.0, dip, kind, i
 
     def _located(self, kind: str, i: int, bracket: tuple[float, float], to: Step) -> float:
-        """Return the zero of a margin that is below zero at the end of a bracket, by regula falsi (Illinois)."""
+        """Return the zero of a function that is negative at the end of a bracket, by regula falsi (Illinois)."""
         low, high = bracket
         sizes = {"gap": 0.5 * _GRAZED * self.body.size, "shelf": CLOSED * self.body.size}
         close = sizes.get(kind, 1e-3 * self.stop if kind == "slip" else self.slack)
@@ -91,7 +91,7 @@ class EventFunctions:
             low, high, at_high = 0.0, low, at_low
             at_low = self._at(kind, i, to(low))
         if at_low <= 0.0:
-            # it has just left: where is it above the ground?
+            # just after release: find a time with a positive gap
             for k in range(1, 20):
                 value = self._at(kind, i, to(bracket[1] * 0.5**k))
                 if value > 0.0:
@@ -100,10 +100,10 @@ class EventFunctions:
                 high, at_high = bracket[1] * 0.5**k, value
         at_low = max(at_low, 0.0)
         side = 0
-        for _ in range(HALVINGS):
+        for _ in range(MAX_ITERATIONS):
             if at_high >= -close or high - low <= 1e-15:
                 break
-            # aims a little below zero
+            # the target is slightly below zero
             middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high)
             middle = middle if low < middle < high else 0.5 * (low + high)
             value = self._at(kind, i, to(middle))
@@ -120,33 +120,33 @@ class EventFunctions:
         watched = [("normal", i) for i in contact.members if not self.mode.pulled]
         if not math.isinf(self.mode.friction) and not self.mode.pulled:
             watched += [("stick", i) for i in contact.stuck]
-        loose = [i for i in contact.members if i not in contact.stuck]
-        watched += [("slip", i) for i in loose]
-        watched += [("shelf", i) for i in loose if self.ground.shelf is not None]
-        one, two = result.samples[0][1], result.state
-        fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (one, two))
+        sliding = [i for i in contact.members if i not in contact.stuck]
+        watched += [("slip", i) for i in sliding]
+        watched += [("shelf", i) for i in sliding if self.ground.shelf is not None]
+        initial, final = result.samples[0][1], result.state
+        fastest = max(length(s.velocity) + body.size * length(s.spin) for s in (initial, final))
         reach = fastest * self.span
-        up, high = frame(one.attitude)[2], one.place[2]
-        after, later = frame(two.attitude)[2], two.place[2]
+        up, high = frame(initial.attitude)[2], initial.position[2]
+        up_after, high_after = frame(final.attitude)[2], final.position[2]
         for i, p in enumerate(body.points):
-            if i not in contact.members and min(high + dot(up, p), later + dot(after, p)) < reach:
+            if i not in contact.members and min(high + dot(up, p), high_after + dot(up_after, p)) < reach:
                 watched.append(("gap", i))
         return watched
 
     def _value(self, kind: str, i: int, state: State, rates: Rates) -> float:
-        """Return what must not fall below zero: a height, an acceleration or a speed."""
+        """Return the value of an event function: a height, an acceleration or a speed."""
         if kind == "gap":
             height = gap(self.body, state, i) + _GRAZED * self.body.size
-            place = added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i]))
-            return height if self.ground.under(place) or height > 0.0 else math.inf
+            position = added(state.position, 1.0, applied(frame(state.attitude), self.body.points[i]))
+            return height if self.ground.under(position) or height > 0.0 else math.inf
         if kind == "shelf":
-            return self.ground.inside(added(state.place, 1.0, applied(frame(state.attitude), self.body.points[i])))
-        if rates.found is None:
+            return self.ground.inside(added(state.position, 1.0, applied(frame(state.attitude), self.body.points[i])))
+        if rates.solution is None:
             return -1.0
         if kind == "normal":
-            return rates.found.normals[i] / self.body.mass + self.slack
+            return rates.solution.normals[i] / self.body.mass + self.slack
         if kind == "stick":
-            free = self.mode.friction * rates.found.normals[i] - length(rates.found.pulls[i])
+            free = self.mode.friction * rates.solution.normals[i] - length(rates.solution.pulls[i])
             return free / self.body.mass + self.slack * (1.0 + self.mode.friction)
         speed = dot(slip_direction(self.body, self.start, self.mode, i), point_velocity(self.body, state, i))
         return speed + (2.0 if i in self.mode.starts else -1.0) * self.stop
@@ -155,7 +155,7 @@ class EventFunctions:
         return self._value(kind, i, result.state, result.samples[-1][2])
 
     def _dip(self, i: int, result: StepResult, values: list[float]) -> float | None:
-        """Return where a gap is least within a step, by its values and rates at the ends; None where it is not."""
-        (_, one, _), (_, two, _) = result.samples[0], result.samples[-1]
-        a, b = point_velocity(self.body, one, i)[2], point_velocity(self.body, two, i)[2]
+        """Return the fraction of the step at a minimum of a gap, from its rates at the ends; None without one."""
+        (_, initial, _), (_, final, _) = result.samples[0], result.samples[-1]
+        a, b = point_velocity(self.body, initial, i)[2], point_velocity(self.body, final, i)[2]
         return a / (a - b) if a < 0.0 < b and min(values) < self.body.size * 1e-3 else None

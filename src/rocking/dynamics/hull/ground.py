@@ -1,4 +1,4 @@
-"""The ground: a plane that may be tilted, and may end, and its acceleration; vectors and quaternions as tuples."""
+"""The ground: a plane, tilted or bounded, and its acceleration; vectors and quaternions as tuples."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from rocking.dynamics.space.ground import SpatialGround, ground_of
 
 Vector = tuple[float, float, float]
 Frame = tuple[Vector, Vector, Vector]
-"""A matrix by its rows; of an attitude the axes of the ground, in axes of the body."""
+"""Rows of a matrix; for an attitude, the axes of the ground in body axes."""
 
 ZERO: Vector = (0.0, 0.0, 0.0)
 
@@ -58,12 +58,12 @@ def unit(a: Vector) -> Vector:
 
 
 def applied(m: Frame, a: Vector) -> Vector:
-    """Return a matrix times a vector: of an attitude, from axes of the body to those of the ground."""
+    """Return a matrix times a vector; for an attitude, from body axes to axes of the ground."""
     return dot(m[0], a), dot(m[1], a), dot(m[2], a)
 
 
 def back(m: Frame, a: Vector) -> Vector:
-    """Return the transpose of a matrix times a vector: of an attitude, from axes of the ground to those of the body."""
+    """Return the transpose of a matrix times a vector; for an attitude, from axes of the ground to body axes."""
     return (
         m[0][0] * a[0] + m[1][0] * a[1] + m[2][0] * a[2],
         m[0][1] * a[0] + m[1][1] * a[1] + m[2][1] * a[2],
@@ -99,15 +99,15 @@ def normalised(q: tuple[float, ...]) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class HullGround:
-    """The plane that a body stands on, and how it moves."""
+    """Plane under a body, and its motion."""
 
     x: Any = None  # x, y, vertical: GroundMotion, pulse or None, in level axes [m/s2]
     y: Any = None
     vertical: Any = None
     slope: float = 0.0  # angle of the plane from the horizontal [rad]
-    azimuth: float = 0.0  # direction in which it falls, from x towards y [rad]
-    # half sizes of the plane along its two axes; points beyond do not touch, nor do the edges touch the body; None for
-    # a plane without end [m]
+    azimuth: float = 0.0  # direction of descent, from x towards y [rad]
+    # half sizes of the plane along its two axes, without contact at points beyond and at its edges; None for an
+    # infinite plane [m]
     shelf: tuple[float, float] | None = None
     gravity: float = conventions.g  # [m/s2]
     motion: SpatialGround = field(init=False, repr=False)  # the three components on common stretches of time
@@ -118,7 +118,7 @@ class HullGround:
         checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
         object.__setattr__(self, "motion", ground_of(self.x, self.y, self.vertical))
         c, s, cc, ss = math.cos(self.azimuth), math.sin(self.azimuth), math.cos(self.slope), math.sin(self.slope)
-        # turned about the horizontal line across the direction in which the plane falls
+        # rotated about the horizontal line across the direction of descent
         rows: Frame = (
             (c * c * cc + s * s, c * s * (cc - 1.0), -c * ss),
             (c * s * (cc - 1.0), s * s * cc + c * c, -s * ss),
@@ -128,13 +128,13 @@ class HullGround:
 
     @classmethod
     def placed(cls, motion: SpatialGround, level: Any, shelf: Any, gravity: float) -> "HullGround":
-        """Return a ground from its motion, its axes as 9 numbers and the half sizes of its shelf, or infinite ones."""
+        """Return a ground from its motion, its axes as 9 numbers, and the half sizes of its shelf (inf: no shelf)."""
         ends = float(shelf[0]), float(shelf[1])
-        made = cls(shelf=None if ends == (math.inf, math.inf) else ends, gravity=gravity)
-        object.__setattr__(made, "motion", motion)
+        ground = cls(shelf=None if ends == (math.inf, math.inf) else ends, gravity=gravity)
+        object.__setattr__(ground, "motion", motion)
         a, b, c = (tuple(map(float, row)) for row in np.reshape(level, (3, 3)))
-        object.__setattr__(made, "level", (a, b, c))
-        return made
+        object.__setattr__(ground, "level", (a, b, c))
+        return ground
 
     @property
     def weight(self) -> Vector:
@@ -142,19 +142,19 @@ class HullGround:
         return applied(self.level, (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
-        """Return gravity less the ground's acceleration over a span, by powers of its share, in axes of the plane."""
-        rows = self.motion.part(stretch, start, span)
-        found = []
+        """Return gravity minus ground acceleration over a span, by powers of time over the span, in plane axes."""
+        rows = self.motion.segment(stretch, start, span)
+        vectors = []
         for k in range(rows.shape[1]):
             a = applied(self.level, (float(rows[0, k]), float(rows[1, k]), float(rows[2, k])))
-            found.append(minus(self.weight if k == 0 else (0.0, 0.0, 0.0), a))
-        return found
+            vectors.append(minus(self.weight if k == 0 else (0.0, 0.0, 0.0), a))
+        return vectors
 
-    def under(self, place: Vector) -> bool:
-        """Return whether there is ground under a point: not beyond the shelf."""
-        return self.shelf is None or self.inside(place) >= 0.0
+    def under(self, position: Vector) -> bool:
+        """Return True if a point is above the ground, within the shelf."""
+        return self.shelf is None or self.inside(position) >= 0.0
 
-    def inside(self, place: Vector) -> float:
-        """Return the distance of a point from the nearest edge of the shelf, below zero beyond it [m]."""
+    def inside(self, position: Vector) -> float:
+        """Return the distance of a point from the nearest edge of the shelf; negative beyond the shelf [m]."""
         assert self.shelf is not None
-        return min(self.shelf[0] - abs(place[0]), self.shelf[1] - abs(place[1]))
+        return min(self.shelf[0] - abs(position[0]), self.shelf[1] - abs(position[1]))

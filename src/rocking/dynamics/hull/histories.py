@@ -1,4 +1,4 @@
-"""Many histories of bodies on their hulls: every combination of bodies, grounds, scales, laws, frictions and starts."""
+"""Many histories of bodies on their hulls: all combinations of bodies, grounds, scales, laws, frictions and starts."""
 
 import math
 from collections.abc import Callable, Collection, Sequence
@@ -16,7 +16,7 @@ from rocking.dynamics.hull.engine import HullEngine
 from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
 from rocking.dynamics.hull.history import HullEvent, HullEventKind, HullHistory
 from rocking.dynamics.hull.motion import State
-from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, position_on_base, spread_of
+from rocking.dynamics.hull.restitution import FixedPosition, law_on_hull, mass_distribution, position_on_base
 from rocking.dynamics.hull.settings import HullSettings
 from rocking.dynamics.settings import CompiledEngine, check_progress, thread_count
 from rocking.dynamics.space.attitude import SpatialStart
@@ -36,8 +36,7 @@ ENGINES = {
 
 _COMPILED = CompiledEngine(
     "rocking.dynamics._hull",
-    "the batch engine of hulls was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
-    "`make engine`)",
+    "the batch engine of hulls was not built; install rocking with a C++17 compiler (in a checkout, `make engine`)",
     "the reference engine runs instead, row by row",
     ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance",
      "residual_displacement", "end_time", "energy_lost"),
@@ -48,28 +47,28 @@ COLUMNS = _COMPILED.columns
 
 
 def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], laws: Collection[int]) -> Any:
-    """Return bodies and motions as the compiled engine keeps them; laws: codes of the rows."""
-    made = module().Library()
+    """Return bodies and motions in the form of the compiled engine; laws: codes of the rows."""
+    library = module().Library()
     for body in bodies:
         if body is None:
-            made.add_nobody()
+            library.add_nobody()
         else:
-            made.add_body(body.mass, np.array(body.tensor), **_tables(body), **_positions(body, laws))
+            library.add_body(body.mass, np.array(body.tensor), **_tables(body), **_positions(body, laws))
     for motion in motions:
         rows = motion.coefficients.transpose(0, 2, 1)
         if rows.shape[1] > MOST_POWERS:
             raise InvalidValueError(
-                "motions must be polynomials of degree below {powers}", powers=MOST_POWERS, hint="sample them"
+                "motions must be polynomials of degree below {powers}", powers=MOST_POWERS, hint="sample the motions"
             )
-        made.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), 3 * rows.shape[1])))
-    return made
+        library.add_motion(motion.times, np.ascontiguousarray(rows.reshape(len(rows), 3 * rows.shape[1])))
+    return library
 
 
 LEVEL = np.array([*np.eye(3).ravel(), math.inf, math.inf])
-"""Axes of level ground, which has no end."""
+"""Axes of infinite level ground."""
 
 
-def numbers_of_rows(  # noqa: PLR0917 - the columns, in order
+def numbers_of_rows(  # noqa: PLR0917 - the columns in order
     value: Any,
     scale: Any,
     friction: Any,
@@ -78,12 +77,12 @@ def numbers_of_rows(  # noqa: PLR0917 - the columns, in order
     plane: FloatArray = LEVEL,
     horizon: Any = 0.0,
 ) -> FloatArray:
-    """Return histories as rows of numbers, one for each state at the start; the others are repeated where they are one.
+    """Return histories as rows of numbers, one row per initial state; single values of other columns are repeated.
 
     value: coefficient or position of the law; plane: level axes to axes of the plane, and half sizes of the shelf.
     """
     count = len(state)
-    first = (np.broadcast_to(each, count) for each in (value, scale, horizon, friction))
+    first = (np.broadcast_to(column, count) for column in (value, scale, horizon, friction))
     return np.column_stack([*first, np.broadcast_to(plane, (count, 11)), state, np.broadcast_to(gravity, count)])
 
 
@@ -97,43 +96,44 @@ def traced(
     horizon: float,
     settings: HullSettings,
 ) -> HullHistory:
-    """Return one history of the compiled engine as the reference engine keeps it; of its events the impacts alone."""
+    """Return one history of the compiled engine in the form of the reference engine; its only events are impacts."""
     code, value = _code(law)
     if code == KED:
-        spread_of(body)
+        mass_distribution(body)
     state, plane = numbers_of(body, start)[None], _plane(ground)
     numbers = numbers_of_rows(value, 1.0, friction, state, ground.gravity, plane, horizon)
     library = library_of([body], [ground.motion], {code})
     results, counts = _COMPILED.empty_tables(1)
     limits = settings.rest_speed, settings.tolerance, settings.most_events
-    nodes, impacts, members, stuck, struck, least, fell = library.trace(
+    nodes, impacts, members, stuck, impact_members, min_cosine, fell_off = library.trace(
         numbers, np.array([[0, 0, code, body.base]]), results, counts, *limits
     )
-    found = {name: column.item() for name, column in _COMPILED.columns_by_name(results, counts).items()}
+    values = {name: column.item() for name, column in _COMPILED.columns_by_name(results, counts).items()}
     if not nodes.size:
-        raise InvalidValueError("a number of the start, the ground or the duration is not within [-1e9, 1e9]")
-    contacts = [HullContact(*each) for each in zip(_groups(members), _groups(stuck), strict=True)]
+        raise InvalidValueError("all numbers of start, ground and duration must be within [-1e9, 1e9]")
+    contacts = [HullContact(*pair) for pair in zip(_groups(members), _groups(stuck), strict=True)]
     events = [
         HullEvent(time, HullEventKind.IMPACT, HullContact(touching, touching), before, after)
-        for (time, before, after), touching in zip(impacts.tolist(), _groups(struck), strict=True)
+        for (time, before, after), touching in zip(impacts.tolist(), _groups(impact_members), strict=True)
     ]
-    same = ("peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance", "pose",
+    names = ("peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "sliding_distance", "pose",
             "uplifts", "steps", "held", "replaced")  # fmt: skip
     return HullHistory(
-        nodes[:, 0].tolist(), [_state(row[1:]) for row in nodes], contacts, events, list(Status)[found["status"]],
-        list(Outcome)[found["outcome"]], bool(found["still_rocking"]), fell=fell, least_cosine=least, stood=body.base,
-        lost=found["energy_lost"], **{name: found[name] for name in same},
+        nodes[:, 0].tolist(), [_state(row[1:]) for row in nodes], contacts, events, list(Status)[values["status"]],
+        list(Outcome)[values["outcome"]], bool(values["still_rocking"]), fell_off=fell_off,
+        min_cosine=min_cosine, initial_facet=body.base, lost=values["energy_lost"],
+        **{name: values[name] for name in names},
     )  # fmt: skip
 
 
 def _groups(lists: IntArray) -> list[tuple[int, ...]]:
-    """Return groups of numbers that stand one after another, each led by its length."""
-    rest, made, place = lists.ravel().tolist(), [], 0
-    while place < len(rest):
-        end = place + 1 + rest[place]
-        made.append(tuple(rest[place + 1 : end]))
-        place = end
-    return made
+    """Return consecutive groups of numbers, each preceded by its length."""
+    values, groups, start = lists.ravel().tolist(), [], 0
+    while start < len(values):
+        end = start + 1 + values[start]
+        groups.append(tuple(values[start + 1 : end]))
+        start = end
+    return groups
 
 
 def _tables(body: HullBody) -> dict[str, Any]:
@@ -145,14 +145,14 @@ def _tables(body: HullBody) -> dict[str, Any]:
 
 
 def _positions(body: HullBody, laws: Collection[int]) -> dict[str, FloatArray]:
-    """Return the impulse position of a landing on the body's own base: azimuths and coefficients by interval."""
+    """Return the impulse position of a landing on the base: azimuths and coefficients by interval."""
     ked = impulse_position(body.solid).table() if KED in laws and body.solid is not None else ()
     calibrated = position_on_base(body).table() if CALIBRATED in laws else ()
     return {name: np.array(rows).reshape(-1, HIGHEST + 3) for name, rows in (("ked", ked), ("calibrated", calibrated))}
 
 
 PIECE = 1 << 14
-"""Histories that are handed to the engine at a time."""
+"""Histories per call of the engine."""
 
 
 def hull_histories(  # noqa: PLR0913 - the axes of a study
@@ -169,7 +169,7 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> SpatialBatch:
-    """Return the outcome of every combination of bodies, grounds, scales, restitutions, frictions and starts.
+    """Return the outcome of all combinations of bodies, grounds, scales, restitutions, frictions and starts.
 
     >>> from rocking.bodies.solid import Solid, box
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
@@ -177,40 +177,46 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     >>> batch["outcome"].ravel().tolist(), batch["status"].ravel().tolist()
     ([0], [0])
     """
-    # bodies: None for one that cannot be, whose rows are refused by themselves; restitution: as `HullEngine` takes it;
-    # friction: infinite for vertices that never slide; start: in the axes of the vertices, the lowest at rest on the
-    # ground; horizon: how long to follow them at least [s]; the reference engine takes hundreds of times as long
-    taken = thread_count(threads)
+    # bodies: None for an invalid body, whose rows get an error status; restitution: argument of `HullEngine`; friction:
+    # infinite for vertices that never slide; start: in the axes of the vertices, the lowest at rest on the ground;
+    # horizon: shortest duration [s]; the reference engine is hundreds of times slower
+    worker_count = thread_count(threads)
     check_progress(progress)
     settings = settings or HullSettings()
-    several, under = _listed("bodies", bodies), _listed("grounds", grounds)
+    body_list, ground_list = _listed("bodies", bodies), _listed("grounds", grounds)
     laws, starts = _listed("restitution", restitution), [SpatialStart()] if start is None else _listed("start", start)
     codes = [_code(law) for law in laws]
     frictions, factors = (
         np.atleast_1d(checks.real_array(n, v)) for n, v in (("friction", friction), ("scales", scales))
     )
-    used = {code for code, _ in codes}
-    if KED in used:
-        for one in filter(None, several):
-            spread_of(one)
-    shape = (len(several), len(under), factors.size, len(laws), frictions.size, len(starts))
-    states = np.array([[numbers_of(body, each) for each in starts] for body in several])
-    planes, pulls = np.array([_plane(each) for each in under]), np.array([each.gravity for each in under])
-    body, ground, scale, law, mu, first = np.unravel_index(np.arange(int(np.prod(shape))), shape)
+    used_codes = {code for code, _ in codes}
+    if KED in used_codes:
+        for hull_body in filter(None, body_list):
+            mass_distribution(hull_body)
+    shape = (len(body_list), len(ground_list), factors.size, len(laws), frictions.size, len(starts))
+    states = np.array([[numbers_of(body, item) for item in starts] for body in body_list])
+    planes, pulls = np.array([_plane(item) for item in ground_list]), np.array([item.gravity for item in ground_list])
+    body, ground, scale, law, mu, start_index = np.unravel_index(np.arange(int(np.prod(shape))), shape)
     values = np.array([r for _, r in codes])
     numbers = numbers_of_rows(
-        values[law], factors[scale], frictions[mu], states[body, first], pulls[ground], planes[ground], float(horizon)
+        values[law],
+        factors[scale],
+        frictions[mu],
+        states[body, start_index],
+        pulls[ground],
+        planes[ground],
+        float(horizon),
     )
-    bases = np.array([0 if each is None else each.base for each in several])
+    bases = np.array([0 if item is None else item.base for item in body_list])
     choices = np.column_stack([body, ground, np.array([code for code, _ in codes])[law], bases[body]]).astype(np.int64)
-    rows = HullRows(several, [g.motion for g in under], settings, chosen(engine), used)
-    found = rows.run(numbers, choices, taken, progress)
-    return SpatialBatch(shape, found, rows.words, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
+    rows = HullRows(body_list, [g.motion for g in ground_list], settings, chosen(engine), used_codes)
+    results = rows.run(numbers, choices, worker_count, progress)
+    return SpatialBatch(shape, results, rows.engine_name, dimensions=(*DIMENSIONS[:-1], "friction", DIMENSIONS[-1]))
 
 
 @dataclass(frozen=True, eq=False)
 class HullRows:
-    """Bodies and motions, and histories of them as rows of numbers; a row without a body is refused by itself."""
+    """Bodies and motions; runs histories given as rows. A row without a body gets an error status."""
 
     bodies: Sequence[HullBody | None]
     motions: Sequence[SpatialGround]
@@ -219,57 +225,66 @@ class HullRows:
     laws: Collection[int]  # codes of the rows
 
     @property
-    def words(self) -> str:
-        """Which engine runs, and how."""
+    def engine_name(self) -> str:
+        """Name of the engine, with its method."""
         return ENGINES[self.engine]
 
     @cached_property
     def library(self) -> Any:
-        """Bodies and motions as the compiled engine keeps them."""
+        """Bodies and motions in the form of the compiled engine."""
         return library_of(self.bodies, self.motions, self.laws)
 
     def run(
         self, numbers: FloatArray, choices: IntArray, threads: int, progress: Callable[[int], None] | None = None
     ) -> dict[str, np.ndarray]:
-        """Return the results of rows by name, NaN where there is none.
+        """Return the results of rows by name; NaN without a result.
 
-        numbers: as of `numbers_of_rows`; choices: body, motion, law, facet on which the body stood before its tilt.
+        numbers: from `numbers_of_rows`; choices: body, motion, law, facet of the body before its tilt.
         """
         pieces = []
         size = PIECE if self.engine == "fast" else 1
         for first in range(0, len(numbers), size):
-            some, which = numbers[first : first + size], choices[first : first + size]
-            results, counts = _COMPILED.empty_tables(len(some))
+            piece_numbers, piece_choices = numbers[first : first + size], choices[first : first + size]
+            results, counts = _COMPILED.empty_tables(len(piece_numbers))
             if self.engine == "fast":
-                how = self.settings
-                self.library.run(some, which, results, counts, how.rest_speed, how.tolerance, how.most_events, threads)
+                settings = self.settings
+                self.library.run(
+                    piece_numbers,
+                    piece_choices,
+                    results,
+                    counts,
+                    settings.rest_speed,
+                    settings.tolerance,
+                    settings.most_events,
+                    threads,
+                )
             else:
-                results[0], counts[0] = self._one(some[0], which[0].tolist())
+                results[0], counts[0] = self._one(piece_numbers[0], piece_choices[0].tolist())
             pieces.append(_COMPILED.columns_by_name(results, counts))
             if progress is not None:
-                progress(len(some))
+                progress(len(piece_numbers))
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
-    def _one(self, row: FloatArray, which: list[int]) -> tuple[list[float], list[int]]:
-        body, unbounded = self.bodies[which[0]], np.isin(np.arange(row.size), (3, 13, 14))
-        known = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
-        bounded = which[2] in CODES.values() or 0.0 <= row[0] <= 1.0
-        if body is None or not (known.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
+    def _one(self, row: FloatArray, choice: list[int]) -> tuple[list[float], list[int]]:
+        body, unbounded = self.bodies[choice[0]], np.isin(np.arange(row.size), (3, 13, 14))
+        is_finite = (np.abs(row) <= 1e9) | (unbounded & (row == math.inf))
+        bounded = choice[2] in CODES.values() or 0.0 <= row[0] <= 1.0
+        if body is None or not (is_finite.all() and bounded and row[3] >= 0.0 and row[28] > 0.0):
             refused = [Outcome.FAILED.code, Status.INVALID.code, -1, *[0] * (len(_COMPILED.integers) - 3)]
             return [math.nan] * len(_COMPILED.floats), refused
-        named = {code: name for name, code in CODES.items()}
-        law = FixedPosition(row[0]) if which[2] == POSITION else named.get(which[2], float(row[0]))
-        moving = self.motions[which[1]]
+        names = {code: name for name, code in CODES.items()}
+        law = FixedPosition(row[0]) if choice[2] == POSITION else names.get(choice[2], float(row[0]))
+        motion = self.motions[choice[1]]
         ground = HullGround.placed(
-            SpatialGround(moving.times, row[1] * moving.coefficients), row[4:13], row[13:15], float(row[28])
+            SpatialGround(motion.times, row[1] * motion.coefficients), row[4:13], row[13:15], float(row[28])
         )
         engine = HullEngine(body, ground, law, float(row[3]), self.settings)
-        return results_of(engine.run(_state(row[15:28]), row[2], which[3]))
+        return results_of(engine.run(_state(row[15:28]), row[2], choice[3]))
 
 
 def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
     """Return a history of the reference engine as a row of a batch."""
-    first, last = history.states[0].place, history.states[-1].place
+    first, last = history.states[0].position, history.states[-1].position
     floats = [
         history.peak_tilt, history.peak_time, history.peak_spin, history.overturning_time, history.direction,
         history.first_uplift, history.sliding_distance, math.hypot(last[0] - first[0], last[1] - first[1]),
@@ -285,10 +300,10 @@ def results_of(history: HullHistory) -> tuple[list[float], list[int]]:
 
 
 def _listed(name: str, values: Any) -> list[Any]:
-    several = list(values) if isinstance(values, (list, tuple, np.ndarray)) else [values]
-    if not several:
+    items = list(values) if isinstance(values, (list, tuple, np.ndarray)) else [values]
+    if not items:
         raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
-    return several
+    return items
 
 
 def _code(restitution: Any) -> tuple[int, float]:
@@ -303,7 +318,7 @@ def _plane(ground: HullGround) -> FloatArray:
 
 
 def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:
-    """Return attitude, place, velocity and angular velocity of a start; NaN for one that is none."""
+    """Return attitude, position, velocity and angular velocity of a start; NaN for an invalid start."""
     if body is None or not start.valid:
         return np.full(13, np.nan)
     attitude = tuple(start.quaternion.tolist())
@@ -314,7 +329,7 @@ def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:
 
 
 def start_of(body: HullBody, start: SpatialStart) -> State:
-    """Return the state of a body at the start, whose lowest vertex is on the ground at rest, or above it."""
+    """Return the initial state of a body, with the lowest vertex at rest on the ground, or above it."""
     return _state(numbers_of(body, start))
 
 

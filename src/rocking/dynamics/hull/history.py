@@ -1,4 +1,4 @@
-"""What a history of a body on its hull keeps, and how it is integrated."""
+"""Record of a history of a body on its hull."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,20 +11,20 @@ from rocking.outcome import Outcome, Status
 
 
 class HullEventKind(Enum):
-    """What happens at an event."""
+    """Kind of an event of a body on its hull."""
 
-    IMPACT = "vertices strike the ground"
+    IMPACT = "impact of vertices"
     CHANGE = "vertices leave, stick or start to slide"
-    REST = "comes to rest"
-    UPLIFT = "leaves its rest"
+    REST = "came to rest"
+    UPLIFT = "uplift from rest"
 
 
 class HullEvent(NamedTuple):
-    """Something that happened."""
+    """An impact, a change of contact, a start or an end of rest."""
 
     time: float
     kind: HullEventKind
-    contact: HullContact  # after it
+    contact: HullContact  # contact after the event
     before: float  # kinetic energy before [J]
     after: float  # kinetic energy after [J]
 
@@ -40,27 +40,27 @@ class HullHistory:
     status: Status = Status.GOOD
     outcome: Outcome = Outcome.NO_UPLIFT
     still_rocking: bool = False
-    lost: float = 0.0  # energy lost in impacts and by coming to rest; friction's work is not in it [J]
-    replaced: int = 0  # impacts whose impulse had to act at the vertices that land
-    held: int = 0  # impacts and changes without a solution, where the largest face was made to stick
+    lost: float = 0.0  # energy lost in impacts and at the start of rest, without the work of friction [J]
+    replaced: int = 0  # impacts with the impulse at the landing vertices in place of that of the law
+    held: int = 0  # impacts and changes without a solution, where the largest face sticks
     flew: bool = False
     slid: bool = False
     rocked: bool = False
-    fell: bool = False  # off the shelf
-    stood: int = 0  # facet on which the body stood before it was tilted
-    pose: int = -1  # the stable pose in which it ends, or to which it is on its way
-    overturning_time: float = math.nan  # when its centre left the first pose for the last time [s]
-    direction: float = math.nan  # in which it leant then, from x towards y [rad]
-    least_cosine: float = 1.0  # of the angle from the pose at the beginning
-    peak_time: float = 0.0  # of that [s]
+    fell_off: bool = False  # True after a fall from the shelf
+    initial_facet: int = 0  # facet on which the body stood before the tilt
+    pose: int = -1  # stable pose at the end, or to which the body moves
+    overturning_time: float = math.nan  # last time at which the centre left the initial pose [s]
+    direction: float = math.nan  # direction of tilt at that time, from x towards y [rad]
+    min_cosine: float = 1.0  # smallest cosine of the angle from the initial pose [-]
+    peak_time: float = 0.0  # time of the smallest cosine [s]
     peak_spin: float = 0.0  # largest angular velocity [rad/s]
-    sliding_distance: float = 0.0  # path of the vertex that slides most [m]
+    sliding_distance: float = 0.0  # path of the vertex with the largest slip [m]
     first_uplift: float = math.nan  # [s]
     uplifts: int = 0
     steps: int = 0
 
     @property
     def peak_tilt(self) -> float:
-        """Largest angle from the pose at the beginning [rad]."""
-        least = self.least_cosine
-        return math.atan2(math.sqrt(max((1.0 - least) * (1.0 + least), 0.0)), least)
+        """Largest angle from the initial pose [rad]."""
+        cosine = self.min_cosine
+        return math.atan2(math.sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0)), cosine)

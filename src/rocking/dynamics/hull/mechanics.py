@@ -19,7 +19,7 @@ class HullRocking(SpatialMechanics):
     options = frozenset({"engine"})
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        # a study that states no friction lets it hop and fall into other poses, but not slide
+        # in a study without friction the body hops and falls into other poses, but does not slide
         return (study or friction is not None) and in_space(body)
 
     def follow(
@@ -55,7 +55,7 @@ class HullRocking(SpatialMechanics):
         return RockingParameters(side, side, law, law.label)
 
     def check_motions(self, motions: Sequence[Any]) -> None:
-        """Take motions of one component and of several."""
+        """Accept motions with one or several components."""
 
     def engine_of_study(self, *, fast: bool) -> str:
         return "fast (Dormand-Prince with complementarity, compiled)"

@@ -1,6 +1,6 @@
-"""The motion while the contact lasts: accelerations, and steps of the fifth order of Dormand and Prince (1980).
+"""Motion during a contact: accelerations, and steps of the fifth order of Dormand and Prince (1980).
 
-Forces come from the contact problem at every stage, so that normal forces, friction and gaps there can be watched.
+The contact problem gives the forces at every stage, and with them normal forces, friction and gaps for the events.
 """
 
 import math
@@ -52,9 +52,9 @@ _ERROR = (
 
 
 class State(NamedTuple):
-    """Where the body is and how it moves."""
+    """Position of the centre of mass, attitude and velocities."""
 
-    place: Vector
+    position: Vector
     attitude: tuple[float, ...]
     velocity: Vector
     spin: Vector
@@ -62,26 +62,26 @@ class State(NamedTuple):
 
 @dataclass(frozen=True)
 class HullMode:
-    """The contact that lasts, with the directions in which its vertices start to slide, in axes of the ground."""
+    """Contact of a step, with the initial directions of sliding of its vertices, in axes of the ground."""
 
     contact: HullContact
     friction: float
     starts: dict[int, Vector]
-    pulled: bool = False  # whether no contact obeys every law, and this one, with the least pull, stands in
+    pulled: bool = False  # True if no contact satisfies all laws, and this one has the smallest tension
 
 
 class Rates(NamedTuple):
-    """Rates of a state, and the contact that they come from; `found` is None where no force answers the motion."""
+    """Rates of a state, and the solution of the contact problem; None without a solution."""
 
-    place: Vector
+    position: Vector
     attitude: tuple[float, ...]
     velocity: Vector
     spin: Vector
-    found: Solution | None
+    solution: Solution | None
 
 
 def problem_of(body: HullBody, state: State, field: Vector, friction: float) -> Problem:
-    """Return the contact problem of the accelerations; field: gravity less the acceleration of the ground [m/s2]."""
+    """Return the contact problem of the accelerations; field: gravity minus ground acceleration [m/s2]."""
     axes, w = frame(state.attitude), state.spin
     free = applied(body.compliance, scaled(-1.0, cross(w, applied(body.tensor, w))))
     return Problem(body, axes, back(axes, field), free, friction)
@@ -93,10 +93,10 @@ def rates_of(body: HullBody, state: State, mode: HullMode, field: Vector) -> Rat
     axes, w = problem.axes, state.spin
     problem.bias = {i: cross(w, cross(w, body.points[i])) for i in mode.contact.members}
     directions = {i: slip_direction(body, state, mode, i) for i in mode.contact.members if i not in mode.contact.stuck}
-    found = solve(problem, mode.contact, {i: back(axes, d) for i, d in directions.items()})
-    linear, angular = (problem.linear, problem.angular) if found is None else (found.linear, found.angular)
-    turning = quaternion_rate(state.attitude, w)
-    return Rates(state.velocity, turning, applied(axes, linear), angular, found)
+    solution = solve(problem, mode.contact, {i: back(axes, d) for i, d in directions.items()})
+    linear, angular = (problem.linear, problem.angular) if solution is None else (solution.linear, solution.angular)
+    attitude_rate = quaternion_rate(state.attitude, w)
+    return Rates(state.velocity, attitude_rate, applied(axes, linear), angular, solution)
 
 
 def quaternion_rate(q: tuple[float, ...], w: Vector) -> tuple[float, ...]:
@@ -116,7 +116,7 @@ def point_velocity(body: HullBody, state: State, i: int) -> Vector:
 
 
 def slip_direction(body: HullBody, state: State, mode: HullMode, i: int) -> Vector:
-    """Return the direction in which a vertex slides, in axes of the ground."""
+    """Return the direction of sliding of a vertex, in axes of the ground."""
     if i in mode.starts:
         return mode.starts[i]
     x, y, _ = point_velocity(body, state, i)
@@ -125,60 +125,65 @@ def slip_direction(body: HullBody, state: State, mode: HullMode, i: int) -> Vect
 
 def gap(body: HullBody, state: State, i: int) -> float:
     """Return the height of a vertex over the ground."""
-    return state.place[2] + dot(frame(state.attitude)[2], body.points[i])
+    return state.position[2] + dot(frame(state.attitude)[2], body.points[i])
 
 
 def _moved(state: State, stages: list[Rates], weights: tuple[float, ...], h: float) -> State:
-    place, velocity, spin, attitude = state.place, state.velocity, state.spin, list(state.attitude)
+    position, velocity, spin, attitude = state.position, state.velocity, state.spin, list(state.attitude)
     for weight, k in zip(weights, stages, strict=False):
         if weight:
             c = h * weight
-            place, velocity, spin = added(place, c, k.place), added(velocity, c, k.velocity), added(spin, c, k.spin)
+            position, velocity, spin = (
+                added(position, c, k.position),
+                added(velocity, c, k.velocity),
+                added(spin, c, k.spin),
+            )
             for j in range(4):
                 attitude[j] += c * k.attitude[j]
-    return State(place, tuple(attitude), velocity, spin)
+    return State(position, tuple(attitude), velocity, spin)
 
 
 class StepResult(NamedTuple):
-    """A step, and what happened at its stages."""
+    """Result of a step, with its stages."""
 
     state: State
-    error: float  # of the local error, its size over that of the body
-    samples: list[tuple[float, State, Rates]]  # start, some stages and end, with the part of the step
+    error: float  # size of the local error over that of the body [-]
+    samples: list[tuple[float, State, Rates]]  # start, two stages and end, with the fraction of the step
 
 
 def step(
     body: HullBody, state: State, mode: HullMode, field: list[Vector], span: tuple[float, float], pace: float
 ) -> StepResult:
-    """Advance by a part of a step.
+    """Return a step by a fraction of its duration.
 
-    field: gravity less the acceleration of the ground over the whole step, by powers of its share [m/s2]; span:
-    duration of the whole step [s] and share to advance by [-]; pace: sqrt(g / size), by which errors of velocities are
-    measured [1/s].
+    field: gravity minus ground acceleration over the full step, by powers of its fraction [m/s2]; span: duration of the
+    full step [s] and fraction [-]; pace: sqrt(g / size), the scale of velocity errors [1/s].
     """
-    part = span[1]
-    h = part * span[0]
+    fraction = span[1]
+    h = fraction * span[0]
     stages: list[Rates] = []
     samples: list[tuple[float, State, Rates]] = []
-    at = state
-    for number, (node, weights) in enumerate(zip(NODES, _STAGES, strict=True)):
-        at = _moved(state, stages, weights, h) if number else state
-        rates = rates_of(body, at, mode, valued(field, part * node))
+    current = state
+    for index, (node, weights) in enumerate(zip(NODES, _STAGES, strict=True)):
+        current = _moved(state, stages, weights, h) if index else state
+        rates = rates_of(body, current, mode, valued(field, fraction * node))
         stages.append(rates)
-        if number in (0, 2, 3, 6):
-            samples.append((node, at, rates))
-    off = _moved(State(ZERO, (0.0, 0.0, 0.0, 0.0), ZERO, ZERO), stages, _ERROR, h)
-    turned = max(abs(c) for c in off.attitude)
-    error = max(length(off.place) / body.size, 2.0 * turned, length(off.velocity) / (body.size * pace))
-    error = max(error, length(off.spin) / pace)
-    return StepResult(at._replace(attitude=normalised(at.attitude)), error, samples)
+        if index in (0, 2, 3, 6):
+            samples.append((node, current, rates))
+    difference = _moved(State(ZERO, (0.0, 0.0, 0.0, 0.0), ZERO, ZERO), stages, _ERROR, h)
+    attitude_error = max(abs(c) for c in difference.attitude)
+    error = max(
+        length(difference.position) / body.size, 2.0 * attitude_error, length(difference.velocity) / (body.size * pace)
+    )
+    error = max(error, length(difference.spin) / pace)
+    return StepResult(current._replace(attitude=normalised(current.attitude)), error, samples)
 
 
-def valued(field: list[Vector], share: float) -> Vector:
+def valued(field: list[Vector], x: float) -> Vector:
     """Return the value of a polynomial."""
     total = ZERO
     for c in reversed(field):
-        total = added(c, share, total)
+        total = added(c, x, total)
     return total
 
 
@@ -186,7 +191,7 @@ def energies(body: HullBody, state: State, gravity: Vector) -> tuple[float, floa
     """Return the kinetic energy and the potential energy over the origin of the ground [J]."""
     w = state.spin
     kinetic = 0.5 * (body.mass * dot(state.velocity, state.velocity) + dot(w, applied(body.tensor, w)))
-    return kinetic, -body.mass * dot(gravity, state.place)
+    return kinetic, -body.mass * dot(gravity, state.position)
 
 
 def slip_speed(body: HullBody, state: State, i: int) -> float:
@@ -196,7 +201,7 @@ def slip_speed(body: HullBody, state: State, i: int) -> float:
 
 
 def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ...]) -> tuple[float, ...]:
-    """Return an attitude turned by the least small angle that brings an edge or a facet onto the ground."""
+    """Return an attitude turned by the smallest angle that brings an edge or a facet onto the ground."""
     axes, count = frame(attitude), len(members)
     a, b = (body.points[members[k]] for k in (0, count // 2 if count < 4 else count // 3))
     edge = applied(axes, minus(b, a))
@@ -212,7 +217,7 @@ def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ..
 
 
 def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
-    """Return a body at rest on a facet, or in the axes of its vertices, leaning by an angle from x towards y [rad]."""
+    """Return the state at rest on a facet, or in the axes of the vertices, with a tilt and its azimuth [rad]."""
     # the lowest vertex is on the ground, the centre of mass over the origin
     attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
     if facet is not None:
@@ -220,159 +225,163 @@ def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azi
         axis = cross(down, (0.0, 0.0, -1.0))
         attitude = normalised((1.0 - down[2], *axis)) if down[2] < 1.0 - 1e-12 else (0.0, 1.0, 0.0, 0.0)
     half = 0.5 * tilt
-    lean = (math.cos(half), -math.sin(half) * math.sin(azimuth), math.sin(half) * math.cos(azimuth), 0.0)
-    attitude = normalised(product(lean, attitude))
+    tilting = (math.cos(half), -math.sin(half) * math.sin(azimuth), math.sin(half) * math.cos(azimuth), 0.0)
+    attitude = normalised(product(tilting, attitude))
     up = frame(attitude)[2]
     lowest = min(dot(up, p) for p in body.points)
     return State((0.0, 0.0, -lowest), attitude, ZERO, ZERO)
 
 
 _TURNS, _STRAIGHT = 300, 1e-12
-_NEWTON, _TRIES, _SWING = 20, 6, 1e-7  # steps, halvings, and the angle by which a direction is turned for the slope
+_NEWTON, _TRIES, _SWING = 20, 6, 1e-7  # steps, bisections, and angle of a finite difference
 _NOTHING = 1e-300
-_BEGIN = 6  # turns after which a facet of many corners goes on by Newton
+_BEGIN = 6  # iterations before Newton's method for a facet with many corners
 
 
-def sliding(problem: Problem, contact: HullContact, known: dict[int, Vector], still: float) -> Solution | None:
-    """Return a candidate with the directions in which its free vertices start to slide, by iteration; None if none.
+def sliding(problem: Problem, contact: HullContact, imposed: dict[int, Vector], still: float) -> Solution | None:
+    """Return a candidate with the initial directions of sliding of its free vertices, by iteration; None if it fails.
 
-    known: directions of those that slide already; still: rate of a vertex below which it only just starts to slide, so
-    that friction alone has the direction: against the force that held it.
+    imposed: directions of vertices that slide already; still: largest rate of a vertex that starts to slide, whose
+    direction is opposite to the former friction force.
     """
-    free = [i for i in contact.members if i not in contact.stuck and i not in known]
+    free = [i for i in contact.members if i not in contact.stuck and i not in imposed]
     if not free or problem.friction == 0.0:
-        return solve(problem, contact, {**dict.fromkeys(free, ZERO), **known})
-    directions, up = {**dict.fromkeys(free, ZERO), **known}, problem.axes[2]
-    holding = solve(problem, HullContact(contact.members, tuple(i for i in contact.members if i not in known)), known)
-    if holding is not None:
-        directions.update({i: unit(scaled(-1.0, holding.pulls[i])) for i in free})
+        return solve(problem, contact, {**dict.fromkeys(free, ZERO), **imposed})
+    directions, up = {**dict.fromkeys(free, ZERO), **imposed}, problem.axes[2]
+    sticking = solve(
+        problem,
+        HullContact(contact.members, tuple(i for i in contact.members if i not in imposed)),
+        imposed,
+    )
+    if sticking is not None:
+        directions.update({i: unit(scaled(-1.0, sticking.pulls[i])) for i in free})
     soft = {i: _compliance(problem, i) * problem.friction * len(free) for i in free}
-    begun = directions
-    if len(free) < 3 and (turned := _turned(problem, contact, begun, soft)) is not None:
+    initial_directions = directions
+    if len(free) < 3 and (turned := _turned(problem, contact, initial_directions, soft)) is not None:
         return turned
     for k in range(_TURNS):
-        found = solve(problem, contact, directions)
-        if found is None:
+        solution = solve(problem, contact, directions)
+        if solution is None:
             return None
         if len(free) > CORNERS and k == _BEGIN:
-            return _turned_whole(problem, found, free, still)
+            return _turned_whole(problem, solution, free, still)
         change, before = 0.0, directions
         for i in free:
-            rate = problem.rate(i, found.linear, found.angular)
+            rate = problem.rate(i, solution.linear, solution.angular)
             slip = added(rate, -dot(rate, up), up)
             if length(slip) <= still and length(before[i]) > 0.0:
                 continue
-            new = unit(added(slip, soft[i] * max(found.normals[i], 0.0), before[i]))  # Eq. 257
+            new = unit(added(slip, soft[i] * max(solution.normals[i], 0.0), before[i]))  # Eq. 257
             change = max(change, length(minus(new, before[i])))
             directions = {**directions, i: new}
         if change <= _STRAIGHT:
-            return found
-    return _turned(problem, contact, begun, soft) if 2 < len(free) <= CORNERS else None
+            return solution
+    return _turned(problem, contact, initial_directions, soft) if 2 < len(free) <= CORNERS else None
 
 
 def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: float) -> Solution | None:
-    """Return how a facet of many corners starts to slide, as a rigid body: Newton for its three accelerations."""
+    """Return the start of sliding of a facet with many corners, by Newton's method for its three accelerations."""
     (x, y, up), size = problem.axes, problem.body.size
 
     def beside(u: FloatArray) -> tuple[Solution, FloatArray] | None:
-        turned = dict(begun.directions)
+        directions = dict(begun.directions)
         for i in free:
             rate = plus(scaled(u[0], x), scaled(u[1], y))
             rate = added(rate, u[2] / size, cross(up, problem.body.points[i]))
             rate = plus(rate, problem.bias[i]) if problem.bias else rate
             rate = added(rate, -dot(rate, up), up)
-            turned[i] = unit(added(rate, max(still - length(rate), 0.0), begun.directions[i]))
-        found = solve(problem, begun.contact, turned)
-        return None if found is None else (found, read(found) - u)
+            directions[i] = unit(added(rate, max(still - length(rate), 0.0), begun.directions[i]))
+        solution = solve(problem, begun.contact, directions)
+        return None if solution is None else (solution, read(solution) - u)
 
-    def read(found: Solution) -> FloatArray:
-        return np.array([dot(x, found.linear), dot(y, found.linear), size * dot(up, found.angular)])
+    def read(solution: Solution) -> FloatArray:
+        return np.array([dot(x, solution.linear), dot(y, solution.linear), size * dot(up, solution.angular)])
 
     u = read(begun)
-    reached = beside(u)
+    current = beside(u)
     for _ in range(2 * _NEWTON):
-        if reached is None:
+        if current is None:
             return None
-        found, off = reached
-        large, most = length(tuple(u)), length(tuple(off))
-        if most <= _STRAIGHT * large:
-            return found
-        by = _SWING * max(large, still)
-        swung = [beside(u + by * axis) for axis in np.eye(3)]
-        if any(s is None for s in swung):
+        solution, residual = current
+        scale, residual_norm = length(tuple(u)), length(tuple(residual))
+        if residual_norm <= _STRAIGHT * scale:
+            return solution
+        increment = _SWING * max(scale, still)
+        shifted = [beside(u + increment * axis) for axis in np.eye(3)]
+        if any(s is None for s in shifted):
             return None
-        step = _solved(np.array([(s[1] - off) / by for s in swung if s]).T, -off)
+        step = _solved(np.array([(s[1] - residual) / increment for s in shifted if s]).T, -residual)
         if step is None:
             return None
         for k in range(2 * _TRIES):
-            to = u + 0.5**k * step
-            if (reached := beside(to)) is None:
+            candidate = u + 0.5**k * step
+            if (current := beside(candidate)) is None:
                 return None
-            if length(tuple(reached[1])) < most:
+            if length(tuple(current[1])) < residual_norm:
                 break
-        u = to
-    # accelerations below `still` have no direction of their own
-    near = reached is not None and length(tuple(reached[1])) <= max(still, 1e-9 * length(tuple(u)))
-    return reached[0] if reached is not None and near else None
+        u = candidate
+    # accelerations below `still` have no direction
+    is_close = current is not None and length(tuple(current[1])) <= max(still, 1e-9 * length(tuple(u)))
+    return current[0] if current is not None and is_close else None
 
 
 def _turned(
     problem: Problem, contact: HullContact, directions: dict[int, Vector], soft: dict[int, float]
 ) -> Solution | None:
-    """Return a candidate whose vertices start to slide where they accelerate to, by Newton; None where it fails."""
+    """Return a candidate with sliding in the directions of acceleration, by Newton's method; None if it fails."""
     up, free = problem.axes[2], list(soft)
 
-    def across(turned: dict[int, Vector]) -> tuple[Solution, list[float], list[float]] | None:
-        found = solve(problem, contact, directions | turned)
-        if found is None:
+    def across(trial: dict[int, Vector]) -> tuple[Solution, list[float], list[float]] | None:
+        solution = solve(problem, contact, directions | trial)
+        if solution is None:
             return None
-        rates = {i: problem.rate(i, found.linear, found.angular) for i in free}
-        most = {i: max(soft[i] * abs(found.normals[i]) + length(rates[i]), _NOTHING) for i in free}
-        side = [dot(cross(up, turned[i]), rates[i]) / most[i] for i in free]
-        return found, side, [dot(turned[i], rates[i]) / most[i] for i in free]
+        rates = {i: problem.rate(i, solution.linear, solution.angular) for i in free}
+        scales = {i: max(soft[i] * abs(solution.normals[i]) + length(rates[i]), _NOTHING) for i in free}
+        side = [dot(cross(up, trial[i]), rates[i]) / scales[i] for i in free]
+        return solution, side, [dot(trial[i], rates[i]) / scales[i] for i in free]
 
     def turn(a: Vector, angle: float) -> Vector:
         return added(scaled(math.cos(angle), a), math.sin(angle), cross(up, a))
 
-    now = {i: directions[i] for i in free}
+    rotated = {i: directions[i] for i in free}
     for _ in range(_NEWTON):
-        if (reached := across(now)) is None:
+        if (current := across(rotated)) is None:
             return None
-        found, side, along = reached
+        solution, side, along = current
         size = max(map(abs, side))
         if size <= _STRAIGHT:
             against = [i for i, a in zip(free, along, strict=True) if a < -_STRAIGHT]
             if not against:
-                return found
-            now |= {i: scaled(-1.0, now[i]) for i in against}
+                return solution
+            rotated |= {i: scaled(-1.0, rotated[i]) for i in against}
             continue
-        swung = [across(now | {i: turn(now[i], _SWING)}) for i in free]
-        if any(s is None for s in swung):
+        shifted = [across(rotated | {i: turn(rotated[i], _SWING)}) for i in free]
+        if any(s is None for s in shifted):
             return None
-        slopes = np.array([[(b - a) / _SWING for a, b in zip(side, s[1], strict=True)] for s in swung if s]).T
-        by = _solved(slopes, np.array(side))
-        if by is None:
+        slopes = np.array([[(b - a) / _SWING for a, b in zip(side, s[1], strict=True)] for s in shifted if s]).T
+        angles = _solved(slopes, np.array(side))
+        if angles is None:
             return None
-        share = min(1.0, 0.5 / max(np.abs(by).max(), _NOTHING))
-        start = now
+        fraction = min(1.0, 0.5 / max(np.abs(angles).max(), _NOTHING))
+        start = rotated
         for _ in range(_TRIES):
-            now = {i: turn(start[i], -share * float(b)) for i, b in zip(free, by, strict=True)}
-            if (reached := across(now)) is None:
+            rotated = {i: turn(start[i], -fraction * float(b)) for i, b in zip(free, angles, strict=True)}
+            if (current := across(rotated)) is None:
                 return None
-            if max(map(abs, reached[1])) < size:
+            if max(map(abs, current[1])) < size:
                 break
-            share *= 0.5
+            fraction *= 0.5
     return None
 
 
 def _solved(table: FloatArray, side: FloatArray) -> FloatArray | None:
-    """Solve by Gauss with exchange of rows, the same on every processor; None where the table is singular."""
+    """Return the solution by Gauss elimination with pivoting, equal on all processors; None for a singular table."""
     rows = np.column_stack([table, side])
     for k in range(len(side)):
-        best = k + int(np.argmax(np.abs(rows[k:, k])))
-        if not abs(rows[best, k]) > SINGULAR:
+        pivot_row = k + int(np.argmax(np.abs(rows[k:, k])))
+        if not abs(rows[pivot_row, k]) > SINGULAR:
             return None
-        rows[[k, best]] = rows[[best, k]]
+        rows[[k, pivot_row]] = rows[[pivot_row, k]]
         factors = rows[:, k] / rows[k, k]
         factors[k] = 0.0
         rows -= factors[:, None] * rows[k]
@@ -380,9 +389,9 @@ def _solved(table: FloatArray, side: FloatArray) -> FloatArray | None:
 
 
 def _compliance(problem: Problem, i: int) -> float:
-    """Return the larger of what one unit of force along each axis of the ground moves a vertex along it."""
-    arm, found = problem.body.points[i], 0.0
+    """Return the larger of the compliances of a vertex along the two axes of the ground [1/kg]."""
+    arm, largest = problem.body.points[i], 0.0
     for axis in problem.axes[:2]:
         turned = cross(applied(problem.body.compliance, cross(arm, axis)), arm)
-        found = max(found, 1.0 / problem.body.mass + dot(turned, axis))
-    return found
+        largest = max(largest, 1.0 / problem.body.mass + dot(turned, axis))
+    return largest

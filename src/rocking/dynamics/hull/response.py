@@ -1,4 +1,4 @@
-"""The response of a body on the vertices of its hull: attitude, place, contacts, impacts, sliding, outcome."""
+"""Response of a body on the vertices of its hull: attitude, position, contacts, impacts, sliding, outcome."""
 
 import math
 from dataclasses import dataclass
@@ -31,11 +31,11 @@ from rocking.portable import applied
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FINE = 0.05  # time between samples where no record gives it, over sqrt(size / g)
-_NO_SLIP = 1e-6  # over the size: what an answer does not speak of
+FINE = 0.05  # time between samples without a record, over sqrt(size / g)
+_NO_SLIP = 1e-6  # sliding distance over the size below which results do not mention it
 
 HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])
-"""Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices that stay on the ground."""
+"""Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices in contact after."""
 
 _AXES = ("x", "y", "z")
 
@@ -51,71 +51,71 @@ def response_on_hull(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> "HullResponse":
-    """Return how a body in space moves that may rock, slide, hop and fall; without components, when it is let go."""
-    # duration: how long to follow the body at least [s]; if not given, until it rests after the motion
-    made = HullBody.of(body)
+    """Return the response of a body in space with friction; on ground at rest without components."""
+    # duration: shortest duration [s]; by default until the body rests after the motion
+    hull_body = HullBody.of(body)
     law = law_on_hull(restitution)
     scale = checks.within("scale", scale, -1e6, 1e6)
-    start = started(start, math.sqrt(settings.gravity / made.size))
+    start = started(start, math.sqrt(settings.gravity / hull_body.size))
     until = np.inf if duration is None else checks.positive("duration", duration, "s")
-    shaken = [motion for motion in components if motion is not None]
+    motions = [motion for motion in components if motion is not None]
     motion = ground_of(*components, until=until, scale=scale)
-    plausibility.warn(plausibility.of_scaled(shaken, scale))
+    plausibility.warn(plausibility.of_scaled(motions, scale))
     ground = HullGround.placed(motion, np.eye(3), (math.inf, math.inf), settings.gravity)
-    steps = [each.time_step for each in shaken if isinstance(each, GroundMotion)]
-    step = min(steps, default=FINE / math.sqrt(settings.gravity / made.size))
+    steps = [record.time_step for record in motions if isinstance(record, GroundMotion)]
+    step = min(steps, default=FINE / math.sqrt(settings.gravity / hull_body.size))
     if duration is not None:
-        samples(step, duration)  # too many are refused before they are computed
+        samples(step, duration)  # refuses too many samples before the computation
     horizon, used = 0.0 if duration is None else duration, chosen(engine)
     if used == "fast":
-        found = traced(made, ground, law, settings.friction, start, horizon=horizon, settings=settings)
+        history = traced(hull_body, ground, law, settings.friction, start, horizon=horizon, settings=settings)
     else:
-        found = HullEngine(made, ground, law, settings.friction, settings).run(
-            start_of(made, start), horizon, made.base
+        history = HullEngine(hull_body, ground, law, settings.friction, settings).run(
+            start_of(hull_body, start), horizon, hull_body.base
         )
-    end = min(until, found.time[-1])
+    end = min(until, history.time[-1])
     time = samples(step, end)
-    return HullResponse(made, ground, str(law), settings, time, found, end, components, scale, ENGINES[used])
+    return HullResponse(hull_body, ground, str(law), settings, time, history, end, components, scale, ENGINES[used])
 
 
 @dataclass(frozen=True, eq=False)
 class HullStates:
-    """A body at n instants, in axes of the ground; its vertices stand in `HullBody`."""
+    """States of a body at n instants, in axes of the ground."""
 
     quaternion: FloatArray  # attitude (s, x, y, z) [-]; shape (n, 4)
     angular_velocity: FloatArray  # [rad/s]; shape (n, 3)
-    centre: FloatArray  # place of the centre of mass, from under where it was at the start [m]; shape (n, 3)
+    centre: FloatArray  # centre of mass relative to the ground point under its start [m]; shape (n, 3)
     centre_velocity: FloatArray  # [m/s]; shape (n, 3)
-    touching: IntArray  # how many vertices are on the ground
-    sliding: IntArray  # how many of these slide
+    touching: IntArray  # number of vertices in contact
+    sliding: IntArray  # number of these that slide
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HullResponse(ResponseBase):
-    """What `simulate` returns of a body in space with friction.
+    """Response of a body in space with friction, as returned by `simulate`.
 
     Parameters
     ----------
     body : HullBody
         The body on the vertices of its convex hull.
     ground : HullGround
-        The motion as it was integrated [m/s2].
+        The integrated motion [m/s2].
     restitution : str
         Law of restitution, or its coefficient.
     settings : HullSettings
-        How it was integrated, and with which friction.
+        Settings of the integration, with the friction.
     time : ndarray
-        Times of the samples, until it rests after the motion, or to the duration [s].
+        Times of the samples, until the body rests after the motion, or up to the duration [s].
     trajectory : HullHistory
-        What the engine returned.
+        Result of the engine.
     end : float
-        End of the response; the engine may have gone on until it rests [s].
+        End of the response; the engine may continue until the body rests [s].
     components : tuple
         Motions along x, y and z, or None.
     scale : float
         Factor on the motion [-].
     used : str
-        Which engine ran, and how.
+        Name of the engine, with its method.
     """
 
     body: HullBody
@@ -131,7 +131,7 @@ class HullResponse(ResponseBase):
 
     @property
     def engine(self) -> str:
-        """Which engine ran, and how."""
+        """Name of the engine, with its method."""
         return self.used
 
     @property
@@ -141,7 +141,7 @@ class HullResponse(ResponseBase):
 
     @cached_property
     def states(self) -> HullStates:
-        """Attitude, place, velocities and contact at the samples."""
+        """Attitude, position, velocities and contact at the samples."""
         return self.at(self.time)
 
     @property
@@ -156,44 +156,44 @@ class HullResponse(ResponseBase):
 
     @property
     def centre(self) -> FloatArray:
-        """Path of the centre of mass over the ground, from under where it was, shape (n, 3) [m]."""
+        """Path of the centre of mass relative to the ground point under its start, shape (n, 3) [m]."""
         return self.states.centre
 
     @cached_property
     def _up(self) -> FloatArray:
-        """The axis of the body, of the pose in which it stood, at the samples in axes of the ground."""
-        axis = -np.array(unit(self.body.facets[self.trajectory.stood]))
+        """Axis of the body in its initial pose, at the samples in axes of the ground [-]."""
+        axis = -np.array(unit(self.body.facets[self.trajectory.initial_facet]))
         return applied(attitude.matrix(self.quaternion), axis)
 
     @cached_property
     def tilt(self) -> FloatArray:
-        """Angle from the pose in which the body stood before it was tilted, at the samples [rad]."""
+        """Angle from the initial pose, before the initial tilt, at the samples [rad]."""
         x, y, z = self._up.T
         return np.asarray(np.arctan2(np.hypot(x, y), z))
 
     @cached_property
     def azimuth(self) -> FloatArray:
-        """Direction in which the body leans at the samples, from x towards y [rad]."""
+        """Direction of tilt at the samples, from x towards y [rad]."""
         return np.asarray(np.arctan2(self._up[:, 1], self._up[:, 0]))
 
     @cached_property
     def intervals(self) -> list[tuple[float, float, tuple[int, ...], tuple[int, ...]]]:
-        """Start and end [s], vertices on the ground and those of them that slide, as long as they stay the same."""
-        found: list[tuple[float, float, tuple[int, ...], tuple[int, ...]]] = []
-        made, end = self.trajectory, self.end
-        stops = [*made.time[1:], made.time[-1]]
-        for start, stop, contact in zip(made.time, stops, made.contacts, strict=True):
+        """Intervals of one contact: start and end [s], vertices in contact, and vertices that slide."""
+        rows: list[tuple[float, float, tuple[int, ...], tuple[int, ...]]] = []
+        history, end = self.trajectory, self.end
+        stops = [*history.time[1:], history.time[-1]]
+        for start, stop, contact in zip(history.time, stops, history.contacts, strict=True):
             slides = tuple(i for i in contact.members if i not in contact.stuck)
             if start > end or stop <= start:
                 continue
-            same = found and found[-1][2:] == (contact.members, slides)
-            first = found.pop()[0] if same else start
-            found.append((first, min(stop, end), contact.members, slides))
-        return found
+            same = rows and rows[-1][2:] == (contact.members, slides)
+            first = rows.pop()[0] if same else start
+            rows.append((first, min(stop, end), contact.members, slides))
+        return rows
 
     @cached_property
     def impacts(self) -> np.ndarray:
-        """Impacts in order: time, energy_before, energy_after, vertices that stay on the ground."""
+        """Impacts in order, with the fields of `HULL_IMPACT`."""
         rows = [
             (event.time, event.before, event.after, "-".join(map(str, event.contact.members)))
             for event in self.trajectory.events
@@ -203,29 +203,29 @@ class HullResponse(ResponseBase):
 
     @property
     def peak_tilt(self) -> float:
-        """Largest angle from the pose in which the body stood, between the samples too [rad]."""
+        """Largest angle from the initial pose, also between the samples [rad]."""
         return self.trajectory.peak_tilt
 
     @property
     def sliding_distance(self) -> float:
-        """Path of the vertex that slides most, along the ground [m]."""
+        """Path along the ground of the vertex with the largest slip [m]."""
         return self.trajectory.sliding_distance
 
     @property
     def pose(self) -> int:
-        """Number of the stable pose in which it ends, or to which it is on its way; that of the lowest centre is 0."""
+        """Index of the stable pose at the end, or to which the body moves; 0 has the lowest centre."""
         return self.trajectory.pose
 
     @property
     def overturning_direction(self) -> float:
-        """Direction in which it leant when it left its first pose, from x towards y; NaN if it did not [rad]."""
+        """Direction of tilt when the body left its initial pose, from x towards y; NaN if it did not [rad]."""
         return self.trajectory.direction
 
     @property
     def _last_motion(self) -> tuple[str, float, str]:
         last = self.trajectory.states[-1]
         rate = math.hypot(*last.spin)
-        return "moving", self.trajectory.time[-1], Message("turning at {velocity:.3g} rad/s", {"velocity": rate})
+        return "moving", self.trajectory.time[-1], Message("rotating at {velocity:.3g} rad/s", {"velocity": rate})
 
     @property
     def _ending(self) -> str:
@@ -237,18 +237,20 @@ class HullResponse(ResponseBase):
         impacts = f"{count} impact{'s' * (count != 1)}"
         if self.outcome is Outcome.OVERTURNED:
             degrees = round(math.degrees(self.overturning_direction), 6) + 0.0  # less is rounding
-            where = "" if self.trajectory.fell else f" towards {degrees:.4g} degrees"
-            when = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
-            return f"overturned{where} into pose {self.pose}{when}; {impacts}{slid}"
+            direction = "" if self.trajectory.fell_off else f" towards {degrees:.4g} degrees"
+            time = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
+            return f"overturned{direction} into pose {self.pose}{time}; {impacts}{slid}"
         sentence = f"{self.outcome.value}: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}{slid}"
-        if held := self.trajectory.held:
-            sentence += f"; {held} time{'s' * (held != 1)} no contact obeyed every law, and what touched was held"
+        if held_count := self.trajectory.held:
+            sentence += (
+                f"; {held_count} time{'s' * (held_count != 1)} no contact satisfied all laws: the vertices were held"
+            )
         return sentence
 
     def at(self, time: Any) -> HullStates:
         """Return the state of the body at any times within the response.
 
-        Between steps of the engine place and attitude follow cubics with its velocities.
+        Between steps of the engine, position and attitude follow cubics with its velocities.
 
         Parameters
         ----------
@@ -258,27 +260,27 @@ class HullResponse(ResponseBase):
         Returns
         -------
         HullStates
-            Attitude, place, velocities, contact.
+            Attitude, position, velocities, contact.
 
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or before the start or after the end by more than rounding.
+            If a time is not finite, or outside the response by more than rounding.
         """
-        stops, places, attitudes, velocities, turning = self._nodes
+        stops, positions, attitudes, velocities, attitude_rates = self._nodes
         times = np.atleast_1d(self._times_within(time, float(stops[-1])))
         k = np.clip(np.searchsorted(stops, times, side="right") - 1, 0, max(len(stops) - 2, 0))
         last = np.minimum(k + 1, len(stops) - 1)
         k = np.where((times >= stops[-1]), len(stops) - 1, k)
         last = np.maximum(last, k)
         span = stops[last] - stops[k]
-        share = np.divide(times - stops[k], span, out=np.zeros(times.size), where=span > 0.0)
+        fraction = np.divide(times - stops[k], span, out=np.zeros(times.size), where=span > 0.0)
 
         def between(values: FloatArray, rates: FloatArray) -> tuple[FloatArray, FloatArray]:
-            return _hermite(values[k], rates[k], values[last], rates[last], span[:, None], share[:, None])
+            return _hermite(values[k], rates[k], values[last], rates[last], span[:, None], fraction[:, None])
 
-        centre, velocity = between(places, velocities)
-        q, rate = between(attitudes, turning)
+        centre, velocity = between(positions, velocities)
+        q, rate = between(attitudes, attitude_rates)
         size = np.linalg.norm(q, axis=1)[:, None]
         q = q / size
         contacts = [self.trajectory.contacts[i] for i in k]
@@ -293,22 +295,24 @@ class HullResponse(ResponseBase):
 
     @cached_property
     def _nodes(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Times, places, attitudes and their rates at the ends of the steps."""
+        """Times, positions, attitudes, velocities and attitude rates at the ends of the steps."""
         states = self.trajectory.states
         q = np.array([s.attitude for s in states])
         w = np.array([s.spin for s in states])
         s, v = q[:, :1], q[:, 1:]
         scalar = -0.5 * (v * w).sum(axis=1)  # Eq. 22
         rate = np.column_stack([scalar, 0.5 * (s * w + attitude.cross(v, w))])
-        places, velocities = (np.array([getattr(one, name) for one in states]) for name in ("place", "velocity"))
-        return np.array(self.trajectory.time), places, q, velocities, rate
+        positions, velocities = (
+            np.array([getattr(state, name) for state in states]) for name in ("position", "velocity")
+        )
+        return np.array(self.trajectory.time), positions, q, velocities, rate
 
     @property
     def _values(self) -> dict[str, Any]:
         direction = self.overturning_direction
         return {
             "motions": {
-                axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
+                axis: motion_answer(motion, self.scale) for axis, motion in zip(_AXES, self.components, strict=True)
             },
             "restitution": self.restitution, "friction": self.settings.friction, "peak_tilt": self.peak_tilt,
             "direction": None if math.isnan(direction) else direction, "sliding_distance": self.sliding_distance,
@@ -367,7 +371,7 @@ class HullResponse(ResponseBase):
 def _hermite(
     a: FloatArray, va: FloatArray, b: FloatArray, vb: FloatArray, span: FloatArray, x: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the cubic with given values and rates at both ends, and its rate."""
+    """Return the cubic with the values and rates at both ends, and its rate."""
     da, db, rise = span * va, span * vb, b - a
     cubic, square = da + db - 2.0 * rise, 3.0 * rise - 2.0 * da - db
     value = a + x * (da + x * (square + x * cubic))
@@ -376,6 +380,6 @@ def _hermite(
 
 
 def _spin(q: FloatArray, rate: FloatArray) -> FloatArray:
-    """Return the angular velocity in axes of the ground."""
+    """Return the angular velocity in axes of the ground [rad/s]."""
     s, v, ds, dv = q[:, :1], q[:, 1:], rate[:, :1], rate[:, 1:]
     return np.asarray(2.0 * (s * dv - ds * v - attitude.cross(dv, v)))  # Eq. 22

@@ -1,4 +1,4 @@
-"""What an impact costs a body in space with friction, and where the impulse of a landing acts, for any law."""
+"""Restitution of a body in space with friction: position of the impulse of a landing, for any law."""
 
 import math
 from collections.abc import Callable
@@ -22,10 +22,10 @@ from rocking.restitution.space.calibrated import CalibratedPosition
 from rocking.restitution.space.impulse_position import impulse_position
 
 MODELS = ("housner-3d", "ked-3d", "calibrated-3d")
-"""Models of `rocking.restitution.space` that friction does not exclude."""
+"""Models of `rocking.restitution.space` that apply with friction."""
 
 ImpulseLaw = Callable[[Vector, Vector], float]
-"""Position k of the impulse of a step between two points of the body, from its centre of mass; 1 at the new one [-]."""
+"""Position k of the impulse of a step between two points relative to the centre of mass; 1 at the new one [-]."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class FixedPosition:
 
 
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
-    """Return k of every step, from the name of a model, a k, or the coefficient of a landing of the whole base."""
-    # the base is the facet to which the law belongs: steps elsewhere take k = 1
+    """Return the law of k from the name of a model, a fixed k, or the coefficient of a landing of the full base."""
+    # the law applies to the facet `base`: steps on other facets have k = 1
     law = law_on_hull(restitution)
     if isinstance(law, FixedPosition):
         return _on_base(body, base, lambda _step: law.k)
@@ -54,27 +54,26 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
     if law == "calibrated-3d":
         calibrated = position_on_base(body)
         return _on_base(body, base, lambda step: calibrated.at(np.array(step)), math.inf)
-    position = impulse_position(spread_of(body))
+    position = impulse_position(mass_distribution(body))
     return _on_base(body, base, lambda step: position.at(np.array(step)))
 
 
-def spread_of(body: HullBody) -> Solid:
-    """Return the distribution of mass of a body, which "ked-3d" needs; refused where its moments alone are known."""
+def mass_distribution(body: HullBody) -> Solid:
+    """Return the distribution of mass of a body for "ked-3d"; an error if only its moments are given."""
     if body.solid is None:
         raise InvalidValueError(
-            "restitution 'ked-3d' needs the distribution of mass, and of this body moments alone are known: give the"
-            " HullBody its solid"
+            "restitution 'ked-3d' needs the distribution of mass, but this body has moments only; give HullBody a solid"
         )
     return body.solid
 
 
 @lru_cache(maxsize=256)
 def position_on_base(body: HullBody) -> CalibratedPosition:
-    """Return the impulse position of a landing on the base by the calibrated model, kept for the body."""
+    """Return the impulse position of a landing on the base by the calibrated model; cached."""
     base, (x, y, _) = body.footprint, body.centre.tolist()
     if base is None:
         if dot(unit(body.facets[body.base]), (0.0, 0.0, -1.0)) < 1.0 - 1e-12:
-            raise InvalidValueError("restitution 'calibrated-3d' needs a body on a level base, in its own axes")
+            raise InvalidValueError("restitution 'calibrated-3d' needs a body with a level base in its axes")
         corners = body.hull.vertices[body.hull.corners(body.base)][::-1]  # clockwise seen from below
         base = SupportPolygon(corners[:, :2] + [x, y])
     second = 0.5 * np.trace(body.inertia) * np.eye(3) - body.inertia
@@ -83,18 +82,18 @@ def position_on_base(body: HullBody) -> CalibratedPosition:
 
 
 def _on_base(body: HullBody, base: int, position: Callable[[Vector], float], highest: float = 1.0) -> ImpulseLaw:
-    """Keep a law to steps within the base, and k from 0 to 1, where no force pulls; a stated loss may be larger."""
+    """Limit a law to steps within the base and to k from 0 to `highest`; k <= 1 avoids tensile impulses."""
     normal, height = unit(body.facets[base]), float(body.hull.heights[base])
 
     def at(old: Vector, new: Vector) -> float:
-        lies = all(height - dot(normal, p) <= FLAT * body.size for p in (old, new))
-        return min(max(position(minus(new, old)), 0.0), highest) if lies else 1.0
+        is_on_base = all(height - dot(normal, p) <= FLAT * body.size for p in (old, new))
+        return min(max(position(minus(new, old)), 0.0), highest) if is_on_base else 1.0
 
     return at
 
 
 def _of_coefficient(body: HullBody, base: int, r: float) -> Callable[[Vector], float]:
-    """Return where, in the direction of a step, the impulse of a landing of the whole base gives one coefficient."""
+    """Return the position k by step at which a landing of the full base has a given coefficient."""
     corners = [body.points[i] for i in body.hull.corners(base)]
     up, height = scaled(-1.0, unit(body.facets[base])), float(body.hull.heights[base])
 
@@ -104,14 +103,14 @@ def _of_coefficient(body: HullBody, base: int, r: float) -> Callable[[Vector], f
         reaches = [dot(along, p) for p in corners]
         new, old = max(reaches), -min(reaches)
         over_foot = dot(edge, applied(body.tensor, edge)) / body.mass + height**2
-        ahead = over_foot * (1.0 - r) / (r * new + old)  # Eq. 4
-        return (2.0 * ahead - (new - old)) / (new + old)  # Eq. 104
+        distance = over_foot * (1.0 - r) / (r * new + old)  # Eq. 4
+        return (2.0 * distance - (new - old)) / (new + old)  # Eq. 104
 
     return at
 
 
-def place_of(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
-    """Return where the impulse of a step acts."""
+def impulse_point(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
+    """Return the point of action of the impulse of a step."""
     step = minus(new, old)
     if not math.sqrt(dot(step, step)) > 0.0:
         return new
@@ -119,23 +118,23 @@ def place_of(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
 
 
 def nearest(points: list[Vector], to: Vector) -> Vector:
-    """Return the point of a vertex, an edge or a facet (by its border) that is nearest to another one."""
+    """Return the point of a vertex, an edge or the border of a facet nearest to another point."""
     if len(points) == 1:
         return points[0]
     best = points[0]
     for k, a in enumerate(points):
         b = points[(k + 1) % len(points)]
         along = minus(b, a)
-        share = dot(minus(to, a), along) / dot(along, along)
-        found = added(a, min(max(share, 0.0), 1.0), along)
-        gap, least = minus(found, to), minus(best, to)
-        if dot(gap, gap) < dot(least, least):
-            best = found
+        fraction = dot(minus(to, a), along) / dot(along, along)
+        candidate = added(a, min(max(fraction, 0.0), 1.0), along)
+        gap, best_gap = minus(candidate, to), minus(best, to)
+        if dot(gap, gap) < dot(best_gap, best_gap):
+            best = candidate
     return best
 
 
 def law_on_hull(restitution: Any) -> str | float | FixedPosition:
-    """Return a restitution as the hull engine takes it.
+    """Return a restitution in the form of the hull engine.
 
     >>> law_on_hull("ked"), law_on_hull(0.8)
     ('ked-3d', 0.8)
@@ -156,26 +155,26 @@ def law_on_hull(restitution: Any) -> str | float | FixedPosition:
 
 @dataclass(frozen=True, eq=False)
 class RestitutionOnHull(ConstantRestitution):
-    """What an impact costs a body in space, and the body: its rows say size, coefficient, friction and scale alone."""
+    """Restitution and body for rows, which contain size, coefficient, friction and scale only."""
 
-    body: Any = None  # a Solid, or what knows of which it is made
+    body: Any = None  # a Solid, or a body with a distribution of mass
     model: str | float = "ked-3d"
-    frequency: float = 1.0  # of the body under `gravity`: what rows of other sizes are compared with [rad/s]
+    frequency: float = 1.0  # p of the body under `gravity`, the reference for rows of other sizes [rad/s]
     gravity: float = field(default=1.0)  # [m/s2]
-    slenderness_angle: float = 1.0  # the least over the edges of its base [rad]
+    slenderness_angle: float = 1.0  # smallest over the edges of the base [rad]
     size: float = 1.0  # R [m]
 
     @cached_property
     def on_hull(self) -> HullBody:
-        """The body on the vertices of its hull; refused where the model needs to know more of it."""
-        made = HullBody.of(self.body)
+        """The body on the vertices of its hull; an error if the model needs more data."""
+        hull_body = HullBody.of(self.body)
         if self.model == "ked-3d":
-            spread_of(made)
-        return made
+            mass_distribution(hull_body)
+        return hull_body
 
     @property
     def tabulated(self) -> bool:
-        """True: its engine knows it."""
+        """True: the fast engine supports it."""
         return True
 
     @property
@@ -189,18 +188,18 @@ class RestitutionOnHull(ConstantRestitution):
         law = None if isinstance(restitution, ImpactLaw) else law_on_hull(restitution)
         if law is None or isinstance(law, FixedPosition):
             raise InvalidValueError(
-                "a body in space takes a model or one coefficient in a study, got {law}", parameter="restitution",
-                law=type(restitution).__name__,
+                "{parameter} of a body in space in a study must be a model or one coefficient, got {law}",
+                parameter="restitution", law=type(restitution).__name__,
             )  # fmt: skip
-        made = SpatialBody.of(body)
-        angle = math.atan2(made.reach, float(made.centre[2]))
+        spatial_body = SpatialBody.of(body)
+        angle = math.atan2(spatial_body.reach, float(spatial_body.centre[2]))
         return cls(
-            body=body, model=law, frequency=made.frequency(gravity), gravity=gravity, slenderness_angle=angle,
-            size=made.size,
+            body=body, model=law, frequency=spatial_body.frequency(gravity), gravity=gravity, slenderness_angle=angle,
+            size=spatial_body.size,
         )  # fmt: skip
 
     def content(self) -> dict[str, Any]:
         """Return mass, centre, inertia and hull of the body, and the model."""
-        made = self.on_hull
-        arrays = {"centre": made.centre, "inertia": made.inertia, "hull": made.hull.vertices}
-        return {"model": self.model, "mass": made.mass, **{name: hash_of(each) for name, each in arrays.items()}}
+        hull_body = self.on_hull
+        arrays = {"centre": hull_body.centre, "inertia": hull_body.inertia, "hull": hull_body.hull.vertices}
+        return {"model": self.model, "mass": hull_body.mass, **{name: hash_of(array) for name, array in arrays.items()}}

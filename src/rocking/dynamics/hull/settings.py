@@ -1,4 +1,4 @@
-"""How to integrate a body on the vertices of its convex hull, which may slide, hop and fly."""
+"""Settings of the integration of a body on the vertices of its convex hull."""
 
 from dataclasses import dataclass
 
@@ -7,15 +7,15 @@ from rocking.dynamics.settings import NEVER_SLIDES, Settings, checked, checked_f
 
 @dataclass(frozen=True)
 class HullSettings(Settings):
-    """How to integrate a body in space with `friction`.
+    """Settings of the integration of a body in space with `friction`.
 
     Parameters
     ----------
     gravity, most_events
         As for all mechanics, `Settings`.
     rest_speed : float
-        Its square is the energy over m g size at which a body comes to rest, at least 1e-11, since smaller gaps count
-        as closed; over sqrt(g size) [-].
+        Speed over sqrt(g size); its square is the energy over m g size at which a body comes to rest, at least 1e-11,
+        since smaller gaps count as closed [-].
     tolerance : float
         Bound on the local error of a step of order 5, over size, radian and their rates [-].
     friction : float

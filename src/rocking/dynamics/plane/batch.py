@@ -1,4 +1,4 @@
-"""Many histories of plane bodies that rock alone: rows, by the fast engine or one by one."""
+"""Many histories of plane bodies without friction: rows, by the fast engine or one by one."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,24 +19,24 @@ _CHUNK = 64
 
 
 class RowsInPlane:
-    """Motions, and histories under them as rows of a study."""
+    """Motions of a study; runs histories given as rows."""
 
     def __init__(self, motions: Sequence[Segments], law: ImpactLaw, settings: PlaneSettings, engine: str) -> None:
         self.motions, self.law, self.settings = motions, law, settings
         self.library = self._library() if fast_engine.chosen(engine, law) == "fast" else None
 
     def run(self, piece: Rows, threads: int) -> tuple[fast_engine.Arrays, dict[str, int]]:
-        """Return the results of a piece, and the steps taken (none by the reference engine)."""
+        """Return the results of a piece, and counts of steps (empty for the reference engine)."""
         if not np.isnan(piece.values["friction"]).all():
-            raise InvalidValueError("rows with a friction are of bodies that slide: their settings need one too")
+            raise InvalidValueError("rows with friction need settings with friction")
         out = fast_engine.empty_results(len(piece))
         if self.library is not None:
-            done: dict[str, int] = fast_engine.module().run_batch(
+            step_counts: dict[str, int] = fast_engine.module().run_batch(
                 self.library, {**piece.values, "motion": piece.motion, "key": piece.stream}, out,
                 order=self.settings.order, threads=threads, chunk=_CHUNK,
                 **fast_engine.common(self.settings, self.law),
             )  # fmt: skip
-            return out, done
+            return out, step_counts
         for k, (motion, stream) in enumerate(zip(piece.motion.tolist(), piece.stream.tolist(), strict=True)):
             row = {name: float(values[k]) for name, values in piece.values.items()}
             for name, value in self._one(row, motion, stream).items():
@@ -46,19 +46,19 @@ class RowsInPlane:
     def _library(self) -> Any:
         order, linear = self.settings.order, self.settings.linear
         if order != 8 and (linear or any(motion.vertical is not None for motion in self.motions)):
-            subject = "the linear equations" if linear else "motions with a vertical part"
+            subject = "the linear equations" if linear else "motions with a vertical component"
             raise InvalidValueError(
-                "{parameter} must be {allowed} for {subject}, got {value}: orders 4 and 6 exist only for nonlinear "
-                "equations and motions without a vertical part", parameter="order", allowed="8", value=order,
+                "{parameter} must be {allowed} for {subject}, got {value}: orders 4 and 6 apply only to nonlinear "
+                "equations and motions without a vertical component", parameter="order", allowed="8", value=order,
                 subject=subject,
             )  # fmt: skip
         return fast_engine.library_of(self.motions)
 
     def _one(self, row: dict[str, float], motion: int, stream: int) -> dict[str, float]:
-        """Results of one history by the reference engine."""
+        """Return the results of one history by the reference engine."""
         if not valid_row(row) or not 0 <= motion < len(self.motions):
-            bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
-            return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
+            failed = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
+            return failed | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
         from rocking.dynamics.plane.reference import Reference
 
         right, left = (
@@ -75,7 +75,7 @@ class RowsInPlane:
 
 
 def valid_row(row: dict[str, float]) -> bool:
-    """Return whether the numbers of a history are finite and within the ranges that the engines take."""
+    """Return True if the numbers of a history are finite and within the ranges of the engines."""
 
     def both(low: float, high: float, name: str) -> bool:
         return low < row[f"{name}_right"] < high and low < row[f"{name}_left"] < high

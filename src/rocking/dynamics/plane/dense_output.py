@@ -1,6 +1,6 @@
 """A response between its samples and events: states at both ends of every interval, and smooth curves between them.
 
-Where steps are long, or the body falls within one, states inside the steps are added.
+States are added inside long steps, and inside a step with overturning.
 """
 
 import math
@@ -61,14 +61,14 @@ class DenseOutput:
             time = np.concatenate([time, rows[:, 0]])
             order = np.argsort(time, kind="stable")
             time = time[order]
-            before, after = (np.concatenate([part, rows[:, 1:]])[order] for part in (before, after))
-        whole = np.flatnonzero(np.diff(time) > 0.0)
-        if not whole.size:
+            before, after = (np.concatenate([limits, rows[:, 1:]])[order] for limits in (before, after))
+        index = np.flatnonzero(np.diff(time) > 0.0)
+        if not index.size:
             raise InvalidValueError(
                 "there is no response at any time above 0 s: {status}", status=trajectory.status.value
             )
-        start, end = time[whole], time[whole + 1]
-        states = np.stack([after[whole], before[whole + 1]], axis=1)
+        start, end = time[index], time[index + 1]
+        states = np.stack([after[index], before[index + 1]], axis=1)
         rotation, velocity = states[..., 0], states[..., 1]
         size = rotation[:, 0] + rotation[:, 1]
         side = np.sign(np.where(size != 0.0, size, velocity[:, 0] - velocity[:, 1]))
@@ -92,19 +92,19 @@ class DenseOutput:
     def length(self) -> FloatArray:
         return self.end - self.start
 
-    def places(self, time: FloatArray) -> IntArray:
-        """Return the last interval that is over at each of some times; the first one where none is."""
+    def indices(self, time: FloatArray) -> IntArray:
+        """Return the index of the last interval that ends by each time [s]; zero where none does."""
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
     def evaluated(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return theta [rad] and theta' [rad/s] at places x of every interval, by the quintics (shape (n, m))."""
+        """Return theta [rad] and theta' [rad/s] at positions x of every interval, by the quintics (shape (n, m))."""
         c = self.quintics()
         by_power = powers(x, 6).T
         slopes = np.arange(1, 6)[:, None] * by_power[:5]
         return times(c, by_power), times(c[:, 1:], slopes) / self.length[:, None]
 
     def quintics(self) -> FloatArray:
-        """Return the coefficients over 0 <= x <= 1 that have value, rate and acceleration at both ends [rad]."""
+        """Return the quintics over 0 <= x <= 1 with the value, rate and acceleration of both ends [rad]."""
         h = self.length
         a, b = self.rotation[:, 0], self.rotation[:, 1]
         va, vb = self.velocity[:, 0] * h, self.velocity[:, 1] * h
@@ -162,16 +162,16 @@ def _evaluated(polynomials: FloatArray, stretch: IntArray, tau: FloatArray) -> F
 
 
 LONG = 0.1
-"""An interval is long if p times its length is above this [-]; below, the curve between its ends holds to 1e-11."""
+"""p times length above which an interval is long [-]; the curve of a shorter one is accurate to 1e-11."""
 
 _ORDER = 16
-# what the first power beyond a quintic may add within a part, over the angle
+# bound on the first power beyond a quintic within a piece, over the angle
 _TOLERANCE = 1e-11
-_MOST_PARTS = 100_000
+_MAX_PIECES = 100_000
 _ROUNDING = 1e-12
 
 
-def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
+def _inner_states(  # noqa: PLR0917 - a history and its inputs
     trajectory: Trajectory,
     segments: Segments,
     parameters: RockingParameters,
@@ -181,10 +181,10 @@ def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
     before: FloatArray,
     after: FloatArray,
 ) -> list[tuple[float, float, float]]:
-    """Return the states to be added to those at samples and events."""
+    """Return additional states, as time [s], theta [rad] and theta' [rad/s]."""
     # time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
-    # just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
-    # its foot for good; and after the last sample, until it lies.
+    # just after each. States are added within long intervals, at the overturning time, and after the last sample until
+    # the body lies.
     fall, step, g = trajectory.overturning_time, segments.step, settings.gravity
     shortest = _ROUNDING * step
 
@@ -192,7 +192,7 @@ def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
         return shifted((scale / g * motion[stretch]).tolist(), at, width)
 
     def terms_of(time: float, left: float, side: int, u: float, rate: float) -> list[float]:
-        """Return the series of the motion over what is left of a stretch."""
+        """Return the series of the motion over the remainder of a stretch."""
         stretch = min(int((time + 0.5 * left) / step), segments.count - 1)
         at, width = time / step - stretch, left / step
         push = [side * c for c in coefficients(segments.horizontal, stretch, at, width)]
@@ -204,41 +204,41 @@ def _inner_states(  # noqa: PLR0917 - a history, and what it ran on
     def states(
         start: tuple[float, float, float], side: int, until: float, *, to_the_ground: bool
     ) -> list[tuple[float, float, float]]:
-        """Return states so near to each other that quintics join them, up to the end of the same stretch at most."""
+        """Return states close enough for quintics, up to the end of the stretch at most."""
         alpha = parameters.side(side).slenderness_angle
         time, rotation, velocity = start
         u, rate = alpha - side * rotation, -side * velocity
-        found: list[tuple[float, float, float]] = []
-        while until - time > shortest and len(found) < _MOST_PARTS:
-            left = (fall if time < fall - shortest and fall < until else until) - time
-            terms = terms_of(time, left, side, u, rate)
-            part = _part(terms, alpha)
-            time += part * left
-            u, rate = value(terms, part), slope(terms, part) / left
-            found.append((time, side * (alpha - u), -side * rate))
+        inner_states: list[tuple[float, float, float]] = []
+        while until - time > shortest and len(inner_states) < _MAX_PIECES:
+            remaining = (fall if time < fall - shortest and fall < until else until) - time
+            terms = terms_of(time, remaining, side, u, rate)
+            fraction = _quintic_fraction(terms, alpha)
+            time += fraction * remaining
+            u, rate = value(terms, fraction), slope(terms, fraction) / remaining
+            inner_states.append((time, side * (alpha - u), -side * rate))
             if to_the_ground and alpha - u >= 0.5 * math.pi and not time < fall - shortest:
                 break
-        return found
+        return inner_states
 
     turned = after[:-1, 0] + before[1:, 0]
     turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
     quickest = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     falls = (time[:-1] < fall - shortest) & (time[1:] > fall + shortest)
-    found: list[tuple[float, float, float]] = []
+    added: list[tuple[float, float, float]] = []
     for i in np.flatnonzero((turned != 0.0) & (falls | (quickest * np.diff(time) > LONG))).tolist():
         start, side = (float(time[i]), *after[i].tolist()), 1 if turned[i] > 0.0 else -1
         inner = states(start, side, float(time[i + 1]), to_the_ground=False)
-        found += [state for state in inner if state[0] < time[i + 1] - shortest]
+        added += [state for state in inner if state[0] < time[i + 1] - shortest]
     if trajectory.outcome is Outcome.OVERTURNED and not np.isfinite(trajectory.rotation[-1]):
         until = (math.floor(float(time[-1]) / step + 1e-9) + 1.0) * step
-        found += states((float(time[-1]), *after[-1].tolist()), trajectory.side, until, to_the_ground=True)
-    return found
+        added += states((float(time[-1]), *after[-1].tolist()), trajectory.side, until, to_the_ground=True)
+    return added
 
 
-def _part(terms: list[float], alpha: float) -> float:
-    """Return the part over which what a quintic leaves out stays small."""
-    part = 1.0
+def _quintic_fraction(terms: list[float], alpha: float) -> float:
+    """Return the fraction over which the powers beyond a quintic stay small."""
+    fraction = 1.0
     for k in range(6, len(terms)):
-        if abs(terms[k]) * part**k > _TOLERANCE * alpha:
-            part = (_TOLERANCE * alpha / abs(terms[k])) ** (1.0 / k)
-    return part
+        if abs(terms[k]) * fraction**k > _TOLERANCE * alpha:
+            fraction = (_TOLERANCE * alpha / abs(terms[k])) ** (1.0 / k)
+    return fraction

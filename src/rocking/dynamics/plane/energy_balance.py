@@ -1,4 +1,4 @@
-"""Where the energy goes, and the forces of the ground: whether pure rocking is credible under them."""
+"""Energy balance and contact forces of a response without friction, with warnings against pure rocking."""
 
 from dataclasses import dataclass
 
@@ -18,8 +18,8 @@ from rocking.messages import Message
 class ResponseEnergy:
     """Energy of a response at its samples."""
 
-    time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
-    kinetic: FloatArray  # kinetic, potential: of the body, above rest [J]
+    time: FloatArray  # times of the samples, and of a later overturning [s]
+    kinetic: FloatArray  # kinetic energy, and potential energy above rest [J]
     potential: FloatArray
     work: FloatArray  # done by the ground since the start [J]
     lost: FloatArray  # at impacts since the start [J]
@@ -29,34 +29,34 @@ class ResponseEnergy:
 
     @property
     def gap(self) -> FloatArray:
-        """What does not add up: kinetic + potential + lost - work - initial [J]."""
+        """Energy balance error: kinetic + potential + lost - work - initial [J]."""
         stored = self.kinetic + self.potential
         return np.asarray(stored + self.lost - self.work - stored[0], dtype=np.float64)  # Eq. 45
 
     @property
     def closure(self) -> float:
-        """Largest gap over the largest energy that was ever stored or lost [-]."""
+        """Largest energy balance error over the largest stored energy or loss [-]."""
         scale = max(float(np.max(self.kinetic + self.potential)), float(np.max(np.abs(self.lost))))
-        fallen = float(np.max(np.abs(self.potential)))  # a body let go far beyond balance has no other energy
+        fallen = float(np.max(np.abs(self.potential)))  # far beyond the top this is the only energy
         return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
 def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: PlaneSettings) -> ResponseEnergy:
-    """Return the energy of a response at the samples, from time zero, and at a fall after the last of them [s]."""
-    place = dense_output.places(time[1:])
+    """Return the energy of a response at times from zero [s]: the samples, and a later overturning."""
+    index = dense_output.indices(time[1:])
     both_ends = energies(dense_output, mass, settings)
-    return ResponseEnergy(time, *(np.append(values[0, 0], values[place, 1]) for values in both_ends))
+    return ResponseEnergy(time, *(np.append(values[0, 0], values[index, 1]) for values in both_ends))
 
 
 def energies(
     dense_output: DenseOutput, mass: float, settings: PlaneSettings
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the energy at both ends of the intervals, as `ResponseEnergy` has it [J] (shape (n, 2))."""
+    """Return kinetic and potential energy, work and losses at both ends of the intervals [J] (shape (n, 2))."""
     unit = (mass * settings.gravity * dense_output.semi_diagonal)[:, None]
     alpha, p = dense_output.alpha[:, None], dense_output.p[:, None]
     stored = unit * equations.energy(dense_output.rotation, dense_output.velocity, alpha, p, linear=settings.linear)
     kinetic = unit * 0.5 * np.square(dense_output.velocity / p)
-    # what one interval ends with and the next one starts without was lost in between
+    # the energy difference between the end of an interval and the start of the next is lost
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
     work = np.concatenate([[0.0], np.cumsum(mass * dense_output.work(settings))])
     return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)
@@ -68,15 +68,14 @@ _FOLLOWS = "use simulate(body, motion, friction=...)"
 
 @dataclass(frozen=True, repr=False)
 class GroundForces:
-    """Forces of the ground at the samples, and the friction that rocking without slip takes."""
+    """Contact forces at the samples, and friction demand of rocking without slip."""
 
-    time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
-    horizontal: FloatArray  # horizontal, vertical: force of the ground on the body, to the right and upwards [N]
+    time: FloatArray  # times of the samples, and of a later overturning [s]
+    horizontal: FloatArray  # horizontal and vertical force on the body, to the right and upwards [N]
     vertical: FloatArray
-    # smallest vertical force until the centre passes over the foot for good; below zero the body would leave the ground
-    # [N]
+    # smallest vertical force up to the overturning time; a negative force is tensile [N]
     least_vertical: float
-    # largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-]
+    # largest |horizontal / vertical| up to this time; infinite where the vertical force vanishes [-]
     friction_of_motion: float
     friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
 
@@ -85,16 +84,16 @@ class GroundForces:
 
     @property
     def friction_demand(self) -> float:
-        """Coefficient of friction that the whole response takes [-]."""
+        """Friction demand of the response, motion and impacts [-]."""
         return max(self.friction_of_motion, self.friction_of_impacts)
 
     @property
     def loses_contact(self) -> bool:
-        """Whether the ground would have to pull at these times; `Response.lost_contact` knows of what follows, too."""
+        """True if the force is tensile at these times; `Response.lost_contact` includes later times."""
         return self.least_vertical < 0.0
 
     def warnings(self, friction: float = 0.5) -> list[str]:
-        """Return why pure rocking is not credible: loss of contact, and what `slips` says; empty if it is credible."""
+        """Return the reasons against pure rocking: loss of contact, and those of `slips`; empty if there are none."""
         slips = self.slips(friction)
         if not self.loses_contact:
             return slips
@@ -102,11 +101,11 @@ class GroundForces:
         return [Message("the contact force becomes tensile: {leaves}; {consequence}", facts), *slips]
 
     def slips(self, friction: float = 0.5) -> list[str]:
-        """Return why feet that do not slip are not credible, in plain words; empty if they are."""
+        """Return the reasons against feet without slip, as sentences; empty if there are none."""
         friction = checks.positive("friction", friction)
-        found: list[str] = []
+        warnings: list[str] = []
         if not self.loses_contact and self.friction_of_motion > friction:
-            found.append(
+            warnings.append(
                 Message(
                     "rocking without slip needs a coefficient of friction of {needed:.2f}; with "
                     "{friction:g} the body slides; {consequence}",
@@ -114,31 +113,31 @@ class GroundForces:
                 )
             )
         if self.friction_of_impacts > friction:
-            found.append(
+            warnings.append(
                 Message(
                     "impacts without slip need a coefficient of friction of {needed:.2f}; with "
                     "{friction:g} the foot slips and loses more energy; {consequence}",
                     {"needed": self.friction_of_impacts, "friction": friction, "consequence": _FOLLOWS},
                 )
             )
-        return found
+        return warnings
 
 
 def contact_of(
     trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: PlaneSettings
 ) -> GroundForces:
-    """Return the forces of the ground at the samples of a response, and at a fall after the last of them [s]."""
+    """Return the contact forces of a response at the samples, and at a later overturning [s]."""
     f_x, f_z, demand = forces(dense_output, settings.gravity)
-    # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
+    # after overturning friction does not matter; the start counts even beyond the top
     late = dense_output.start >= trajectory.overturning_time - 1e-9 * dense_output.length
     standing = np.stack([~late, ~late], axis=1)
     standing[0, 0] = True
-    place = dense_output.places(time[1:])
+    index = dense_output.indices(time[1:])
     mass = body.mass
     return GroundForces(
         time=time,
-        horizontal=mass * np.concatenate([[f_x[0, 0]], f_x[place, 1]]),
-        vertical=mass * np.concatenate([[f_z[0, 0]], f_z[place, 1]]),
+        horizontal=mass * np.concatenate([[f_x[0, 0]], f_x[index, 1]]),
+        vertical=mass * np.concatenate([[f_z[0, 0]], f_z[index, 1]]),
         least_vertical=mass * float(f_z[standing].min()),
         friction_of_motion=float(demand[standing].max()),
         friction_of_impacts=_friction_of_impacts(trajectory, body),
@@ -147,7 +146,7 @@ def contact_of(
 
 def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return horizontal and vertical force over mass at both ends of intervals [N/kg], and the friction demand [-]."""
-    # the demand is infinite where the ground would have to pull
+    # the demand is infinite where the force is tensile
     side = dense_output.side[:, None]
     f_x, f_z = equations.reactions(
         dense_output.rotation, dense_output.velocity, dense_output.acceleration, np.where(side == 0.0, 1.0, side),
@@ -164,11 +163,11 @@ def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, Float
 
 def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:
     sides = {foot: body.side(foot) for foot in FEET}
-    most = 0.0
+    largest = 0.0
     for event in trajectory.events:
         if event.kind is EventKind.IMPACT:
             onto: Foot = "right" if event.side > 0 else "left"
             new, old = sides[onto], sides[opposite(onto)]
             ratio = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, event.coefficient)
-            most = max(most, abs(float(ratio)))
-    return most
+            largest = max(largest, abs(float(ratio)))
+    return largest

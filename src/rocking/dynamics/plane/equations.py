@@ -1,6 +1,6 @@
-"""The equations of motion of a rocking body, and what follows from them without integrating (docs/theory/rocking.md).
+"""Equations of motion of a rocking body, and closed forms derived from them (docs/theory/rocking.md).
 
-All functions take numbers or arrays.
+All functions accept numbers or arrays.
 """
 
 import math
@@ -30,18 +30,18 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
     if linear:
         return np.asarray(kinetic + size * (angle - 0.5 * size))  # Eq. 30
-    # cos a - cos b as a product keeps the digits of small rotations
+    # cos a - cos b as a product, without cancellation at small rotations
     return np.asarray(kinetic + 2.0 * np.sin(angle - 0.5 * size) * np.sin(0.5 * size))  # Eq. 17
 
 
 def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
-    """Return the energy that a body needs to pass over its foot, over m g R; ``1 - cos(alpha)`` [-]."""
+    """Return the energy barrier of overturning over m g R, ``1 - cos(alpha)`` [-]."""
     angle = np.asarray(alpha)
     return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))  # Eq. 31
 
 
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
-    """Return the rotation at which a freely rocking body turns round.
+    """Return the amplitude of a freely rocking body.
 
     energy_over_mgr: energy above rest, over m g R, not above that at the top [-]. Returns |theta| [rad].
 
@@ -53,7 +53,7 @@ def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) 
     return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * each(math.asin, np.sqrt(0.5 * left))))  # Eq. 32
 
 
-def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of the equations
+def reactions(  # noqa: PLR0917 - the state of body and ground in the order of the equations
     rotation: Any,
     angular_velocity: Any,
     acceleration: Any,
@@ -74,13 +74,13 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
 
 
 def friction_of_impact(height: float, old_lever: float, new_lever: float, coefficient: Any) -> FloatArray:
-    """Return the friction that an impact without slip needs, of the impulses, h (1 - r) / (b_old + b_new r) [-]."""
+    """Return the friction demand of an impact without slip, h (1 - r) / (b_old + b_new r) [-]."""
     r = np.asarray(coefficient)
     return np.asarray(height * (1.0 - r) / (old_lever + new_lever * r))  # Eq. 5
 
 
 class EventKind(IntEnum):
-    """What happened."""
+    """Kind of an event."""
 
     UPLIFT = 0
     IMPACT = 1
@@ -89,11 +89,11 @@ class EventKind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An uplift, an impact or a coming to rest."""
+    """An uplift, an impact or the start of rest."""
 
-    time: float  # when [s]
-    kind: EventKind  # what
-    side: int  # +1 or -1: the side on which the body stands from then on
+    time: float  # [s]
+    kind: EventKind
+    side: int  # foot in contact after the event: +1 right, -1 left
     before: float = 0.0  # before, after: angular velocities, of an impact [rad/s]
     after: float = 0.0
     coefficient: float = 0.0  # coefficient of restitution, of an impact [-]
@@ -107,32 +107,31 @@ class Trajectory:
     rotation: FloatArray
     angular_velocity: FloatArray
     events: list[Event] = field(repr=False)  # in order of time
-    outcome: Outcome  # how it ended
-    status: Status  # whether it could be computed
-    side: int  # +1 or -1 to which it overturned, else 0
-    peak_rotation: float  # theta of largest size; a quarter turn if it overturned [rad]
-    peak_time: float  # when [s]
+    outcome: Outcome
+    status: Status
+    side: int  # side of overturning, +1 or -1; 0 without overturning
+    peak_rotation: float  # theta of largest size; a quarter turn after overturning [rad]
+    peak_time: float  # [s]
     peak_velocity: float  # largest |theta'| [rad/s]
-    # when the centre of mass passed over the foot for the last time, or the end of the motion if it does so later; NaN
-    # if it did not overturn [s]
+    # last passage of the centre of mass over the foot, or the end of the motion if the passage is later; NaN without
+    # overturning [s]
     overturning_time: float
-    impacts: int  # impacts, uplifts: how many
+    impacts: int  # numbers of impacts and uplifts
     uplifts: int
-    truncation: float  # sum of what the series of the steps leave out: no measure of accuracy, which takes a twin [rad]
-    # smallest normal force of the ground while rocking over the weight m g, up to where a body that overturns passes
-    # over its foot for good; at samples, uplifts and impacts; below zero the ground would have to pull; NaN if it never
-    # rocked [-]
+    truncation: float  # sum of the truncation errors of the steps, no measure of the global error [rad]
+    # smallest normal contact force during rocking over the weight m g, up to the overturning time, at samples, uplifts
+    # and impacts; a negative force is tensile; NaN without rocking [-]
     least_force: float
     # largest ratio of horizontal to normal force at the same instants; infinite where contact is lost [-]
     friction_demand: float
-    engine: str  # which engine, and how
+    engine: str  # engine and method
 
     @property
     def first_uplift(self) -> float:
-        """When the body was first lifted from rest; NaN if never [s]."""
+        """Time of the first uplift from rest; NaN without uplift [s]."""
         return next((event.time for event in self.events if event.kind is EventKind.UPLIFT), math.nan)
 
     @property
     def still_rocking(self) -> bool:
-        """Whether the body stands, but does not yet rest at the last sample."""
+        """True if the body has not overturned and still moves at the last sample."""
         return self.outcome is Outcome.ROCKED and bool(self.rotation[-1] != 0.0 or self.angular_velocity[-1] != 0.0)

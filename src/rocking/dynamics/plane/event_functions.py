@@ -1,4 +1,4 @@
-"""What holds a body down, stretch by stretch: when it is lifted, and when impacts that die out bring it to rest."""
+"""Restoring moments of a body by stretch: times of uplift, and decay of impacts to rest."""
 
 import math
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class Push:
 
 
 class RestoringMoments:
-    """What holds a body down, stretch by stretch."""
+    """Restoring moments of a body by stretch."""
 
     def __init__(self, parameters: RockingParameters, push: Push, *, linear: bool) -> None:
         self.push = push
@@ -33,18 +33,18 @@ class RestoringMoments:
             moment = push.vertical * sine + push.horizontal * (sign * self._cosines[sign])  # Eq. 24
             moment[:, 0] += sine
             self.moments[sign] = moment
-        low = {side: m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for side, m in self.moments.items()}
-        self._candidates = np.flatnonzero((low[1] <= 0.0) | (low[-1] <= 0.0))
+        lower_bounds = {sign: m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for sign, m in self.moments.items()}
+        self._candidates = np.flatnonzero((lower_bounds[1] <= 0.0) | (lower_bounds[-1] <= 0.0))
         self._stops = np.append(
             np.flatnonzero(_jumps(push.horizontal) | _jumps(push.vertical)) + 1, len(push.horizontal)
         )
 
     def held(self, sign: int, stretch: int, tau: float) -> float:
-        """Return the holding moment on a side, over m g R; above zero where the body is held [-]."""
+        """Return the restoring moment on a side over m g R; positive without uplift [-]."""
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
-        """Return when the body is next lifted, and the side on which it then stands; None if it never is."""
+        """Return stretch, time within it, and side of the next uplift; None without uplift."""
         for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
             start = tau if k == stretch else 0.0
             right, left = self._release(1, k, start), self._release(-1, k, start)
@@ -52,61 +52,61 @@ class RestoringMoments:
                 return k, right, 1
             if left < right:
                 return k, left, -1
-            if right <= 1.0:  # both at once: the ground falls faster than the body would
+            if right <= 1.0:  # both sides at once: the ground accelerates downwards by more than g
                 pushed = value(self.push.horizontal[k].tolist(), right)
                 if pushed:
                     return k, right, -1 if pushed > 0.0 else 1
         return None
 
     def until_jump(self, stretch: int) -> int:
-        """Return how many stretches there are up to the end, or to where a record jumps to rest."""
+        """Return the number of stretches up to the end, or to a jump of the record to rest."""
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
     def window(self, stretch: int, tau: float, stretches: int) -> tuple[dict[int, float], float, float] | None:
-        """Return what holds the body down from an instant to the end of some stretches; None if a side is not held."""
-        # least holding moment on each side [-], a bound on the total variation of the logarithm of the holding moments
-        # [-], and one on their change with the rotation [1/rad]
+        """Return bounds of the restoring moments from an instant to the end of the last stretch; None on uplift."""
+        # smallest restoring moment on each side [-], bound on the total variation of the logarithm of the moments [-],
+        # and bound on their change with the rotation [1/rad]
         rows = slice(stretch, stretch + stretches)
-        x_least, x_most, x_variation = _extent(self.push.horizontal[rows], tau)
-        z_least, z_most, z_variation = _extent(self.push.vertical[rows], tau)
-        low = {
-            sign: (1.0 + z_least) * self._sines[sign] + min(sign * x_least, sign * x_most) * self._cosines[sign]
+        x_min, x_max, x_variation = _extent(self.push.horizontal[rows], tau)
+        z_min, z_max, z_variation = _extent(self.push.vertical[rows], tau)
+        min_moments = {
+            sign: (1.0 + z_min) * self._sines[sign] + min(sign * x_min, sign * x_max) * self._cosines[sign]
             for sign in (1, -1)
         }
-        if not (low[1] > 0.0 and low[-1] > 0.0):
+        if not (min_moments[1] > 0.0 and min_moments[-1] > 0.0):
             return None
-        variation = x_variation * max(self._cosines[k] / low[k] for k in low)  # Eq. 38
-        variation += z_variation * max(self._sines[k] / low[k] for k in low)
-        steepness = max(abs(1.0 + z_least), abs(1.0 + z_most)) + max(abs(x_least), abs(x_most))  # Eq. 39
-        return low, variation, steepness
+        variation = x_variation * max(self._cosines[k] / min_moments[k] for k in min_moments)  # Eq. 38
+        variation += z_variation * max(self._sines[k] / min_moments[k] for k in min_moments)
+        steepness = max(abs(1.0 + z_min), abs(1.0 + z_max)) + max(abs(x_min), abs(x_max))  # Eq. 39
+        return min_moments, variation, steepness
 
     def _release(self, sign: int, stretch: int, start: float) -> float:
         moment = self.moments[sign][stretch].tolist()
         if value(moment, start) < 0.0:
             return start
-        rest = shifted(moment, start, 1.0 - start)
-        if len(rest) == 2:
-            if not rest[0] + rest[1] < 0.0:
+        tail = shifted(moment, start, 1.0 - start)
+        if len(tail) == 2:
+            if not tail[0] + tail[1] < 0.0:
                 return 2.0
-            return start + (1.0 - start) * min(max(-rest[0] / rest[1], 0.0), 1.0)
-        rest[0] = max(rest[0], 5e-324)
-        fall = first_fall(rest)
+            return start + (1.0 - start) * min(max(-tail[0] / tail[1], 0.0), 1.0)
+        tail[0] = max(tail[0], 5e-324)
+        fall = first_fall(tail)
         return 2.0 if fall is None else start + fall * (1.0 - start)
 
 
 def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
-    """Least, most and variation of a motion over stretches, the first from tau on; exact for straight lines."""
+    """Return minimum, maximum and variation of a motion over stretches, from tau of the first; exact for lines."""
     if rows.shape[1] == 2:
         values = np.concatenate([[value(rows[0].tolist(), tau)], rows.sum(axis=1)])
         return (float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
-    least = rows[:, 0] + np.minimum(rows[:, 1:], 0.0).sum(axis=1)
-    most = rows[:, 0] + np.maximum(rows[:, 1:], 0.0).sum(axis=1)
+    lower = rows[:, 0] + np.minimum(rows[:, 1:], 0.0).sum(axis=1)
+    upper = rows[:, 0] + np.maximum(rows[:, 1:], 0.0).sum(axis=1)
     jumps = np.abs(rows[1:, 0] - rows[:-1].sum(axis=1)).sum()
-    return (float(least.min()), float(most.max()), float(np.abs(rows[:, 1:]).sum() + jumps))
+    return (float(lower.min()), float(upper.max()), float(np.abs(rows[:, 1:]).sum() + jumps))
 
 
 def _jumps(lines: FloatArray) -> np.ndarray:
-    """Where records jump between two stretches; smooth motions count their jumps as variation."""
+    """Return True where a record jumps between two stretches; in smooth motions jumps count as variation."""
     if lines.shape[1] > 2:
         return np.zeros(len(lines) - 1, dtype=bool)
     gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
@@ -114,11 +114,11 @@ def _jumps(lines: FloatArray) -> np.ndarray:
 
 
 _LONGEST_WINDOW = 40.0
-_HEIGHTS = 0.1  # what the heights of flights to rest may add to the logarithm of their gain
-NOTHING = 1e-9  # speed over p alpha that is none: a body that the ground holds, and that is no faster, is at rest
+_HEIGHTS = 0.1  # bound on the contribution of rocking amplitudes to the logarithm of the gain
+NOTHING = 1e-9  # speed over p alpha that counts as rest
 
 
-def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
+def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     parameters: RockingParameters,
     ground: RestoringMoments,
     sign: int,
@@ -127,10 +127,10 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     tau: float,
     rest_speed: float,
 ) -> bool:
-    """Return whether the impacts to come provably add up to rest before the body could rise again."""
-    # Flights take disjoint times, so that the speed gained by moments that change is bounded by their total variation;
-    # the sum of the flights is a geometric series. The proof is in docs/theory/rest.md. after: speed after the impact
-    # [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below `NOTHING` it always is [-].
+    """Return True if the next impacts provably decay to rest before the body could rise again."""
+    # The half cycles have disjoint times, so that the total variation of the moments bounds the speed gain; their sum
+    # is a geometric series. The proof is in docs/theory/rest.md. after: speed after the impact [rad/s]; rest_speed:
+    # largest speed over p alpha for which rest is considered; it always is below `NOTHING` [-].
     side = parameters.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
     held = ground.held(sign, stretch, tau)
@@ -139,16 +139,16 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     other, across = parameters.side(-sign), ground.held(-sign, stretch, tau)
     if not (after <= rest_speed * unit and held > 0.0 and across > 0.0):
         return False
-    # all in units of stretches; the flights under the moments of now, as a guess of the time they take
+    # in units of stretches; the half cycles under the present moments estimate the time to rest
     step = ground.push.step
-    one, two = ((k.frequency_parameter * step) ** 2 for k in (side, other))
+    p2, p2_other = ((k.frequency_parameter * step) ** 2 for k in (side, other))
     r, q = parameters.largest(sign), parameters.largest(-sign)
     speed, lost = after * step, 1.0 - r * q
-    flights, rate = 2.0 * speed * (two * across + q * one * held), one * held * (two * across) * lost  # Eq. 37
+    flights, rate = 2.0 * speed * (p2_other * across + q * p2 * held), p2 * held * (p2_other * across) * lost  # Eq. 37
     if not flights < _LONGEST_WINDOW * rate:
         return False
-    left, guess = 1.0 - tau, 1.5 * (flights / rate)
-    stretches = min(int(guess - left) + 2, ground.until_jump(stretch)) if guess > left else 1
+    remaining, guess = 1.0 - tau, 1.5 * (flights / rate)
+    stretches = min(int(guess - remaining) + 2, ground.until_jump(stretch)) if guess > remaining else 1
     window = ground.window(stretch, tau, stretches)
     if window is None:
         return False
@@ -156,9 +156,9 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     low, low_ = lows[sign], lows[-sign]
     x = 0.5 * (variation + _HEIGHTS)
     gain = 1.0 + x + x * x  # more than exp(x) up to x = 1
-    heights = steepness * (speed * gain) ** 2 / min(one * low * low, two * low_ * low_)  # Eq. 40
-    small = 2.2 * heights * (1.0 + q * q) <= _HEIGHTS * (1.0 - (r * q) ** 2) and heights <= 0.3
-    if not (x <= 1.0 and small):
+    heights = steepness * (speed * gain) ** 2 / min(p2 * low * low, p2_other * low_ * low_)  # Eq. 40
+    is_small = 2.2 * heights * (1.0 + q * q) <= _HEIGHTS * (1.0 - (r * q) ** 2) and heights <= 0.3
+    if not (x <= 1.0 and is_small):
         return False
-    total = 2.0 * speed * gain * (1.0 / (one * low) + q / (two * low_)) / (lost * (1.0 - heights))  # Eq. 16
-    return bool(total <= left + (stretches - 1))
+    total = 2.0 * speed * gain * (1.0 / (p2 * low) + q / (p2_other * low_)) / (lost * (1.0 - heights))  # Eq. 16
+    return bool(total <= remaining + (stretches - 1))

@@ -1,4 +1,4 @@
-"""The fast engine of pure rocking: whether it is there, arrays in and out, and one history with all its samples."""
+"""The fast engine of pure rocking: availability, arrays in and out, and one history with all samples."""
 
 import math
 from collections.abc import Sequence
@@ -26,32 +26,32 @@ RESULTS: dict[str, Any] = {
     "impacts": np.int64, "uplifts": np.int64, "least_force": np.float64, "friction_demand": np.float64,
     "still_rocking": np.int8,
 }  # fmt: skip
-"""What the fast engine reports for every history."""
+"""Results of the fast engine for every history, with their types."""
 
 
-_NOT_FINITE = "ground accelerations must be finite [m/s2], got NaN or infinity in a motion; a gap in a record?"
+_NOT_FINITE = "ground accelerations must be finite [m/s2], got NaN or infinity in a motion; check the record for gaps"
 _COMPILED = CompiledEngine(
     "rocking.dynamics._engine",
-    "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)",
+    "the fast engine was not built; install rocking with a C++17 compiler (in a checkout, `make engine`)",
 )
 available, module = _COMPILED.available, _COMPILED.module
 instruction_sets, instruction_set = _COMPILED.instruction_sets, _COMPILED.instruction_set
 
 
-def chosen(asked: str, law: ImpactLaw | None = None) -> str:
-    """Return which engine will run, and say so if it is not the one that users expect."""
-    if law is None or law.tabulated or asked == "reference":
-        return _COMPILED.chosen(asked)
-    if checks.one_of("engine", asked, ENGINES) == "fast":
+def chosen(requested: str, law: ImpactLaw | None = None) -> str:
+    """Return the name of the engine that runs; warn if "auto" leads to the slow one."""
+    if law is None or law.tabulated or requested == "reference":
+        return _COMPILED.chosen(requested)
+    if checks.one_of("engine", requested, ENGINES) == "fast":
         raise InvalidValueError(
-            "the fast engine knows tables, not {law}; {parameter} must be {allowed}", parameter="engine",
-            allowed="reference", value=asked, law=type(law).__name__,
+            "the fast engine does not support {law}; {parameter} must be {allowed}", parameter="engine",
+            allowed="reference", value=requested, law=type(law).__name__,
         )  # fmt: skip
     return "reference"
 
 
 def library_of(segments: Sequence[Segments]) -> Any:
-    """Return motions as the engine keeps them, all of the same degree, all with or all without a vertical part."""
+    """Return motions in the form of the engine: of equal degree, all with or all without a vertical component."""
     if not segments:
         raise InvalidValueError("motions must be at least one, got none")
     degree = segments[0].degree
@@ -59,75 +59,75 @@ def library_of(segments: Sequence[Segments]) -> Any:
     if degree not in {1, 7} or any(s.degree != degree for s in segments):
         raise InvalidValueError("motions in one batch must be all records or all pulses; sample the pulses")
     if degree > 1 and vertical:
-        raise InvalidValueError("a pulse has no vertical part; sample it")
+        raise InvalidValueError("a pulse cannot have a vertical component; sample it")
     columns = degree + 1 if degree > 1 else 1 + vertical
     data = np.empty((sum(s.count + 2 for s in segments), columns))
-    places = np.empty((3, len(segments)), np.int64)
-    used = 0
-    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name
+    offsets = np.empty((3, len(segments)), np.int64)
+    row_count = 0
+    with np.errstate(invalid="ignore", over="ignore"):  # numbers that are not finite are refused below
         for k, motion in enumerate(segments):
-            rows, before, still = _laid(motion, data[used:])
-            places[:, k] = used * columns, before, still
-            used += rows
+            rows, before, still = _write_motion(motion, data[row_count:])
+            offsets[:, k] = row_count * columns, before, still
+            row_count += rows
     steps = np.array([s.step for s in segments])
-    return module().Library(data[:used].ravel(), degree, vertical, *places, steps)
+    return module().Library(data[:row_count].ravel(), degree, vertical, *offsets, steps)
 
 
-def _laid(segments: Segments, room: FloatArray) -> tuple[int, int, int]:
-    """Write a motion into the first rows; their number, stretches up to the jump to rest, and those after it."""
+def _write_motion(segments: Segments, rows: FloatArray) -> tuple[int, int, int]:
+    """Write a motion into the first rows; return the number of rows, and of stretches before and after a jump."""
     count, still = segments.count, 0
     if segments.degree > 1:
-        room[:count] = segments.horizontal
-        if not np.isfinite(room[:count]).all():
+        rows[:count] = segments.horizontal
+        if not np.isfinite(rows[:count]).all():
             raise InvalidValueError(_NOT_FINITE)
         return count, count, 0
-    parts = [segments.horizontal] if segments.vertical is None else [segments.horizontal, segments.vertical]
-    if len(parts) < room.shape[1]:
-        room[: count + 1, 1] = 0.0
-    joined = [_continuous(lines, room[: count + 1, k]) for k, lines in enumerate(parts)]
+    components = [segments.horizontal] if segments.vertical is None else [segments.horizontal, segments.vertical]
+    if len(components) < rows.shape[1]:
+        rows[: count + 1, 1] = 0.0
+    joined = [_continuous(lines, rows[: count + 1, k]) for k, lines in enumerate(components)]
     if not all(joined):
-        before = _jump(parts, room[: count + 1], segments.step)
+        before = _jump(components, rows[: count + 1], segments.step)
         still = count - before
-        room[before] = [lines[before - 1].sum() for lines in parts] + [0.0] * (room.shape[1] - len(parts))
-        room[before + 1 : count + 2] = 0.0
+        rows[before] = [lines[before - 1].sum() for lines in components] + [0.0] * (rows.shape[1] - len(components))
+        rows[before + 1 : count + 2] = 0.0
     return count + (2 if still else 1), count - still, still
 
 
 def _continuous(lines: FloatArray, samples: FloatArray) -> bool:
-    """Write the samples that lines join, and tell whether all lines end where the next one starts."""
+    """Write the samples that lines join; return True if the lines are continuous."""
     samples[:-1], samples[-1] = lines[:, 0], lines[-1, 0] + lines[-1, 1]
     return bool(_gaps(lines, samples).max(initial=0.0) <= _allowed(samples) < math.inf)
 
 
 def _gaps(lines: FloatArray, samples: FloatArray) -> FloatArray:
-    """How far the lines miss the next ones."""
+    """Return the gaps between consecutive lines."""
     gaps = lines[:-1, 1] + samples[:-2]
     gaps -= samples[1:-1]
     return np.abs(gaps, out=gaps)
 
 
 def _allowed(samples: FloatArray) -> float:
-    """Gap that is rounding."""
+    """Return the largest gap that is rounding."""
     return 1e-14 * float(max(samples.max(), -samples.min()))
 
 
-def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
-    """Return how many stretches come before the jump to rest, or refuse any other jump."""
-    if not all(np.isfinite(x).all() for x in (*parts, samples)):
+def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int:
+    """Return the number of stretches before the jump to rest; refuse other jumps."""
+    if not all(np.isfinite(x).all() for x in (*components, samples)):
         raise InvalidValueError(_NOT_FINITE)
-    columns = zip(parts, samples.T, strict=False)
+    columns = zip(components, samples.T, strict=False)
     jumps = np.flatnonzero(np.any([_gaps(lines, x) > _allowed(x) for lines, x in columns], axis=0))
     before = int(jumps[0]) + 1
-    if jumps.size > 1 or any(np.any(lines[before:]) for lines in parts):
+    if jumps.size > 1 or any(np.any(lines[before:]) for lines in components):
         raise InvalidValueError(
-            "the fast engine takes records without jumps between their samples, got {jumps}, the first after {time:g} "
-            "s", jumps=jumps.size, time=before * step, hint='engine="reference" takes them',
+            "the fast engine needs records without jumps between samples, got {jumps}, the first after {time:g} s",
+            jumps=jumps.size, time=before * step, hint='use engine="reference"',
         )  # fmt: skip
     return before
 
 
 def empty_results(count: int) -> Arrays:
-    """Return arrays for the results of some histories, one a key of `RESULTS`: NaN or 0 until the engine writes."""
+    """Return arrays for the results of histories by the keys of `RESULTS`, filled with NaN or 0."""
     return {
         name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype)
         for name, dtype in RESULTS.items()
@@ -135,7 +135,7 @@ def empty_results(count: int) -> Arrays:
 
 
 def common(settings: PlaneSettings, law: ImpactLaw) -> Arrays:
-    """Return the arguments that all calls of the fast engine share."""
+    """Return the arguments common to all calls of the fast engine."""
     return {
         "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
         "gravity": settings.gravity, "longest_step": settings.longest_step, "rest": settings.rest_speed,
@@ -158,15 +158,15 @@ def run(
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
-    """Return one history by the engine that was asked for; the fast one gives the bits that it gives within a batch."""
-    taken = chosen(engine, parameters.law)
+    """Return one history by the requested engine; the fast one gives the same bits as within a batch."""
+    engine_name = chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(
-            "{parameter} must be {allowed} for one history, got {value}: orders 4 and 6 exist only in batches "
-            "(simulate_many), for nonlinear equations and motions without a vertical part", parameter="order",
+            "{parameter} must be {allowed} for one history, got {value}: orders 4 and 6 apply only to batches "
+            "(simulate_many), nonlinear equations and motions without a vertical component", parameter="order",
             allowed=_ORDER, value=settings.order,
         )  # fmt: skip
-    if taken == "reference":
+    if engine_name == "reference":
         from rocking.dynamics.plane.reference import Reference
 
         return Reference(parameters, segments, settings, scale=scale, stream=stream).run(rotation, velocity)
@@ -177,31 +177,31 @@ def run(
     }  # fmt: skip
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
     arguments = common(settings, parameters.law)
-    noted = module().run_single(
+    raw_events = module().run_single(
         library, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
     results = {name: values[0].item() for name, values in out.items()}
     results |= {"outcome": _OUTCOMES[results["outcome"]], "status": _STATUSES[results["status"]]}
     if results["outcome"] in {Outcome.OVERTURNED, Outcome.FAILED}:  # nothing was written after the last event
         written = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
-        latest = int(max((event[0] for event in noted), default=0.0) / segments.step)
+        latest = int(max((event[0] for event in raw_events), default=0.0) / segments.step)
         after = max(written[-1] if written.size else 0, latest) + 1
         rotations[after:] = velocities[after:] = np.nan
-    order = 6 if _takes_order_six(parameters, segments, settings, scale) else _ORDER
-    # a wider register brings a single history nothing: the kernels of AVX2 serve it
+    order = 6 if _uses_order_six(parameters, segments, settings, scale) else _ORDER
+    # a single history uses the kernels of AVX2: wider registers have no effect
     kernels = "avx2" if arguments["isa"] == "avx512" and order == _ORDER else arguments["isa"]
-    events = [Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in noted]
-    for name in ("first_uplift", "still_rocking"):  # the trajectory knows them
+    events = [Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in raw_events]
+    for name in ("first_uplift", "still_rocking"):  # properties of the trajectory
         del results[name]
     return Trajectory(rotations, velocities, events, engine=f"fast (Taylor, order {order}, {kernels})", **results)
 
 
-def _takes_order_six(parameters: RockingParameters, segments: Segments, settings: PlaneSettings, scale: float) -> bool:
-    """Whether the samples of a record are so close that the engine follows it with order 6."""
+def _uses_order_six(parameters: RockingParameters, segments: Segments, settings: PlaneSettings, scale: float) -> bool:
+    """Return True if the time step of a record is so short that the engine uses order 6."""
     if segments.degree != 1 or settings.linear:
         return False
-    parts = [part for part in (segments.horizontal, segments.vertical) if part is not None]
-    strength = sum(float(np.abs([part[:, 0], part.sum(axis=1)]).max()) for part in parts)
+    components = [component for component in (segments.horizontal, segments.vertical) if component is not None]
+    strength = sum(float(np.abs([component[:, 0], component.sum(axis=1)]).max()) for component in components)
     p = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     reach = (settings.longest_step**9 / 7200.0) ** (1.0 / 7.0)  # Eq. 54
     return bool(p * segments.step * max(1.0, abs(scale / settings.gravity) * strength) ** 0.6 < reach)

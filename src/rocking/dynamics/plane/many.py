@@ -1,4 +1,4 @@
-"""Every plane body that rocks alone under every motion at every scale with every restitution and start."""
+"""All combinations of plane bodies without friction, motions, scales, restitutions and starts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 
 
 def rocking_alone(cases: Combinations, settings: PlaneSettings) -> "xr.Dataset":
-    """Return the outcome of every combination of plane bodies that rock alone, and how sure the integration is."""
+    """Return the outcome of all combinations of plane bodies without friction, with the integration error."""
     bodies, motions, scales, starts = plane_inputs(cases)
     restitutions = cases.restitutions
-    laws = [each for each in restitutions if isinstance(each, ImpactLaw)]
+    laws = [item for item in restitutions if isinstance(item, ImpactLaw)]
     if laws and len(restitutions) > 1:
         raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
     law = laws[0] if laws else ConstantRestitution()
     all_parameters = [
-        [RockingParameters.of_body(body, each, settings.gravity) for each in restitutions] for body in bodies
+        [RockingParameters.of_body(body, item, settings.gravity) for item in restitutions] for body in bodies
     ]
-    states = np.array([rocking_start(each) for each in starts or [Start()]])
+    states = np.array([rocking_start(item) for item in starts or [Start()]])
     for row in all_parameters if starts else ():
         for state in states.tolist():
             start_within(row[0], *state)
@@ -47,14 +47,14 @@ def rocking_alone(cases: Combinations, settings: PlaneSettings) -> "xr.Dataset":
     results, work = run_rows(runner, law, count, rows, threads, cases.progress)
     if cases.twin:
         finer = replace(settings, longest_step=max(SHORTEST_STEP, 0.5 * settings.longest_step))
-        halved = RowsInPlane([each.refined(2) for each in segments], fixed, finer, cases.engine)
-        again, _ = run_rows(halved, law, count, rows, threads)
-        change = np.abs(np.abs(results["peak_rotation"]) - np.abs(again["peak_rotation"]))  # NaN without two results
-        flips = np.abs(overturned(results["outcome"]) - overturned(again["outcome"]))
+        halved = RowsInPlane([item.refined(2) for item in segments], fixed, finer, cases.engine)
+        twin, _ = run_rows(halved, law, count, rows, threads)
+        change = np.abs(np.abs(results["peak_rotation"]) - np.abs(twin["peak_rotation"]))  # NaN without two results
+        flips = np.abs(overturned(results["outcome"]) - overturned(twin["outcome"]))
         results |= {"twin_change": change, "twin_flips": flips}
     results |= flags(results)
     labels = list(map(label_of, restitutions))
-    if law.kind:  # the label of the body that keeps the least of a distribution stands for all
+    if law.kind:  # the label is that of the body with the strongest truncation
         labels = [min((row[0] for row in all_parameters), key=lambda p: min(p.left.share, p.right.share)).label]
     attributes = {
         "engine": f"fast ({instruction_set()})" if work else "reference",

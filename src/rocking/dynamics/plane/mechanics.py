@@ -15,7 +15,7 @@ from rocking.errors import PureRockingWarning
 class PlaneRocking(PlaneMechanics):
     """Pure rocking of a plane body."""
 
-    name, title, subject = "plane", "pure rocking", "a body without friction, which rocks alone"
+    name, title, subject = "plane", "pure rocking", "a plane body without friction"
     settings, is_compared = PlaneSettings, True
     options = frozenset({"engine", "stream"})
     batch_options = frozenset({"start", "rotation", "angular_velocity", "engine", "threads", "twin", "progress"})

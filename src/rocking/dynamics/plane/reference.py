@@ -1,7 +1,7 @@
-"""The reference engine: Taylor steps of free order and length, one history at a time, events located to rounding.
+"""The reference engine: Taylor steps of variable order and length, one history at a time, events located to rounding.
 
-It shares no code with the fast engine: series and zeros are computed by other means (order up to 30, lengths from the
-size of the last terms, zeros between those of the slope, by Newton's method), so that each is a check on the other.
+It has no code in common with the fast engine, so that each verifies the other: the order is up to 30, the size of the
+last terms sets the length, and zeros are located between those of the slope by Newton's method.
 """
 
 import math
@@ -21,7 +21,7 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
 _ORDER = 30
-_WHOLE = 1.0 - 1e-13
+_STRETCH_END = 1.0 - 1e-13
 
 
 class _Ended(NamedTuple):
@@ -30,7 +30,7 @@ class _Ended(NamedTuple):
 
 
 class Reference:
-    """One history."""
+    """Engine of one history."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Reference:
         vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
         if not (np.isfinite(segments.horizontal).all() and np.isfinite(vertical).all()):
             raise InvalidValueError(
-                "ground accelerations must be finite [m/s2], got NaN or infinity; a gap in a record"
+                "ground accelerations must be finite [m/s2], got NaN or infinity; check the record for gaps"
             )
         self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
         self.parameters, self.settings, self.stream, self.to_the_ground = parameters, settings, stream, to_the_ground
@@ -59,17 +59,17 @@ class Reference:
         self.stretch, self.tau = 0, 0.0
         self.impacts = self.uplifts = 0
         self.peak, self.peak_time, self.fastest, self.truncation = 0.0, 0.0, 0.0, 0.0
-        self.forces = self.forces_before = (math.inf, 0.0)  # least normal force over m g, largest friction demand
+        self.forces = self.forces_before = (math.inf, 0.0)  # smallest normal force over m g, largest friction demand
         self.over_time = math.nan
 
-        def later(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
+        def extreme_to_end(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
             return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
 
-        # strongest push either way and weakest gravity from each stretch to the end
+        # extreme push in both directions, and smallest gravity, from each stretch to the end
         h, v = self.push.horizontal, self.push.vertical
-        self.later_high = later(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
-        self.later_low = later(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
-        self.later_light = later(np.minimum(v[:, 0] + np.minimum(v[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
+        self.later_high = extreme_to_end(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
+        self.later_low = extreme_to_end(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
+        self.later_light = extreme_to_end(np.minimum(v[:, 0] + np.minimum(v[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
@@ -83,13 +83,13 @@ class Reference:
 
     def _start(self, rotation: float, velocity: float) -> _Ended | None:
         turned = self.parameters.side(1 if rotation > 0.0 else -1).slenderness_angle
-        upright = turned - abs(rotation) == turned  # turned by less than the rounding of alpha
+        upright = turned - abs(rotation) == turned  # rotation below the rounding of alpha
         self.side = 1 if rotation > 0.0 or (rotation == 0.0 and velocity > 0.0) else -1
         if upright and abs(velocity) <= NOTHING * self._p * self._alpha:
             return self._rest()
         self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
         self._raise_peak(abs(rotation), 0.0)
-        if self.u < 0.0:  # let go beyond the top: the start counts
+        if self.u < 0.0:  # start beyond the top
             self._note_force(self.u, self.rate, *self._ground_at(0, 0.0))
             self.over_time, self.forces_before = 0.0, self.forces
         self.uplifts = 1
@@ -98,55 +98,56 @@ class Reference:
 
     def _step(self) -> _Ended | None:
         """Advance to the end of the stretch, or to the first event before it."""
-        left = (1.0 - self.tau) * self.push.step
+        remaining = (1.0 - self.tau) * self.push.step
         push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, 1.0 - self.tau)
         weight = shifted(self.push.vertical[self.stretch].tolist(), self.tau, 1.0 - self.tau)
         push = [self.side * c for c in push]
         weight[0] += 1.0
         self._note_force(self.u, self.rate, push[0], weight[0])
-        kappa = (self._p * left) ** 2
-        terms = series(self.u, self.rate * left, kappa, push, weight, _ORDER, linear=self.settings.linear)  # Eq. 14
-        part = self._trusted_part(terms)
-        if not part > 0.0:
+        kappa = (self._p * remaining) ** 2
+        linear = self.settings.linear
+        terms = series(self.u, self.rate * remaining, kappa, push, weight, _ORDER, linear=linear)  # Eq. 14
+        fraction = self._trusted_part(terms)
+        if not fraction > 0.0:
             return _Ended(Outcome.FAILED, Status.NOT_FINITE)
-        scaled = [c * part**k for k, c in enumerate(terms)]
+        scaled = [c * fraction**k for k, c in enumerate(terms)]
         self.truncation += abs(scaled[-1]) + abs(scaled[-2])
-        length = left * part
+        length = remaining * fraction
         gap = [self._alpha - self.u, *(-c for c in scaled[1:])]
-        at = self._contact(gap)
+        contact = self._contact(gap)
         if gap[0] + sum(max(c, 0.0) for c in gap[1:]) > abs(self.peak):
-            for turn in turning_points(gap, 1.0 if at is None else at):
+            for turn in turning_points(gap, 1.0 if contact is None else contact):
                 self._raise_peak(value(gap, turn), self._now + turn * length)
-        if at is not None:
-            return self._impact(-slope(gap, at) / length, self.tau + at * part * (1.0 - self.tau))
-        return self._advance(scaled, length, 1.0 if part == 1.0 else self.tau + part * (1.0 - self.tau))
+        if contact is not None:
+            return self._impact(-slope(gap, contact) / length, self.tau + contact * fraction * (1.0 - self.tau))
+        return self._advance(scaled, length, 1.0 if fraction == 1.0 else self.tau + fraction * (1.0 - self.tau))
 
     def _trusted_part(self, terms: list[float]) -> float:
-        """Return the part of the step over which the last terms stay below the tolerance."""
+        """Return the fraction of the step over which the last terms stay below the tolerance."""
         if not all(map(math.isfinite, terms)):
             return 0.0
         if len(terms) <= _ORDER:
             return 1.0
         bound = self.settings.tolerance * max(self._alpha, abs(self.u))
-        part = 1.0
+        fraction = 1.0
         for k in (len(terms) - 2, len(terms) - 1):
             if abs(terms[k]) > bound:
-                part = min(part, (bound / abs(terms[k])) ** (1.0 / k))  # Eq. 52
-        return part
+                fraction = min(fraction, (bound / abs(terms[k])) ** (1.0 / k))  # Eq. 52
+        return fraction
 
     def _contact(self, gap: list[float]) -> float | None:
-        """Return the first return of |theta| to zero; a step that starts there is divided by that zero."""
+        """Return the first return of |theta| to zero; of a step that starts at zero, the next one."""
         if gap[0] > 0.0:
             return first_fall(gap)
         if gap[1] < 0.0:  # the last step ended on the ground, to rounding
             return 0.0
         if gap[1] > 0.0:
             return first_fall(gap[1:])
-        rest = gap[2:]
-        rest[0] = max(rest[0], 0.0)  # lifted a moment ago, so only rounding can be negative
-        if rest[0] > 0.0:
-            return first_fall(rest)
-        return first_fall(rest[1:]) if rest[1] > 0.0 else None
+        tail = gap[2:]
+        tail[0] = max(tail[0], 0.0)  # just after uplift only rounding can be negative
+        if tail[0] > 0.0:
+            return first_fall(tail)
+        return first_fall(tail[1:]) if tail[1] > 0.0 else None
 
     def _impact(self, speed: float, tau: float) -> _Ended | None:
         speed = max(speed, 0.0)
@@ -180,7 +181,7 @@ class Reference:
             self.over_time, self.forces_before = self._now + at, self.forces
         self.u, self.rate = end, slope(terms, 1.0) / length
         self.fastest = max(self.fastest, abs(self.rate))
-        if tau >= _WHOLE:  # before a jump to rest, where there is one
+        if tau >= _STRETCH_END:  # before a jump to rest, if any
             self._note_force(self.u, self.rate, *self._ground_at(self.stretch, 1.0))
         self._move(tau)
         if end < 0.0:
@@ -191,17 +192,17 @@ class Reference:
         return self._conclude() if self.stretch >= self.count else None
 
     def _rest(self) -> _Ended | None:
-        """Rest until the ground lifts the body, or to the end."""
-        found = self.ground.next_uplift(self.stretch, self.tau) if self.stretch < self.count else None
-        rested = 1.0 + self.push.vertical[self.stretch : self.count if found is None else found[0]]
-        pull = min(rested[:, 0].min(initial=0.0), (rested.sum(axis=1) - rested.shape[1] + 1.0).min(initial=0.0))
-        if pull < 0.0:  # without any push it stays where it is
-            self.forces = min(self.forces[0], float(pull)), math.inf
+        """Rest until the next uplift, or to the end."""
+        uplift = self.ground.next_uplift(self.stretch, self.tau) if self.stretch < self.count else None
+        rested = 1.0 + self.push.vertical[self.stretch : self.count if uplift is None else uplift[0]]
+        min_force = min(rested[:, 0].min(initial=0.0), (rested.sum(axis=1) - rested.shape[1] + 1.0).min(initial=0.0))
+        if min_force < 0.0:  # without push the body stays at rest
+            self.forces = min(self.forces[0], float(min_force)), math.inf
         calm = _Ended(Outcome.ROCKED if self.uplifts or self.impacts else Outcome.NO_UPLIFT)
-        if found is None:
+        if uplift is None:
             self.side = 0
             return calm
-        self.stretch, tau, self.side = found
+        self.stretch, tau, self.side = uplift
         self.u, self.rate = self._alpha, 0.0
         self._move(tau)
         if self.stretch >= self.count:
@@ -211,7 +212,7 @@ class Reference:
         return None
 
     def _conclude(self) -> _Ended:
-        """Let energy decide: the motion is over."""
+        """Return the outcome after the motion from the energy."""
         linear = self.settings.linear
         self._note_force(self.u, self.rate, *self._ground_at(self.count - 1, 1.0))
         self._raise_peak(self._alpha - self.u, self._now)
@@ -223,7 +224,7 @@ class Reference:
                 self.over_time, self.forces_before = self._now, self.forces
             return _Ended(Outcome.OVERTURNED)
         if not inward:
-            if passes:  # on resting ground the force grows from here to the top, unless it pulls or q < 0.3
+            if passes:  # on ground at rest the force grows up to the top, unless it is tensile or q < 0.3
                 self._note_force(self.u, self.rate, 0.0, 1.0)
                 self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)
@@ -244,7 +245,7 @@ class Reference:
         self.impacts = impacts
         return _Ended(Outcome.ROCKED)
 
-    # ---- small parts ------------------------------------------------------------------------------------------------
+    # ---- details --------------------------------------------------------------------------------------------------
 
     @property
     def _alpha(self) -> float:
@@ -259,23 +260,24 @@ class Reference:
         return (self.stretch + self.tau) * self.push.step
 
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
-        """Push towards the side on which it stands, and weight, over gravity."""
-        push, lift = (value(part[stretch].tolist(), tau) for part in (self.push.horizontal, self.push.vertical))
+        """Return the push towards the foot in contact, and the weight, over gravity [-]."""
+        push = value(self.push.horizontal[stretch].tolist(), tau)
+        lift = value(self.push.vertical[stretch].tolist(), tau)
         return self.side * push, 1.0 + lift
 
     def _note_force(self, u: float, rate: float, push: float, weight: float) -> None:
-        """Force of the ground over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along it."""
+        """Update the extreme forces over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along."""
         sine, cosine = math.sin(u), math.cos(u)
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
-        share, spin = self.parameters.side(self.side).inertia_ratio, rate / self._p
+        inertia_ratio, spin = self.parameters.side(self.side).inertia_ratio, rate / self._p
         spin *= spin  # a power would raise where this is infinite
-        up = weight - share * (moment * sine + spin * cosine)  # Eq. 33
-        along = push - share * (moment * cosine - spin * sine)  # Eq. 34
-        least, demand = self.forces
-        self.forces = min(least, up), max(demand, abs(along) / up) if up > 0.0 else math.inf  # Eq. 35
+        up = weight - inertia_ratio * (moment * sine + spin * cosine)  # Eq. 33
+        along = push - inertia_ratio * (moment * cosine - spin * sine)  # Eq. 34
+        min_force, demand = self.forces
+        self.forces = min(min_force, up), max(demand, abs(along) / up) if up > 0.0 else math.inf  # Eq. 35
 
     def _move(self, tau: float) -> None:
-        if tau < _WHOLE:
+        if tau < _STRETCH_END:
             self.tau = tau
             return
         self.stretch, self.tau = self.stretch + 1, 0.0
@@ -300,9 +302,9 @@ class Reference:
         if over or not good:
             self.rotations[self.stretch + 1 :] = np.nan
             self.velocities[self.stretch + 1 :] = np.nan
-        least, demand = self.forces_before if over else self.forces
-        rocked = good and least < math.inf
-        peak, when = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
+        min_force, demand = self.forces_before if over else self.forces
+        rocked = good and min_force < math.inf
+        peak, peak_time = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
         return Trajectory(
             self.rotations,
             self.velocities,
@@ -311,13 +313,13 @@ class Reference:
             ended.status,
             side=self.side if over else 0,
             peak_rotation=peak if good else math.nan,
-            peak_time=when if good else math.nan,
+            peak_time=peak_time if good else math.nan,
             peak_velocity=self.fastest if good else math.nan,
             overturning_time=self.over_time if over else math.nan,
             impacts=self.impacts,
             uplifts=self.uplifts,
             truncation=self.truncation if good else math.nan,
-            least_force=least if rocked else math.nan,
+            least_force=min_force if rocked else math.nan,
             friction_demand=demand if rocked else math.nan,
             engine=f"reference (Taylor, order up to {_ORDER}, tolerance {self.settings.tolerance:g})",
         )

@@ -1,4 +1,4 @@
-"""How to integrate a plane body that rocks and neither slides nor flies."""
+"""Settings of the integration of a plane body that neither slides nor flies."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,7 +8,7 @@ import numpy as np
 from rocking.dynamics.settings import SHORTEST_STEP, Settings, checked, ranged
 from rocking.errors import InvalidValueError
 
-ORDERS = (4, 6, 8)  # orders that the fast engine has been compiled for
+ORDERS = (4, 6, 8)  # orders of the fast engine
 
 
 def _checked_linear(_: str, value: object) -> bool:
@@ -25,7 +25,7 @@ def _checked_order(_: str, value: Any) -> int:
 
 @dataclass(frozen=True)
 class PlaneSettings(Settings):
-    """How to integrate a plane body without `friction`.
+    """Settings of the integration of a plane body without `friction`.
 
     Parameters
     ----------
@@ -34,22 +34,21 @@ class PlaneSettings(Settings):
     linear : bool
         Slender-linear equations: sine and cosine of the angles replaced by angle and one.
     rest_speed : float
-        Speed after an impact, over p alpha, below which the impacts to come are summed up to rest instead of being
-        resolved one by one, only where they provably end before the body could rise again [-].
+        Speed after an impact, over p alpha; after a slower impact the body comes to rest at once, if the next impacts
+        provably decay before the body could rise again [-].
     longest_step : float
         Longest Taylor step of the fast engine as p times time [-].
     order : int
-        Order of the Taylor series of the fast engine: 4, 6 or 8. With order 8, records whose samples are so close that
-        order 6 leaves out less than a hundredth of what order 8 may leave out at the longest step are followed with
-        order 6, under many g only if they are closer still. Orders 4 and 6 by themselves exist only for many histories
-        at once (`simulate_many`), with the nonlinear equations and motions without a vertical part; elsewhere they are
-        refused. The reference engine chooses its own.
+        Order of the Taylor series of the fast engine: 4, 6 or 8. With order 8, records with short time steps are
+        integrated with order 6, if its truncation error is below a hundredth of that of order 8 at the longest step.
+        Orders 4 and 6 apply only to many histories (`simulate_many`), the nonlinear equations, and motions without a
+        vertical component. The reference engine chooses its own order.
     tolerance : float
         Bound on the last two terms of a Taylor step over the angle alpha [-].
     """
 
     linear: bool = checked(False, _checked_linear)
-    rest_speed: float = ranged(0.001, 0.0, 0.1, hint="the flights must be short for the sum to hold")
+    rest_speed: float = ranged(0.001, 0.0, 0.1, hint="the sum of impacts holds for small speeds")
     longest_step: float = ranged(0.15, SHORTEST_STEP, 1.0)
     order: int = checked(8, _checked_order)
     tolerance: float = ranged(1e-15, 1e-17, 1e-3)

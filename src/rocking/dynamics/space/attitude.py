@@ -15,7 +15,7 @@ Rows = list[list[Any]]
 
 
 def rows_of(products: Sequence[Sequence[Any]]) -> Rows:
-    """Return the rotation matrix that belongs to the products of the components of a quaternion."""
+    """Return the rotation matrix from the products of the components of a quaternion."""
     (ss, sx, sy, sz), (_, xx, xy, xz), (_, _, yy, yz), (_, _, _, zz) = products
     return [
         [ss + xx - yy - zz, 2.0 * (xy - sz), 2.0 * (xz + sy)],  # Eq. 79
@@ -28,15 +28,15 @@ _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def cross(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the vector product, at a fraction of the cost of numpy's for single vectors."""
+    """Return the vector product, faster than numpy for single vectors."""
     return np.asarray(left[..., _NEXT] * right[..., _LAST] - left[..., _LAST] * right[..., _NEXT])
 
 
 def matrix(quaternion: FloatArray) -> FloatArray:
     """Return the rotation matrices, from body axes to axes of the ground, of unit quaternions (s, x, y, z) [-]."""
     q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
-    made: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
-    return made if quaternion.ndim == 1 else np.moveaxis(made, (0, 1), (-2, -1))
+    rotation: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
+    return rotation if quaternion.ndim == 1 else np.moveaxis(rotation, (0, 1), (-2, -1))
 
 
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
@@ -58,12 +58,12 @@ def normalised(quaternion: FloatArray) -> FloatArray:
 
 
 def flat(quaternion: FloatArray) -> FloatArray:
-    """Return an attitude without its tilt, which is below half a turn: that of a body on its whole base."""
+    """Return an attitude without its tilt, which is below half a turn: that of a body on its full base."""
     return normalised(np.array([quaternion[0], 0.0, 0.0, quaternion[3]]))
 
 
 def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return an attitude turned by the least angle that makes an axis of the body, nearly so already, horizontal."""
+    """Return an attitude turned by the smallest angle that makes a nearly horizontal body axis horizontal."""
     direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
     if rise == 0.0:
@@ -81,33 +81,33 @@ def tilt(quaternion: FloatArray) -> FloatArray:
 
 
 def azimuth(quaternion: FloatArray) -> FloatArray:
-    """Return directions, from x towards y in (-pi, pi], in which bodies lean; zero for a body that does not [rad]."""
+    """Return the directions of tilt, from x towards y, in (-pi, pi]; zero without tilt [rad]."""
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return each(math.atan2, y * z - s * x, x * z + s * y)  # Eq. 82
 
 
 @dataclass(frozen=True)
 class SpatialStart:
-    """Initial conditions of a body in space; what is not finite or outside its range gives the row a status.
+    """Start of a body in space; a value out of range gives the history an error status.
 
     Parameters
     ----------
     tilt : float
-        How far the body leans [rad].
+        Angle between the axis of the body and the vertical [rad].
     azimuth : float
-        In which direction, from x towards y [rad].
+        Direction of the tilt, from x towards y [rad].
     yaw : float
-        Rotation about the vertical before that [rad].
+        Rotation about the vertical, before the tilt [rad].
     angular_velocity : tuple of float
-        In axes of the ground [rad/s].
+        Angular velocity in axes of the ground [rad/s].
     height : float
-        Of the lowest point above the ground [m].
+        Height of the lowest point above the ground [m].
     velocity : tuple of float
-        Of the lowest point, in axes of the ground [m/s].
+        Velocity of the lowest point, in axes of the ground [m/s].
 
     Notes
     -----
-    A body in space without friction has `height` and `velocity` zero: it neither slides nor flies.
+    Without friction `height` and `velocity` must be zero: the body neither slides nor flies.
 
     Examples
     --------
@@ -126,11 +126,11 @@ class SpatialStart:
 
     @property
     def valid(self) -> bool:
-        """Whether the numbers are finite and within their ranges."""
-        rates = [np.asarray(each, dtype=np.float64) for each in (self.angular_velocity, self.velocity)]
+        """True if the numbers are finite and within their ranges."""
+        rates = [np.asarray(vector, dtype=np.float64) for vector in (self.angular_velocity, self.velocity)]
         numbers = [self.tilt, self.azimuth, self.yaw, self.height]
         return bool(
-            all(each.shape == (3,) and np.isfinite(each).all() for each in rates)
+            all(vector.shape == (3,) and np.isfinite(vector).all() for vector in rates)
             and all(math.isfinite(value) for value in numbers)
             and 0.0 <= self.tilt < 0.5 * math.pi
             and self.height >= 0.0
@@ -138,29 +138,29 @@ class SpatialStart:
 
     @property
     def rocks_alone(self) -> bool:
-        """Whether the lowest point is at rest on the ground, as that of a body without friction is."""
+        """True if the lowest point is at rest on the ground, as for a body without friction."""
         return not (self.height or np.any(self.velocity))
 
     @property
     def numbers(self) -> list[float]:
-        """Every number of the start, in the order of the parameters."""
-        spin, velocity = (np.ravel(each).tolist() for each in (self.angular_velocity, self.velocity))
+        """All numbers of the start, in the order of the parameters."""
+        spin, velocity = (np.ravel(vector).tolist() for vector in (self.angular_velocity, self.velocity))
         return [self.tilt, self.azimuth, self.yaw, *spin, self.height, *velocity]
 
     def check_grounded(self) -> None:
-        """Refuse a start in the air or in motion along the ground: without friction a body neither slides nor flies."""
+        """Refuse a start with height or velocity of the lowest point."""
         if not self.rocks_alone:
             raise InvalidValueError(
-                "height and velocity of the start must be 0 without friction, got {height} m and {velocity} m/s: "
-                "without friction= a body neither slides nor flies", height=f"{self.height!r:.30}",
+                "height and velocity of the start must be 0 without friction=, got {height} m and {velocity} m/s; "
+                "give friction= for sliding and flight", height=f"{self.height!r:.30}",
                 velocity=f"{self.velocity!r:.60}",
             )  # fmt: skip
 
     @property
     def quaternion(self) -> FloatArray:
         """Attitude, body axes to axes of the ground, shape (4,) [-]."""
-        leaning = turn([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0], self.tilt)
-        return product(leaning, turn([0.0, 0.0, 1.0], self.yaw))
+        tilting = turn([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0], self.tilt)
+        return product(tilting, turn([0.0, 0.0, 1.0], self.yaw))
 
     @property
     def body_velocity(self) -> FloatArray:

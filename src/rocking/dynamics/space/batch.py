@@ -1,4 +1,4 @@
-"""Every body in space under every motion at every scale with every restitution and start: arrays, and their sources."""
+"""All combinations of bodies in space, motions, scales, restitutions and starts: arrays with provenance."""
 
 import hashlib
 import json
@@ -36,23 +36,23 @@ if TYPE_CHECKING:
 Made = TypeVar("Made")
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")  # axes of the arrays of a batch, in order
 _LONG = 300.0
-_FEW = 100  # up to so many bodies are spelled out; of more of them the digest alone is kept
+_FEW = 100  # largest number of bodies in the provenance; of more bodies it contains the digest only
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialBatch:
-    """The results of a batch; every array has one axis for each of its dimensions."""
+    """Results of a batch; every array has one axis per dimension."""
 
     shape: tuple[int, ...]
-    values: dict[str, np.ndarray] = field(repr=False)  # results by name, one after another; see `rocking.quantities`
-    engine: str  # which engine ran, and how
+    values: dict[str, np.ndarray] = field(repr=False)  # flat results by name in `rocking.quantities`
+    engine: str  # engine and method
     labels: dict[str, list[object]] = field(default_factory=dict, repr=False)  # motions, restitutions, scales
-    refused: dict[int, str] = field(default_factory=dict)  # why a body was refused, by its number
+    refused: dict[int, str] = field(default_factory=dict)  # reason by index of a refused body
     provenance: dict[str, Any] = field(default_factory=dict, repr=False)  # bodies, starts, settings as plain values
     dimensions: tuple[str, ...] = DIMENSIONS
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return an array by name, as the engine gives it: in `results` flags are NaN without a result."""
+        """Return an array of the engine by name; in `results` flags are NaN without a result."""
         return self.values[name].reshape(self.shape)
 
     def __len__(self) -> int:
@@ -70,17 +70,17 @@ class SpatialBatch:
 
     @property
     def overturned(self) -> FloatArray:
-        """1 where it overturned, 0 where it did not, NaN where there is no result."""
+        """1 with overturning, 0 without, NaN without a result."""
         return overturned(self.outcome)
 
     @property
     def still_rocking(self) -> FloatArray:
-        """1 where it stands, but does not yet rest when its history ends, 0 where not, NaN where there is no result."""
+        """1 if the body has not overturned and still moves at the end, otherwise 0; NaN without a result."""
         return of_results(self.outcome, self["still_rocking"])
 
     @property
     def results(self) -> dict[str, np.ndarray]:
-        """All results by name, one after another; of flags, no result is neither 1 nor 0."""
+        """Flat results by name; flags are NaN without a result."""
         flags = {"overturned": self.overturned, "still_rocking": self.still_rocking}
         return self.values | {name: flag.ravel() for name, flag in flags.items()}
 
@@ -99,7 +99,7 @@ class SpatialBatch:
 
 
 def many_in_space(cases: Combinations, settings: SpaceBatchSettings) -> SpatialBatch:
-    """Return the outcome of every combination."""
+    """Return the outcome of all combinations."""
     return batch_in_space(
         listed(cases.bodies), motions_in_space(cases.motions), cases.restitutions, cases.scales,
         None if cases.start is None else listed(cases.start), settings, cases.duration, cases.engine, cases.threads,
@@ -112,7 +112,7 @@ def motions_in_space(motions: Any) -> list[Any]:
     return [None if motion is None else components_of(motion) for motion in listed(motions)]
 
 
-def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
+def batch_in_space(  # noqa: PLR0913, PLR0917 - the arguments of `simulate_many`
     bodies: Any,
     motions: Any = None,
     restitution: Any = "housner-3d",
@@ -124,37 +124,39 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> SpatialBatch:
-    """Return the outcome of every combination; motions: tuples of components."""
+    """Return the outcome of all combinations; motions: tuples of components."""
     # the reference engine is thousands of times slower
     settings = settings or SpaceBatchSettings()
-    listed = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
-    several, refused = made_or_refused(SpatialBody.of, listed)
-    if not several:
+    body_list = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
+    spatial_bodies, refused = converted_or_refused(SpatialBody.of, body_list)
+    if not spatial_bodies:
         raise InvalidValueError("bodies must be at least one, got none")
     motion_list = _listed("motions", motions)
     grounds, names = _grounds(motion_list, duration)
-    laws = [batch_law(each) for each in _listed("restitution", restitution)]
+    laws = [batch_law(item) for item in _listed("restitution", restitution)]
     factors = np.atleast_1d(checks.real_array("scales", scales))
     starts = [SpatialStart()] if start is None else _listed("start", start)
     if factors.ndim != 1 or not factors.size or not all(isinstance(s, SpatialStart) for s in starts):
-        raise InvalidValueError("scales must be one number or a row of them, and start one or more SpatialStart")
-    for each in starts:
-        each.check_grounded()
+        raise InvalidValueError("scales must be a number or a row of numbers, and start one or more SpatialStart")
+    for item in starts:
+        item.check_grounded()
     for motion in motion_list:
         plausibility.warn(plausibility.of_scaled(_components(motion), factors))
     check_progress(progress)
-    shape = (len(several), len(grounds), factors.size, len(laws), len(starts))
-    horizons = np.array([[_horizon(body, each, duration, settings.gravity) for each in grounds] for body in several])
+    shape = (len(spatial_bodies), len(grounds), factors.size, len(laws), len(starts))
+    horizons = np.array(
+        [[_horizon(body, item, duration, settings.gravity) for item in grounds] for body in spatial_bodies]
+    )
     table = RowTable(shape, factors, laws, starts, horizons)
     if fast_engine.chosen(engine) == "fast":
-        values, used = fast_engine.run_compiled(several, grounds, table, settings, threads, progress)
+        values, engine_name = fast_engine.run_compiled(spatial_bodies, grounds, table, settings, threads, progress)
     else:
-        values, used = _run_reference(several, grounds, table, settings, progress)
+        values, engine_name = _run_reference(spatial_bodies, grounds, table, settings, progress)
     labels: dict[str, list[object]] = {
         "motion": list(names), "scale": factors.tolist(), "restitution": [law.label for law in laws]
     }  # fmt: skip
     source = provenance_of(settings.stated, motion_list, starts, duration, "to the end of the motion")
-    return SpatialBatch(shape, values, used, labels, refused, source | _of_bodies(several))
+    return SpatialBatch(shape, values, engine_name, labels, refused, source | _of_bodies(spatial_bodies))
 
 
 def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | None, gravity: float) -> float:
@@ -166,27 +168,29 @@ def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | 
 
 
 def _listed(name: str, values: Any) -> list[Any]:
-    several = list(values) if isinstance(values, (list, np.ndarray)) else [values]
-    if not several:
+    items = list(values) if isinstance(values, (list, np.ndarray)) else [values]
+    if not items:
         raise InvalidValueError("{parameter} must be at least one, got none", parameter=name)
-    return several
+    return items
 
 
 def _components(motion: Any) -> Sequence[Any]:
     return motion if isinstance(motion, tuple) else (motion,)
 
 
-def made_or_refused(make: Callable[[Any], Made], bodies: Sequence[Any]) -> tuple[list[Made | None], dict[int, str]]:
-    """Return what is made of bodies, None for what cannot be, and why by its number."""
-    several: list[Made | None] = []
+def converted_or_refused(
+    make: Callable[[Any], Made], bodies: Sequence[Any]
+) -> tuple[list[Made | None], dict[int, str]]:
+    """Return the converted bodies, None for a refused body, and the reasons by index."""
+    objects: list[Made | None] = []
     refused: dict[int, str] = {}
-    for number, body in enumerate(bodies):
+    for index, body in enumerate(bodies):
         try:
-            several.append(make(body))
+            objects.append(make(body))
         except RockingError as error:
-            several.append(None)
-            refused[number] = str(error)
-    return several, refused
+            objects.append(None)
+            refused[index] = str(error)
+    return objects, refused
 
 
 def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGround], list[str]]:
@@ -199,7 +203,7 @@ def _grounds(motions: list[Any], duration: float | None) -> tuple[list[SpatialGr
                 "a motion has at most three components, x, y and vertical, got {count}", count=len(components)
             )
         grounds.append(ground_of(*components, until=until))
-        names.append(", ".join("none" if part is None else part.name for part in components))
+        names.append(", ".join("none" if component is None else component.name for component in components))
     return grounds, names
 
 
@@ -233,7 +237,7 @@ def _one(
 
 
 def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
-    """Return a history of the reference engine as a row of a batch: floats, NaN without result, and whole numbers."""
+    """Return a history of the reference engine as a row of a batch: floats (NaN without result) and integers."""
     last, events = history.pieces[-1], history.events
     failed = history.outcome is Outcome.FAILED
     first = events[0].time if events else math.nan
@@ -243,33 +247,39 @@ def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
         history.peak_tilt, history.peak_time, math.nan if failed else float(max(ends)), history.overturning_time,
         history.direction, first, last.end, history.held, lost,
     ])  # fmt: skip
-    contact = history.fell_over
-    number = -1 if contact is None or not contact.points else contact.points[0]
+    contact = history.overturned_over
+    point = -1 if contact is None or not contact.points else contact.points[0]
     uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
-    still = history.outcome is Outcome.ROCKED and last.contact.mode is not ContactMode.REST
-    counts = [history.outcome.code, history.status.code, -1 if contact is None else contact.mode.code, number]
-    return results, [*counts, len(history.impacts), uplifts, len(events), len(history.pieces), int(still)]
+    still_rocking = history.outcome is Outcome.ROCKED and last.contact.mode is not ContactMode.REST
+    counts = [history.outcome.code, history.status.code, -1 if contact is None else contact.mode.code, point]
+    return results, [*counts, len(history.impacts), uplifts, len(events), len(history.pieces), int(still_rocking)]
 
 
 def provenance_of(
-    stated: dict[str, Any], motions: Sequence[Any], starts: Sequence[SpatialStart], duration: float | None, usual: str
+    stated: dict[str, Any],
+    motions: Sequence[Any],
+    starts: Sequence[SpatialStart],
+    duration: float | None,
+    default_duration: str,
 ) -> dict[str, Any]:
-    """Return of what a batch was computed, beside its labels and bodies; usual: how long where nobody says."""
-    leaning = [start.numbers for start in starts if start.valid]
+    """Return the provenance of a batch without labels and bodies."""
+    start_numbers = [start.numbers for start in starts if start.valid]
     return {
-        "duration": usual if duration is None else float(duration),
+        "duration": default_duration if duration is None else float(duration),
         **{f"setting_{name}": value for name, value in stated.items()},
-        "motions": json.dumps([[motion_provenance(part) for part in _components(motion)] for motion in motions]),
-        "starts": json.dumps(leaning),
+        "motions": json.dumps(
+            [[motion_provenance(component) for component in _components(motion)] for motion in motions]
+        ),
+        "starts": json.dumps(start_numbers),
     }
 
 
 def _of_bodies(bodies: Bodies) -> dict[str, Any]:
-    """Return bodies as JSON, and a digest of all of them.
+    """Return bodies as JSON, with a digest of all bodies.
 
     >>> len(json.loads(_of_bodies([SpatialBody.box(1.0, 1.0, 4.0)])["bodies"]))
     1
     """
-    spelled = json.dumps([None if body is None else Answer(body.facts).plain() for body in bodies])
-    digest = {"bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest()}
-    return ({"bodies": spelled} if len(bodies) <= _FEW else {}) | digest
+    text = json.dumps([None if body is None else Answer(body.facts).plain() for body in bodies])
+    digest = {"bodies_sha256": hashlib.sha256(text.encode()).hexdigest()}
+    return ({"bodies": text} if len(bodies) <= _FEW else {}) | digest

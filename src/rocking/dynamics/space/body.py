@@ -1,4 +1,4 @@
-"""A body in space as the equations see it: mass, centre, inertia, base, and the solid that they came from."""
+"""Rigid body in space: mass, centre, inertia, base, and the solid from which they were computed."""
 
 import math
 from collections.abc import Callable
@@ -17,10 +17,10 @@ from rocking.portable import applied, dot, norm
 
 @dataclass(frozen=True, eq=False)
 class Matter:
-    """A solid in the axes of a body, made when asked for: most impact models need mass, centre and inertia alone."""
+    """Solid in the axes of a body, created at first access: few impact models need it."""
 
     make: Callable[[], Solid]  # returns the solid
-    shift: FloatArray  # origin of the body's axes in the coordinates in which the solid is described [m]; shape (3,)
+    shift: FloatArray  # origin of the body axes in the coordinates of the solid [m]; shape (3,)
 
     @cached_property
     def placed(self) -> tuple[Solid, FloatArray]:
@@ -29,11 +29,11 @@ class Matter:
         return solid, solid.origin - self.shift
 
     def __call__(self) -> tuple[Solid, FloatArray]:
-        """Return `placed`, as impacts ask for it, with the origin of its own frame in axes of the body [m]."""
+        """Return `placed`, the form for impacts."""
         return self.placed
 
 
-# functions of the module, so that a body can be sent to another process
+# functions of the module can be pickled
 def _box(width: float, depth: float, height: float, density: float) -> Solid:
     return Solid(Part(box(width, depth, height), density))
 
@@ -55,14 +55,14 @@ _NAMES = {
 
 @dataclass(frozen=True, eq=False)
 class SpatialBody:
-    """A rigid body that stands on the plane z = 0 of its own axes.
+    """Rigid body with its base on the plane z = 0 of its axes.
 
     Parameters
     ----------
     mass : float
         Mass [kg].
     centre : array_like, shape (3,)
-        Centre of mass, z its height over the base [m].
+        Centre of mass; z is its height over the base [m].
     inertia : array_like, shape (3, 3)
         Inertia tensor about the centre of mass, in body axes [kg m2].
     base : array_like, shape (k, 2), or float
@@ -72,12 +72,12 @@ class SpatialBody:
     Attributes
     ----------
     matter : Matter or None
-        Of what it consists; known for a `Solid`, a `box` and a `cylinder`.
+        Distribution of mass; available for a `Solid`, a `box` and a `cylinder`.
 
     Raises
     ------
     InvalidValueError
-        If a value is not finite, or no body has such an inertia.
+        If a value is not finite, or the inertia is not physical.
     GeometryError
         If the polygon is not convex and counter-clockwise, or the centre of mass is not above the base.
 
@@ -105,9 +105,9 @@ class SpatialBody:
         checks.length("height of the centre of mass", float(self.centre[2]))
         if not self.reach > 0.0:
             raise GeometryError(
-                "the centre of mass must be above the inside of the base, got it {outside:g} m outside, at ({x:g}, "
-                "{y:g})", outside=-self.reach, x=float(self.centre[0]), y=float(self.centre[1]),
-                hint="it would fall over by itself",
+                "the centre of mass must be above the base, got {outside:g} m outside, at ({x:g}, {y:g})",
+                outside=-self.reach, x=float(self.centre[0]), y=float(self.centre[1]),
+                hint="the body would overturn under its weight",
             )  # fmt: skip
 
     @classmethod
@@ -130,8 +130,8 @@ class SpatialBody:
         mass = checks.density("density", density) * x * y * z
         inertia = mass / 12.0 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
         corners = 0.5 * np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
-        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
-        return made._made_of(Matter(partial(_box, x, y, z, density), np.zeros(3)))
+        body = cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
+        return body._with_matter(Matter(partial(_box, x, y, z, density), np.zeros(3)))
 
     @classmethod
     def cylinder(cls, diameter: float, height: float, density: float = 1000.0) -> "SpatialBody":
@@ -152,24 +152,24 @@ class SpatialBody:
         b, z = 0.5 * checks.length("diameter", diameter), checks.length("height", height)
         mass = checks.density("density", density) * math.pi * b * b * z
         across = mass * (b * b / 4.0 + z * z / 12.0)
-        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
-        return made._made_of(Matter(partial(_cylinder, 2.0 * b, z, density), np.zeros(3)))
+        body = cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
+        return body._with_matter(Matter(partial(_cylinder, 2.0 * b, z, density), np.zeros(3)))
 
     @classmethod
     def of(cls, body: Any) -> "SpatialBody":
-        """Return any body that has mass, centre, inertia and base, as the equations see it.
+        """Return a body with mass, centre, inertia and base as a `SpatialBody`.
 
         Parameters
         ----------
         body : Any
-            With attributes `mass` [kg], `centre` [m], `inertia` (or `inertia_tensor`) [kg m2] and `base`: vertices
-            (k, 2) [m], a radius [m], or an object with `vertices` or `radius` and perhaps `centre` and `height`: the
-            origin is moved to the height of the base, and to the centre of a round one.
+            Object with `mass` [kg], `centre` [m], `inertia` (or `inertia_tensor`) [kg m2] and `base`: vertices
+            (k, 2) [m], a radius [m], or an object with `vertices` or `radius` and optionally `centre` and `height`. The
+            origin is moved to the height of the base, and to the centre of a round base.
 
         Returns
         -------
         SpatialBody
-            Itself if it is one.
+            The body; the argument itself if it is a `SpatialBody`.
 
         Raises
         ------
@@ -178,18 +178,20 @@ class SpatialBody:
         """
         if isinstance(body, cls):
             return body
-        found = {name: _attribute(body, _NAMES.get(name, (name,))) for name in ("mass", "centre", "inertia", "base")}
-        base = found["base"]
+        values = {name: _attribute(body, _NAMES.get(name, (name,))) for name in ("mass", "centre", "inertia", "base")}
+        base = values["base"]
         origin = np.array([0.0, 0.0, getattr(base, "height", 0.0)])
         if getattr(base, "radius", None) is not None:
             origin[:2] = getattr(base, "centre", (0.0, 0.0))
         shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
-        made = cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
-        spread = isinstance(body, Solid) and body.known is None  # of a body of known moments only these are known
-        return made._made_of(Matter(partial(_same, body), origin)) if spread else made
+        spatial = cls(values["mass"], np.asarray(values["centre"]) - origin, values["inertia"], shape)
+        spread = (
+            isinstance(body, Solid) and body.known is None
+        )  # a body with stated moments has no distribution of mass
+        return spatial._with_matter(Matter(partial(_same, body), origin)) if spread else spatial
 
-    def _made_of(self, matter: Matter) -> "SpatialBody":
-        # not an argument: a solid that does not belong to the mass and inertia would give wrong energies
+    def _with_matter(self, matter: Matter) -> "SpatialBody":
+        # not an argument: a solid with another mass and inertia would give wrong energies
         object.__setattr__(self, "matter", matter)
         return self
 
@@ -205,7 +207,7 @@ class SpatialBody:
 
     @property
     def round(self) -> bool:
-        """Whether the base is a circle."""
+        """True if the base is a circle."""
         return np.ndim(self.base) == 0
 
     @cached_property
@@ -220,12 +222,12 @@ class SpatialBody:
 
     @cached_property
     def radius(self) -> float:
-        """Radius of a round base; of others the largest distance of a vertex from the origin [m]."""
+        """Radius of a round base; of a polygon, the largest distance of a vertex from the origin [m]."""
         return float(np.hypot(*np.atleast_2d(self.base).T).max()) if not self.round else float(self.base)
 
     @cached_property
     def vertices(self) -> FloatArray:
-        """Vertices of the base with z = 0, shape (k, 3); none for a round base [m]."""
+        """Vertices of the base with z = 0, shape (k, 3); empty for a round base [m]."""
         if self.round:
             return np.zeros((0, 3))
         return np.column_stack([np.asarray(self.base), np.zeros(len(np.asarray(self.base)))])
@@ -243,7 +245,7 @@ class SpatialBody:
 
     @cached_property
     def reach(self) -> float:
-        """Least horizontal distance of the centre of mass from the border of the base [m]."""
+        """Smallest horizontal distance of the centre of mass from the border of the base [m]."""
         if self.round:
             return self.radius - math.hypot(*self.centre[:2])
         return float(((self.centre[:2] - self.vertices[:, :2]) * self.inward).sum(axis=1).min())
@@ -257,7 +259,7 @@ class SpatialBody:
 
     @cached_property
     def lift(self) -> float:
-        """Least rise of the centre of mass on the way to overturning [m]."""
+        """Smallest rise of the centre of mass on the way to overturning [m]."""
         height = float(self.centre[2])
         return self.reach**2 / (math.hypot(self.reach, height) + height)  # Eq. 85
 
@@ -305,17 +307,17 @@ class SpatialBody:
         Returns
         -------
         float
-            p, the least over all edges [rad/s].
+            p, the smallest over all edges [rad/s].
         """
         if self.round:
             points, axes = np.array([[-self.radius, 0.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])
         else:
             points, axes = self.vertices, self.edges
-        found = []
+        frequencies = []
         for point, axis in zip(points, axes, strict=True):
             arm = norm(np.cross(self.centre - point, axis))
-            found.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))  # Eq. 26
-        return min(found)
+            frequencies.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))  # Eq. 26
+        return min(frequencies)
 
 
 def _attribute(body: Any, names: tuple[str, ...]) -> Any:
@@ -324,13 +326,13 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
             return getattr(body, name)
     raise InvalidValueError(
         "{parameter} must be {allowed}; a body in space needs {attributes}, got {type} without", parameter="body",
-        allowed="a Block, a Section, MassPoints or one in space", attributes=" or ".join(names),
+        allowed="a Block, a Section, MassPoints or a body in space", attributes=" or ".join(names),
         type=type(body).__name__,
     )  # fmt: skip
 
 
 def checked_inertia(values: Any) -> FloatArray:
-    """Return an inertia tensor that some body has."""
+    """Return an inertia tensor after the check that it is physical."""
     tensor = checks.finite("inertia", values, "kg m2", (3, 3))
     scale = float(np.abs(tensor).max())
     moments = np.linalg.eigvalsh(tensor)

@@ -1,4 +1,4 @@
-"""Which points stay on the ground: complementarity over the few contact sets of a convex base, tried one by one."""
+"""Contact sets after an impact or under forces, by complementarity over the few contact sets of a convex base."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -20,51 +20,51 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class ContactSet:
-    """What stays on the ground."""
+    """Points in contact with the ground."""
 
     mode: ContactMode  # the regime
-    points: tuple[int, ...]  # numbers of the vertices that stay; none for round bases
-    pivot: FloatArray  # A point that stays, in body axes [m]; shape (3,)
-    axis: FloatArray | None = None  # unit vector along an edge that stays, in body axes [-]; shape (3,)
+    points: tuple[int, ...]  # indices of the vertices in contact; empty for round bases
+    pivot: FloatArray  # point in contact, in body axes [m]; shape (3,)
+    axis: FloatArray | None = None  # unit vector along an edge in contact, in body axes [-]; shape (3,)
     length: float = 0.0  # length of that edge [m]
 
 
 def face(body: SpatialBody) -> ContactSet:
-    """Return standing on the whole base."""
+    """Return the contact on the full base."""
     pivot = np.zeros(3) if body.round else body.vertices[0]
     return ContactSet(ContactMode.REST, tuple(range(len(body.vertices))), pivot)
 
 
-def edge(body: SpatialBody, number: int) -> ContactSet:
-    """Return standing on an edge."""
-    after = (number + 1) % len(body.vertices)
-    length = norm(body.vertices[after] - body.vertices[number])
-    return ContactSet(ContactMode.EDGE, (number, after), body.vertices[number], body.edges[number], length)
+def edge(body: SpatialBody, index: int) -> ContactSet:
+    """Return the contact on an edge."""
+    next_index = (index + 1) % len(body.vertices)
+    length = norm(body.vertices[next_index] - body.vertices[index])
+    return ContactSet(ContactMode.EDGE, (index, next_index), body.vertices[index], body.edges[index], length)
 
 
-def vertex(body: SpatialBody, number: int) -> ContactSet:
-    """Return standing on a vertex."""
-    return ContactSet(ContactMode.VERTEX, (number,), body.vertices[number])
+def vertex(body: SpatialBody, index: int) -> ContactSet:
+    """Return the contact on a vertex."""
+    return ContactSet(ContactMode.VERTEX, (index,), body.vertices[index])
 
 
 def rim(body: SpatialBody, direction: FloatArray) -> ContactSet:
-    """Return standing on a point of a round base, turning about it: rolling starts so on a base that is nearly flat."""
+    """Return the contact on a point of a round base, for rotation about it: the start of rolling from flat."""
     unit = direction / norm(direction)
     return ContactSet(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
 def rolling(contact: ContactSet) -> ContactSet:
-    """Return rolling that starts on the point of a contact."""
+    """Return rolling contact that starts at the point of a contact."""
     return replace(contact, mode=ContactMode.ROLLING)
 
 
 def supports(
     body: SpatialBody, contact: ContactSet, force: FloatArray, moment: FloatArray, up: FloatArray
 ) -> FloatArray:
-    """Return what must not be negative for the ground to give a force without pulling."""
-    # Horizontal forces are free, since nothing slips; what remains is where the vertical one acts. With M the moment
-    # about the pivot and Z upwards, Z x M = sum N_i r_i over the points of contact: so an edge has the two forces at
-    # its ends, and a face the moments of the vertical forces about each edge, over its distance scale. force, moment:
+    """Return the contact forces; all are >= 0 if no force is tensile."""
+    # Horizontal forces are free without slip; the vertical forces remain. With M the moment about the pivot and Z
+    # upwards, Z x M = sum N_i r_i over the points of contact: an edge has the two forces at its ends, and a face the
+    # moments of the vertical forces about each edge, over its distance scale. force, moment:
     # force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses; up: vertical in body
     # axes [-]. Returns vertical force at a vertex; at both ends of an edge; for a face N times the distance of its
     # centre of pressure from each edge over the size of the body [N].
@@ -82,7 +82,7 @@ def supports(
 
 
 def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> FloatArray:
-    """Return the point of the body on the ground, in body axes [m]: the pivot, or the lowest of a rolling rim."""
+    """Return the point in contact in body axes [m]: the pivot, or the lowest point of a rolling rim."""
     if contact.mode is not ContactMode.ROLLING:
         return contact.pivot
     level = up[:2] / norm(up[:2])
@@ -90,10 +90,10 @@ def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> Fl
 
 
 def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
-    """Return how much higher the centre of mass is than at rest; pivot: a point on the ground, in body axes [m]."""
+    """Return the rise of the centre of mass above rest [m]; pivot: a point on the ground, in body axes [m]."""
     arm = body.centre - pivot
     level2 = float(up[0] ** 2 + up[1] ** 2)
-    # 1 - cos(tilt) without the loss of digits
+    # 1 - cos(tilt) without cancellation
     sunk = level2 / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - float(up[2])
     return float(dot(up[:2], arm[:2]) - sunk * arm[2])  # Eq. 86
 
@@ -103,9 +103,9 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SpatialState:
-    """A body at an instant, in its own axes."""
+    """State of a body at an instant, in body axes."""
 
-    pivot: FloatArray  # A point at rest on the ground [m]; shape (3,)
+    pivot: FloatArray  # a point at rest on the ground [m]; shape (3,)
     velocity: FloatArray  # angular velocity [rad/s]; shape (3,)
     up: FloatArray  # vertical [-]; shape (3,)
     field: FloatArray  # gravity less the acceleration of the ground [m/s2]; shape (3,)
@@ -113,17 +113,17 @@ class SpatialState:
     along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
     def impact(self, body: SpatialBody, contact: ContactSet) -> SpatialImpact:
-        """Return the impact onto a contact; laws measure the step from the point at rest that is nearest to it."""
+        """Return the impact on a contact; its step is from the nearest point at rest."""
         onto = Corner(contact.pivot) if contact.axis is None else Edge(contact.pivot, contact.axis)
         length, pivot = float((self.along * self.along).sum()), self.pivot
         if length > 0.0:
             middle = contact.pivot if contact.axis is None else contact.pivot + 0.5 * contact.length * contact.axis
-            share = float(((middle - pivot) * self.along).sum()) / length
-            pivot = pivot + min(max(share, 0.0), 1.0) * self.along
+            fraction = float(((middle - pivot) * self.along).sum()) / length
+            pivot = pivot + min(max(fraction, 0.0), 1.0) * self.along
         return SpatialImpact(body.moments, self.velocity, pivot, onto, self.up, body.matter, body.footprint)
 
     def plastic(self, body: SpatialBody, contact: ContactSet) -> FloatArray:
-        """Return the angular velocity that the plastic impact without slip leaves on a contact [rad/s]."""
+        """Return the angular velocity after the plastic impact without slip on a contact [rad/s]."""
         if contact.mode is ContactMode.REST:
             return np.zeros(3)
         onto = Corner(contact.pivot) if contact.axis is None else Edge(contact.pivot, contact.axis)
@@ -132,30 +132,30 @@ class SpatialState:
 
 @dataclass(frozen=True, eq=False)
 class Continuation:
-    """What stays, and how the body goes on."""
+    """Contact and velocity after an impact or a choice by forces."""
 
-    contact: ContactSet  # on what the body stands
+    contact: ContactSet
     velocity: FloatArray  # angular velocity, in body axes [rad/s]; shape (3,)
-    supports: FloatArray  # impulses or forces of the ground, as `supports` of the contact has them [N s] or [N]
+    supports: FloatArray  # impulses [N s] or forces [N] of the ground, in the form of `supports`
 
 
 def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[ContactSet]:
-    """Yield the contact sets that can stay, larger ones first."""
+    """Yield the possible contact sets, larger ones first."""
     count = len(body.vertices)
     if len(touching) == count:
         yield face(body)
-    for number in touching:
-        if (number + 1) % count in touching:
-            yield edge(body, number)
-    for number in touching:
-        yield vertex(body, number)
+    for index in touching:
+        if (index + 1) % count in touching:
+            yield edge(body, index)
+    for index in touching:
+        yield vertex(body, index)
 
 
 def of_impact(
     body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw
 ) -> list[Continuation]:
-    """Return every contact set that an impact may leave, the largest first."""
-    found = []
+    """Return the consistent contact sets after an impact, the largest first."""
+    continuations = []
     scale = float(np.abs(state.velocity).max()) * body.size
     for contact in candidates(body, touching):
         velocity = state.plastic(body, contact)
@@ -167,19 +167,19 @@ def of_impact(
         others = [i for i in touching if i not in contact.points]
         opening = applied(cross(velocity, body.vertices[others] - contact.pivot), state.up)
         if not others or opening.min() >= -_ROUNDING * scale:
-            found.append(Continuation(contact, velocity, push))
-    return found
+            continuations.append(Continuation(contact, velocity, push))
+    return continuations
 
 
 def of_forces(
-    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: ContactSet | None = None
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], preferred: ContactSet | None = None
 ) -> list[Continuation]:
-    """Return every contact set that stays without a pull when no gap opens with a speed, a preferred one first."""
-    found: list[Continuation] = []
-    scale, every = norm(state.field), list(candidates(body, touching))
-    if first is not None:
-        every = [first, *(contact for contact in every if contact.points != first.points)]
-    for contact in every:
+    """Return the contact sets consistent with forces that are not tensile, a preferred one first."""
+    continuations: list[Continuation] = []
+    scale, contacts = norm(state.field), list(candidates(body, touching))
+    if preferred is not None:
+        contacts = [preferred, *(contact for contact in contacts if contact.points != preferred.points)]
+    for contact in contacts:
         velocity = state.plastic(body, contact)
         rate, push = forces(body, contact, velocity, state.up, state.field)
         if push.min() < -_ROUNDING * body.mass * scale:
@@ -188,13 +188,13 @@ def of_forces(
         opening = applied(cross(rate, arms) + cross(velocity, cross(velocity, arms)), state.up)
         others = [i for i in touching if i not in contact.points]
         if not others or opening[others].min() >= -_ROUNDING * scale:
-            found.append(Continuation(contact, velocity, push))
-    return found
+            continuations.append(Continuation(contact, velocity, push))
+    return continuations
 
 
 def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, velocity: FloatArray) -> FloatArray:
-    """Return the impulses of the ground in an impact, as `supports` of the contact [N s]."""
-    # velocity: afterwards, in body axes
+    """Return the impulses of the ground in an impact, in the form of `supports` [N s]."""
+    # velocity: after the impact, in body axes
     new = body.centre - contact.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
     moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90

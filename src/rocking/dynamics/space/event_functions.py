@@ -1,4 +1,4 @@
-"""What may end a step: gaps that close, a round base that rolls or lies flat, and where the ground lets go."""
+"""Events that end a step: a gap closes, a round base rolls or lies flat, a contact is released."""
 
 import math
 from dataclasses import dataclass
@@ -17,18 +17,20 @@ from rocking.outcome import ContactMode
 from rocking.portable import applied, convolved, inverse, norm, times
 from rocking.portable import dot as dot_of
 
-NOTHING = 1e-13  # coefficients below this share of the largest one are rounding
+NOTHING = 1e-13  # ratio to the largest coefficient below which a coefficient is rounding
 
 
 def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> float | None:
-    """Return where a series first falls below zero; from 0 to 1; None if it does not fall."""
+    """Return the first x from 0 to 1 at which a series becomes negative; None if it does not."""
     terms = series.tolist()
     if started:
         small = NOTHING * max(map(abs, terms))
-        first = next((k for k, c in enumerate(terms) if k and abs(c) > (max(floor, small) if k < 3 else small)), None)
-        if first is None:
+        first_index = next(
+            (k for k, c in enumerate(terms) if k and abs(c) > (max(floor, small) if k < 3 else small)), None
+        )
+        if first_index is None:
             return None
-        terms = terms[first:]
+        terms = terms[first_index:]
     elif terms[0] == 0.0 and len(terms) > 1:
         terms = terms[1:]
     if not all(map(math.isfinite, terms)):
@@ -58,32 +60,32 @@ def square_root(square: FloatArray) -> FloatArray:
 
 
 def padded(series: FloatArray, count: int) -> FloatArray:
-    """Return a series of another length."""
+    """Return a series cut or padded to a length."""
     return np.pad(series, (0, max(0, count - len(series))))[:count]
 
 
-SLOW_OPENING = 1e-9  # accelerations of a gap below this share of gravity count as none, as in the choice of what stays
-START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base rolls, and at which it lies flat
+SLOW_OPENING = 1e-9  # acceleration of a gap over gravity that counts as zero, as in the choice of contacts
+START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base starts and ends rolling
 LANDING, FLAT = 1e-3, 1e-6
-"""Sines of the tilt at which a falling rim shows how near to flat it will pass, and below which that is a landing."""
+"""Sines of the tilt: at which the passage of a falling rim is predicted, and below which the passage is a landing."""
 NEARLY_FLAT = 0.01
-"""Share of the slenderness angle below which a round base that would lose contact is held down; see `nearly_flat`."""
+"""Fraction of the slenderness angle below which a round base keeps contact; see `nearly_flat`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """The series of a step, over a unit of time that is the step."""
+    """Series of a step; the unit of time is the step."""
 
     length: float  # duration [s]
     velocities: FloatArray  # angular velocity in body axes [rad/s]; shape (order + 1, 3)
     up: FloatArray  # vertical in body axes [-]; shape (order + 1, 3)
     # gravity less the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
     field: FloatArray
-    heading: FloatArray  # where the edge of the contact points on the ground; zero without an edge [-]; shape (3,)
+    heading: FloatArray  # direction of the edge in contact on the ground; zero without an edge [-]; shape (3,)
 
 
 def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
-    """Return the vertices whose gaps may close first: both neighbours of a vertex, or the one farthest from an edge."""
+    """Return the vertices with gaps that may close: both neighbours of a vertex, or the farthest from an edge."""
     count = len(body.vertices)
     if contact.mode is ContactMode.VERTEX and contact.points:
         return ((contact.points[0] - 1) % count, (contact.points[0] + 1) % count)
@@ -96,22 +98,22 @@ def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
 def first_contact(
     body: SpatialBody, contact: ContactSet, step: Step, touching: tuple[int, ...]
 ) -> tuple[float, int] | None:
-    """Return when a gap first closes, and of which vertex; None if none does."""
-    found: list[tuple[float, int]] = []
+    """Return the first closing of a gap, as time over the step, and its vertex; None without one."""
+    contacts: list[tuple[float, int]] = []
     floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
-    for number in watched(body, contact):
-        gap = applied(step.up, body.vertices[number] - contact.pivot)
-        closes = first_zero(gap, started=number in touching, floor=floor)
-        if closes is not None:
-            found.append((closes, number))
-    return min(found) if found else None
+    for index in watched(body, contact):
+        gap = applied(step.up, body.vertices[index] - contact.pivot)
+        time = first_zero(gap, started=index in touching, floor=floor)
+        if time is not None:
+            contacts.append((time, index))
+    return min(contacts) if contacts else None
 
 
 def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
-    """Return whether a round base leans so little, by up [-], that a loss of contact is a hop below its own gap.
+    """Return True if the tilt of a round base, by up [-], is so small that loss of contact is negligible.
 
-    A spin about its own axis can draw the rim down faster than gravity, for milliseconds; here it is held down, without
-    work, and the history says for how long.
+    A spin about the axis can accelerate the rim downwards by more than gravity for milliseconds. The contact then
+    persists without work, and the history contains its duration.
 
     >>> bottle = SpatialBody.cylinder(0.5, 2.0)
     >>> [nearly_flat(bottle, np.array([sine, 0.0, 1.0])) for sine in (1e-3, 1e-2)]
@@ -121,10 +123,10 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
 
 
 def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
-    """Return the direction in which a rim falls if that leads through lying flat, None if it rolls past.
+    """Return the direction of fall of a rim that lands flat; None for a rim that rolls past.
 
-    A rigid rim that passes as near as one likes rolls on, without loss, and one that passes exactly strikes. Real bases
-    are not flat to 1e-6: what goes nearer strikes with all of the base.
+    A rigid rim that passes the flat position closely rolls on without loss, and only an exact passage is an impact.
+    Real bases are not flat to 1e-6: a closer passage is an impact of the full base.
     """
     falling = cross(up, velocity)[:2]
     past = abs(float(up[0] * falling[1] - up[1] * falling[0]))  # Eq. 327
@@ -132,61 +134,64 @@ def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
 
 
 def rim_events(body: SpatialBody, contact: ContactSet, step: Step, *, landing: bool = False) -> float | None:
-    """Return when a round base begins to roll, passes `LANDING`, or lies flat; landing: whether it falls flat."""
+    """Return the time over the step at which a round base starts to roll, passes `LANDING`, or lies flat."""
     if contact.mode is ContactMode.ROLLING:
-        first = step.up[0, :2]
-        size = norm(first)
-        sine = applied(step.up[:, :2], first) / size
+        direction = step.up[0, :2]
+        size = norm(direction)
+        sine = applied(step.up[:, :2], direction) / size
         sine[0] -= LANDING if size > LANDING * (1.0 + 1e-6) else STOP_ROLLING
         return first_zero(sine, started=False)
-    lean = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # sine of the tilt away from the point
-    flat, steep = lean.copy(), -lean
+    tilt_sine = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # sine of the tilt away from the point
+    flat, steep = tilt_sine.copy(), -tilt_sine
     steep[0] += 2.0 * LANDING if landing else START_ROLLING
-    # lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
+    # after uplift from rest the tilt grows with the cube of time: lower powers are rounding
     floor = 0.25 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2 / body.radius
-    found = [first_zero(flat, started=abs(lean[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]
-    return min((at for at in found if at is not None), default=None)
+    zeros = [first_zero(flat, started=abs(tilt_sine[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]
+    return min((at for at in zeros if at is not None), default=None)
 
 
 def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[float, int] | None:
-    """Return when the ground first lets go."""
-    # An end of an edge is released where its force would be a pull and its gap would open. Where it would not open (the
-    # friction at that end holds it down, so that neither the edge nor its other end alone is without contradiction),
-    # the edge stays, and the pull shows in `end_forces`: such a corner slips in truth. Returns which: number of the end
-    # in the contact that is released, -1 for all contact; None instead of both if none is.
+    """Return the time over the step of the first release, and the index of the released end; None without one."""
+    # An end of an edge is released if its force is tensile and its gap opens. If the gap does not open (friction at
+    # that end keeps it closed, so that neither the edge nor its other end alone is consistent), the edge stays, and the
+    # tensile force appears in `end_forces`: a real corner slips. The index is -1 for the release of all contact.
     normal = _normal(body, contact, step)
     lost = first_zero(normal, started=False)
-    found = [] if lost is None else [(lost, -1)]
+    releases = [] if lost is None else [(lost, -1)]
     if contact.axis is not None:
         second = _second(body, contact, step)
-        for which, force in ((0, normal - second), (1, second)):
+        for end_index, force in ((0, normal - second), (1, second)):
             if force[0] - np.abs(force[1:]).sum() > 0.0:
                 continue
-            at = _opens(force, _opening(body, contact, step, which))
+            at = _opens(force, _opening(body, contact, step, end_index))
             if at is not None:
-                found.append((at, which))
-    return min(found, default=None)
+                releases.append((at, end_index))
+    return min(releases, default=None)
 
 
 def end_forces(body: SpatialBody, contact: ContactSet, step: Step, at: float) -> tuple[float, float]:
-    """Return vertical forces per unit mass at both ends of an edge; below zero the ground would have to pull [N/kg]."""
+    """Return vertical forces per unit mass at both ends of an edge; a negative force is tensile [N/kg]."""
     second = value(_second(body, contact, step).tolist(), at)
     return value(_normal(body, contact, step).tolist(), at) - second, second
 
 
 def _opens(force: FloatArray, opening: FloatArray) -> float | None:
-    """When a force is a pull while its gap would open."""
+    """Return the first time at which a force is tensile while its gap opens; None without one."""
     at = first_zero(force, started=False)
     if at is None:
         return None
     if value(opening.tolist(), at) > 0.0:
         return at
-    later = first_zero(-opening, started=False)
-    return later if later is not None and later > at and value(force.tolist(), later) < 0.0 else None
+    opening_time = first_zero(-opening, started=False)
+    return (
+        opening_time
+        if opening_time is not None and opening_time > at and value(force.tolist(), opening_time) < 0.0
+        else None
+    )
 
 
 def _normal(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
-    """Vertical force per unit mass."""
+    """Return the vertical force per unit mass as a series [N/kg]."""
     if contact.mode is ContactMode.ROLLING:
         # height of the centre over the ground: Z . C + b sin(tilt)
         level = step.up[:, :2]
@@ -199,24 +204,24 @@ def _normal(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
 
 
 def _second(body: SpatialBody, contact: ContactSet, step: Step) -> FloatArray:
-    """Vertical force per unit mass at the second end of an edge."""
+    """Return the vertical force per unit mass at the second end of an edge as a series [N/kg]."""
     axis, arm, n = _axis(contact), body.centre - contact.pivot, len(step.up)
     about = applied(body.inertia_about(contact.pivot), axis) / body.mass
     spin = applied(step.velocities, axis)
     rate = np.append((np.arange(n) * spin)[1:], 0.0) / step.length
     # Z . (Z x M) along the edge, with M = I w' + w x I w - rho x m g
-    made = -cauchy(applied(step.up, cross(axis, about)), rate)
-    made -= cauchy(applied(step.up, cross(axis, cross(axis, about))), cauchy(spin, spin))
-    made += cauchy(applied(step.up, arm), padded(applied(step.field.T, step.heading), n))
-    made -= padded(step.field[2], n) * dot_of(axis, arm)
-    return made[: n - 2] / contact.length  # Eq. 97
+    moment = -cauchy(applied(step.up, cross(axis, about)), rate)
+    moment -= cauchy(applied(step.up, cross(axis, cross(axis, about))), cauchy(spin, spin))
+    moment += cauchy(applied(step.up, arm), padded(applied(step.field.T, step.heading), n))
+    moment -= padded(step.field[2], n) * dot_of(axis, arm)
+    return moment[: n - 2] / contact.length  # Eq. 97
 
 
-def _opening(body: SpatialBody, contact: ContactSet, step: Step, which: int) -> FloatArray:
-    """Acceleration of the gap of an end of an edge if the body turned about the other end alone."""
+def _opening(body: SpatialBody, contact: ContactSet, step: Step, end_index: int) -> FloatArray:
+    """Return the acceleration of the gap at one end of an edge for rotation about the other end."""
     axis, n = _axis(contact), len(step.up)
-    stays = contact.pivot if which else contact.pivot + contact.length * axis
-    leaves = axis * (contact.length if which else -contact.length)
+    stays = contact.pivot if end_index else contact.pivot + contact.length * axis
+    leaves = axis * (contact.length if end_index else -contact.length)
     inertia, arm = body.inertia_about(stays), body.centre - stays
     across = np.array([-step.heading[1], step.heading[0], 0.0])  # Z x e on the ground
     field = np.outer(padded(applied(step.field.T, step.heading), n), axis)
@@ -238,29 +243,28 @@ _WHOLE = 1.0 - 1e-12
 
 
 def next_uplift(
-    body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, since: tuple[int, float]
+    body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, position: tuple[int, float]
 ) -> tuple[int, float, tuple[int, ...]] | None:
-    """Return when the ground next lifts a body."""
+    """Return stretch, time within it, and edges of the next uplift; None without uplift."""
     # The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0
     # for every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0. gravity:
-    # acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that the
-    # centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead of
-    # all three if it is never lifted.
-    stretch, tau = since
+    # acceleration of gravity [m/s2]. The time is in units of the stretch. The edges are those that the centre of
+    # pressure crosses; empty if it jumps out of the base, and for a round base.
+    stretch, tau = position
     if stretch >= ground.count:
         return None
     holds = _holds(body, ground.coefficients[stretch:], rotation, gravity)
     low = holds[:, :, 0] + np.minimum(holds[:, :, 1:], 0.0).sum(axis=2)
     low[0] = np.where(tau > 0.0, -np.inf, low[0])
     for k in np.flatnonzero((low <= 0.0).any(axis=1)):
-        found = _within(holds[k], tau if k == 0 else 0.0, _SAME * gravity * body.size)
-        if found is not None:
-            return stretch + int(k), found[0], () if body.round else found[1]
+        crossing = _within(holds[k], tau if k == 0 else 0.0, _SAME * gravity * body.size)
+        if crossing is not None:
+            return stretch + int(k), crossing[0], () if body.round else crossing[1]
     return None
 
 
 def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
-    """Return on what a body stands when it is lifted from rest; none if the ground would have to pull."""
+    """Return the contact of a body after uplift from rest; None if its force is tensile."""
     if body.round:
         pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
         return complementarity.rim(body, pressure) if state.field[2] < 0.0 else None
@@ -270,12 +274,12 @@ def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> Co
     if len(edges) == 2:
         first, second = edges
         return complementarity.vertex(body, second if (first + 1) % count == second else first)
-    found = of_forces(body, state, tuple(range(count)))
-    return found[0].contact if found else None
+    continuations = of_forces(body, state, tuple(range(count)))
+    return continuations[0].contact if continuations else None
 
 
 def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:
-    """Return what must stay above zero, by stretch, edge and power."""
+    """Return the functions that are positive at rest, by stretch, edge and power."""
     level = times(rotation[:2, :2].T, accelerations[:, :2])
     weight = accelerations[:, 2].copy()
     weight[:, 0] += gravity
@@ -283,33 +287,33 @@ def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, g
         inside = ((body.centre[:2] - body.vertices[:, :2]) * body.inward).sum(axis=1)
         tipping = times(body.inward, level)
         return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)  # Eq. 94
-    made = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
-    made[:, 1, : weight.shape[1]] = weight * body.size  # the ground must push
+    values = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
+    values[:, 1, : weight.shape[1]] = weight * body.size  # the contact force is compressive
     for k, w in enumerate(weight):
-        made[k, 0] = body.radius**2 * convolved(w, w)
+        values[k, 0] = body.radius**2 * convolved(w, w)
         for axis in range(2):
             arm = body.centre[axis] * w - body.centre[2] * level[k, axis]
-            made[k, 0] -= convolved(arm, arm)  # Eq. 95
-    return made
+            values[k, 0] -= convolved(arm, arm)  # Eq. 95
+    return values
 
 
 def _within(holds: FloatArray, tau: float, same: float) -> tuple[float, tuple[int, ...]] | None:
-    """First fall in a stretch, and the edges that share it; none of them where there is no holding at its start."""
+    """Return the first uplift in a stretch and its edges; no edges if uplift is immediate."""
     rows = [shifted(row.tolist(), tau, 1.0 - tau) if tau > 0.0 else row.tolist() for row in holds]
     if min(row[0] for row in rows) < -same:
         return tau, ()
     falls: list[tuple[float, int]] = []
-    for edge, row in enumerate(rows):
+    for index, row in enumerate(rows):
         at = first_fall(row) if row[0] > 0.0 else (0.0 if _falls_at_once(row) else None)
-        if at is not None and at < _WHOLE:  # at the very end the next stretch decides
-            falls.append((at, edge))
+        if at is not None and at < _WHOLE:  # the end belongs to the next stretch
+            falls.append((at, index))
     if not falls:
         return None
     first = min(falls)[0]
-    edges = tuple(edge for edge, row in enumerate(rows) if value(row, first) <= same)
+    edges = tuple(index for index, row in enumerate(rows) if value(row, first) <= same)
     return tau + (1.0 - tau) * first, edges
 
 
 def _falls_at_once(row: list[float]) -> bool:
-    """Whether a polynomial that starts at zero goes below it from the start."""
+    """Return True if a polynomial that is zero at the start becomes negative at once."""
     return next((c for c in row[1:] if c != 0.0), 0.0) < 0.0

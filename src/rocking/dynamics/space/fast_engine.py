@@ -1,4 +1,4 @@
-"""The compiled engine in space: bodies, motions and laws as the tables that it takes, and its results by name."""
+"""The compiled engine in space: tables of bodies, motions and laws, and its results by name."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from rocking.restitution.space.calibrated import calibrated_position
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 PIECE = 1 << 15
-"""Histories handed to the engine at a time: memory beside the results does not grow with their number."""
+"""Histories per call of the engine, so that only the memory for results grows with their number."""
 
-MOST_CORNERS = 64  # most vertices of a base that the compiled engine takes
+MOST_CORNERS = 64  # largest number of vertices of a base in the compiled engine
 
 CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4, "calibrated-3d": 5}
-"""Laws without a number of their own."""
+"""Codes of the laws without a coefficient."""
 
 STEP = np.dtype([
     ("time", "f8"), ("kind", "f8"), ("contact", "f8"), ("number", "f8"), ("before", "f8"), ("after", "f8"),
@@ -41,8 +41,7 @@ _MOMENTS = 117  # of a vertex or an edge for what ked-3d-point needs: 9, 27 and 
 _ROUNDING = 1e-9
 _COMPILED = CompiledEngine(
     "rocking.dynamics._spatial",
-    "the batch engine in space was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
-    "`make engine`)",
+    "the batch engine in space was not built; install rocking with a C++17 compiler (in a checkout, `make engine`)",
     "the reference engine runs instead, row by row",
     ("peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held",
      "energy_lost"),
@@ -56,11 +55,11 @@ empty_tables, columns_by_name = _COMPILED.empty_tables, _COMPILED.columns_by_nam
 
 @dataclass(frozen=True)
 class BatchLaw:
-    """An impact law as the compiled engine knows it: by number."""
+    """Impact law in the form of the compiled engine."""
 
-    law: SpatialImpactLaw | None  # what the reference engine takes; None where the body decides it
-    label: str  # its name, or its coefficient
-    code: int  # its number in the compiled engine
+    law: SpatialImpactLaw | None  # law of the reference engine; None if it depends on the body
+    label: str  # name or coefficient
+    code: int  # code in the compiled engine
     coefficient: float = 0.0  # r of a fixed coefficient, otherwise 0 [-]
 
 
@@ -75,7 +74,7 @@ def batch_law(restitution: Any) -> BatchLaw:
         return BatchLaw(law, law.label, CODES[law.label])
     raise InvalidValueError(
         "restitution in a batch must be one of {models}, or a coefficient in [0, 1], got "
-        "{model}; one history, by simulate, takes any law",
+        "{model}; simulate accepts any law",
         models=", ".join(CODES),
         model=f"{law.label!r:.60}",
     )
@@ -83,29 +82,29 @@ def batch_law(restitution: Any) -> BatchLaw:
 
 @dataclass(frozen=True, eq=False)
 class RowTable:
-    """The rows of a batch: every combination of bodies, motions, scales, restitutions and starts."""
+    """Rows of a batch: all combinations of bodies, motions, scales, restitutions and starts."""
 
     shape: tuple[int, int, int, int, int]  # numbers of bodies, motions, scales, restitutions and starts
     scales: FloatArray  # factors on the motions [-]
     laws: Sequence[BatchLaw]
     starts: Sequence[SpatialStart]
-    horizons: FloatArray  # how long to follow each body [s]; shape (bodies, motions)
+    horizons: FloatArray  # duration of each history [s]; shape (bodies, motions)
 
     def __len__(self) -> int:
         return int(np.prod(self.shape))
 
     def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:
-        """Return coefficient, scale, horizon, attitude, angular velocity (NaN: no start; (n, 10))."""
-        # body, motion, law (n, 3)
+        """Return rows (n, 10) of coefficient, scale, horizon, attitude and angular velocity, and indices (n, 3)."""
+        # the indices are body, motion and code of the law; an invalid start is NaN
         body, motion, scale, law, start = np.unravel_index(np.arange(first, last), self.shape)
-        none = np.full(7, np.nan)
-        states = [np.concatenate([s.quaternion, s.body_velocity]) if s.valid else none for s in self.starts]
+        no_start = np.full(7, np.nan)
+        states = [np.concatenate([s.quaternion, s.body_velocity]) if s.valid else no_start for s in self.starts]
         numbers = np.empty((last - first, 10))
-        numbers[:, 0] = np.array([each.coefficient for each in self.laws])[law]
+        numbers[:, 0] = np.array([item.coefficient for item in self.laws])[law]
         numbers[:, 1] = self.scales[scale]
         numbers[:, 2] = self.horizons[body, motion]
         numbers[:, 3:] = np.array(states)[start]
-        codes = np.array([each.code for each in self.laws], np.int64)
+        codes = np.array([item.code for item in self.laws], np.int64)
         return numbers, np.column_stack([body, motion, codes[law]]).astype(np.int64)
 
 
@@ -117,7 +116,7 @@ def run_compiled(
     threads: int | None,
     progress: Progress,
 ) -> tuple[Results, str]:
-    """Return the results of all rows, and which engine gave them."""
+    """Return the results of all rows, and the name of the engine."""
     stock = _stock(bodies, grounds, table, settings.gravity)
     results, counts = empty_tables(len(table))
     limits = {"threads": thread_count(threads), **_limits(settings)}
@@ -126,8 +125,8 @@ def run_compiled(
         stock.run(*table.piece(first, last), results[first:last], counts[first:last], **limits)
         if progress is not None:
             progress(last - first)
-    used = f"fast ({instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
-    return columns_by_name(results, counts), used
+    engine_name = f"fast ({instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
+    return columns_by_name(results, counts), engine_name
 
 
 def steps_of(
@@ -140,7 +139,7 @@ def steps_of(
     start: SpatialStart | None = None,
     settings: SpaceBatchSettings | None = None,
 ) -> np.ndarray:
-    """Return a history's steps, fields of `STEP`, as the compiled engine computes them in any batch, bit for bit."""
+    """Return the steps of a history, with fields of `STEP`, identical to those of a batch in the compiled engine."""
     settings = settings or SpaceBatchSettings()
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
@@ -150,14 +149,14 @@ def steps_of(
 
 
 def _stock(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gravity: float) -> Any:
-    """Return bodies and motions as the compiled engine keeps them."""
+    """Return bodies and motions in the form of the compiled engine."""
     codes = {law.code for law in table.laws}
     numbers, corners, vertices = _body_table(bodies, gravity)
     moments = _moment_table(bodies) if CODES["ked-3d-point"] in codes else np.zeros(0)
-    places, positions = _position_table(bodies, codes)
+    offsets, positions = _position_table(bodies, codes)
     degree, motions, times, accelerations = _motion_table(grounds)
     return module().Stock(
-        numbers, np.column_stack([corners, places]), vertices, moments, positions,
+        numbers, np.column_stack([corners, offsets]), vertices, moments, positions,
         degree, motions, times, accelerations, instruction_set(),
     )  # fmt: skip
 
@@ -170,12 +169,12 @@ def _limits(settings: SpaceBatchSettings) -> dict[str, Any]:
 
 
 def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Return bodies as numbers."""
-    # Mass, frequency, size, lift, radius, centre, inertia; NaN where there is no body (shape (n, 17)). First vertex and
-    # number of vertices, none for a round base (shape (n, 2)). Vertices of all of them [m] (shape (m, 2)).
+    """Return tables of bodies."""
+    # Mass, frequency, size, lift, radius, centre, inertia; NaN without a body (shape (n, 17)). First vertex and
+    # number of vertices, zero for a round base (shape (n, 2)). Vertices of all bodies [m] (shape (m, 2)).
     numbers, corners = np.full((len(bodies), 17), np.nan), np.zeros((len(bodies), 2), np.int64)
     points: list[FloatArray] = []
-    used = 0
+    vertex_count = 0
     for k, body in enumerate(bodies):
         if body is None:
             continue
@@ -187,20 +186,19 @@ def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, F
             )  # fmt: skip
         scalars = (body.mass, body.frequency(gravity), body.size, body.lift, body.radius)
         numbers[k] = np.concatenate([scalars, body.centre, body.inertia.ravel()])
-        corners[k] = used, count
+        corners[k] = vertex_count, count
         points.append(body.vertices[:, :2])
-        used += count
+        vertex_count += count
     vertices = np.concatenate(points) if points else np.zeros((0, 2))
     return numbers, corners, np.ascontiguousarray(vertices)
 
 
 def _moment_table(bodies: Bodies) -> FloatArray:
-    """Return 117 moments for ked-3d-point of every vertex, then every edge."""
-    # NaN where the mass is not known [kg, kg m, kg m2]
+    """Return 117 moments for ked-3d-point per vertex, then per edge."""
+    # NaN without a distribution of mass [kg, kg m, kg m2]
     if any(body is not None and body.round for body in bodies):
         raise InvalidValueError(
-            "ked-3d-point on a round base lands on any point of its rim: no moments there; take ked-3d, or "
-            'engine="reference" takes it'
+            'ked-3d-point does not apply to a round base in a batch; use ked-3d, or engine="reference"'
         )
     rows = [_moments(body) for body in bodies if body is not None]
     return np.concatenate(rows) if rows else np.zeros(0)
@@ -213,53 +211,55 @@ def _moments(body: SpatialBody) -> FloatArray:
     if body.matter is None:
         return np.full(2 * len(body.vertices) * _MOMENTS, np.nan)
     solid, origin = body.matter.placed
-    places = body.vertices - origin
-    places[np.abs(places[:, 2]) <= _ROUNDING * solid.size, 2] = 0.0
-    edges = [Edge(place, along) for place, along in zip(places, body.edges, strict=True)]
-    landings: list[Corner | Edge] = [*map(Corner, places), *edges]
+    vertices = body.vertices - origin
+    vertices[np.abs(vertices[:, 2]) <= _ROUNDING * solid.size, 2] = 0.0
+    edges = [Edge(vertex, along) for vertex, along in zip(vertices, body.edges, strict=True)]
+    landings: list[Corner | Edge] = [*map(Corner, vertices), *edges]
     moments = [kept_moments(solid, onto) for onto in landings]
-    return np.concatenate([part.ravel() for each in moments for part in (each.second, each.third, each.fourth)])
+    return np.concatenate(
+        [tensor.ravel() for moment in moments for tensor in (moment.second, moment.third, moment.fourth)]
+    )
 
 
 def _position_table(bodies: Bodies, codes: set[int]) -> tuple[IntArray, FloatArray]:
-    """Return the impulse position of a landing of the whole base, which ked-3d and calibrated-3d need."""
-    # Of both models first interval and number of intervals; none for a model that no row has, and of ked-3d none for a
-    # body whose distribution of mass is not known (shape (n, 4)). First and last azimuth of an interval [rad], and the
-    # coefficients of k over it [-] (shape (m, 3 + HIGHEST)).
-    places = np.zeros((len(bodies), 4), np.int64)
+    """Return tables of the impulse position for a landing of the full base, for ked-3d and calibrated-3d."""
+    # First interval and number of intervals for both models (shape (n, 4)); zero for a model without rows, and for
+    # ked-3d without a distribution of mass. First and last azimuth of an interval [rad], and the coefficients of k over
+    # it [-] (shape (m, 3 + HIGHEST)).
+    ranges = np.zeros((len(bodies), 4), np.int64)
     rows: list[list[float]] = []
-    for number, body in enumerate(bodies):
+    for index, body in enumerate(bodies):
         if body is None:
             continue
         if CODES["ked-3d"] in codes and body.matter is not None:
             table = impulse_position(body.matter.placed[0]).table()
-            places[number, :2] = len(rows), len(table)
+            ranges[index, :2] = len(rows), len(table)
             rows += table
         if CODES["calibrated-3d"] in codes:
             table = calibrated_position(body.moments, body.footprint).table()
-            places[number, 2:] = len(rows), len(table)
+            ranges[index, 2:] = len(rows), len(table)
             rows += table
-    return places, np.array(rows).reshape(-1, HIGHEST + 3)
+    return ranges, np.array(rows).reshape(-1, HIGHEST + 3)
 
 
 def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
-    """Return motions as numbers."""
-    # Degree of all of them: 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
-    # stretches of all of them [s]. Accelerations by motion, stretch, power and axis [m/s2].
-    most = max(ground.coefficients.shape[2] for ground in grounds) - 1
-    if most > 7:
+    """Return tables of motions."""
+    # Common degree, 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
+    # stretches of all motions [s]. Accelerations by motion, stretch, power and axis [m/s2].
+    highest = max(ground.coefficients.shape[2] for ground in grounds) - 1
+    if highest > 7:
         raise InvalidValueError(
-            "motions must be polynomials of degree at most 7, got {degree}", degree=most, hint="sample them"
+            "motions must be polynomials of degree at most 7, got {degree}", degree=highest, hint="sample the motions"
         )
-    degree = 1 if most <= 1 else 7
-    places = np.zeros((len(grounds), 3), np.int64)
+    degree = 1 if highest <= 1 else 7
+    offsets = np.zeros((len(grounds), 3), np.int64)
     times, rows = [], []
-    at, first = 0, 0
+    time_offset, value_offset = 0, 0
     for k, ground in enumerate(grounds):
         row = np.zeros((ground.count, degree + 1, 3))
         row[:, : ground.coefficients.shape[2]] = ground.coefficients.transpose(0, 2, 1)
-        places[k] = at, first, ground.count
-        at, first = at + len(ground.times), first + row.size
+        offsets[k] = time_offset, value_offset, ground.count
+        time_offset, value_offset = time_offset + len(ground.times), value_offset + row.size
         times.append(ground.times)
         rows.append(row.ravel())
-    return degree, places, np.concatenate(times), np.concatenate(rows)
+    return degree, offsets, np.concatenate(times), np.concatenate(rows)

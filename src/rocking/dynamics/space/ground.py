@@ -22,7 +22,7 @@ class SpatialGround:
     """Accelerations of the ground along x, y and z, from time zero on; at rest after the last stretch."""
 
     times: FloatArray  # ends of the stretches; the first one is zero [s]; shape (n + 1,)
-    # accelerations over each stretch by power, over a unit of time that is the stretch [m/s2]; shape (n, 3, degree + 1)
+    # accelerations over each stretch by power; the unit of time is the stretch [m/s2]; shape (n, 3, degree + 1)
     coefficients: FloatArray
 
     @property
@@ -31,49 +31,49 @@ class SpatialGround:
 
     @property
     def end(self) -> float:
-        """When the ground comes to rest [s]."""
+        """End of the motion [s]."""
         return float(self.times[-1])
 
-    def part(self, stretch: int, start: float, length: float) -> FloatArray:
-        """Return accelerations by power over a part of a stretch, over a unit of time that is the part [m/s2]."""
+    def segment(self, stretch: int, start: float, length: float) -> FloatArray:
+        """Return accelerations by power over a segment of a stretch, which is the unit of time [m/s2]."""
         if stretch >= self.count:
             return np.zeros((3, 1))
-        whole = self.times[stretch + 1] - self.times[stretch]
-        to, width = (start - self.times[stretch]) / whole, length / whole
-        if to == 0.0 and width == 1.0:
+        duration = self.times[stretch + 1] - self.times[stretch]
+        offset, width = (start - self.times[stretch]) / duration, length / duration
+        if offset == 0.0 and width == 1.0:
             return np.asarray(self.coefficients[stretch])
-        return np.array([shifted(row.tolist(), to, width) for row in self.coefficients[stretch]])
+        return np.array([shifted(row.tolist(), offset, width) for row in self.coefficients[stretch]])
 
     def at(self, time: FloatArray) -> FloatArray:
-        """Return the accelerations at some times; where a motion jumps, the value after the jump [m/s2]."""
+        """Return the accelerations at times [s]; at a jump, the value after it [m/s2], shape (n, 3)."""
         inside = (time >= 0.0) & (time < self.end)
         k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(self.count - 1, 0))
         if not self.count:
             return np.zeros((time.size, 3))
         tau = (time - self.times[k]) / (self.times[k + 1] - self.times[k])
-        found = applied(self.coefficients[k], powers(tau, self.coefficients.shape[2]))
-        return np.where(inside[:, None], found, 0.0)
+        accelerations = applied(self.coefficients[k], powers(tau, self.coefficients.shape[2]))
+        return np.where(inside[:, None], accelerations, 0.0)
 
 
 def ground_of(
     x: Component = None, y: Component = None, vertical: Component = None, *, until: float = np.inf, scale: float = 1.0
 ) -> SpatialGround:
-    """Return three motions [m/s2], or None, with one clock as one."""
-    # until: when the ground stops, if before they end [s]
+    """Return up to three motions [m/s2] on common stretches; None for a component at rest."""
+    # until: end of the ground motion, if before the end of the records [s]
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]
     if not ends:
         return SpatialGround(np.zeros(1), np.zeros((0, 3, 1)))
     times = np.unique(np.concatenate(ends))
-    least = min(float(np.diff(part).min()) for part in ends)
-    times = times[np.concatenate([[True], np.diff(times) > _SAME * least])]
+    min_step = min(float(np.diff(pieces).min()) for pieces in ends)
+    times = times[np.concatenate([[True], np.diff(times) > _SAME * min_step])]
     times = times[: np.searchsorted(times, until * (1.0 - 1e-12), side="left") + 1]
-    degree = max(part.shape[1] for _, part in rows)
-    made = np.zeros((len(times) - 1, 3, degree))
-    for which, (stops, polynomials) in enumerate(rows):
+    degree = max(pieces.shape[1] for _, pieces in rows)
+    coefficients = np.zeros((len(times) - 1, 3, degree))
+    for axis, (stops, polynomials) in enumerate(rows):
         if stops.size:
-            made[:, which, : polynomials.shape[1]] = scale * _recut(stops, polynomials, times)
-    return SpatialGround(times, made)
+            coefficients[:, axis, : polynomials.shape[1]] = scale * _recut(stops, polynomials, times)
+    return SpatialGround(times, coefficients)
 
 
 def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
@@ -84,26 +84,26 @@ def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
     segments = motion.upright_segments() if along_z else motion.segments()  # type: ignore[union-attr]
     if segments.vertical is not None:
         raise InvalidValueError(
-            "the {component} component must not have a vertical part of its own", component=name,
-            hint="hand it over as vertical=GroundMotion(...)",
+            "the {component} component must not have a vertical component", component=name,
+            hint="use vertical=GroundMotion(...)",
         )  # fmt: skip
     return np.asarray(np.arange(segments.count + 1) * segments.step, dtype=np.float64), segments.horizontal
 
 
 def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> FloatArray:
     """Rewrite polynomials on the stretches between `times`."""
-    made = np.zeros((len(times) - 1, polynomials.shape[1]))
-    shared = min(len(stops), len(times)) - 1
-    if np.array_equal(stops[: shared + 1], times[: shared + 1]):
-        made[:shared] = polynomials[:shared]
-        return made
+    result = np.zeros((len(times) - 1, polynomials.shape[1]))
+    common = min(len(stops), len(times)) - 1
+    if np.array_equal(stops[: common + 1], times[: common + 1]):
+        result[:common] = polynomials[:common]
+        return result
     middles = 0.5 * (times[1:] + times[:-1])
-    place = np.searchsorted(stops, middles) - 1
-    for k, inner in enumerate(place):
+    indices = np.searchsorted(stops, middles) - 1
+    for k, inner in enumerate(indices):
         if inner >= len(polynomials):
             break
-        whole = stops[inner + 1] - stops[inner]
-        to, width = (times[k] - stops[inner]) / whole, (times[k + 1] - times[k]) / whole
-        same = abs(to) < _SAME and abs(width - 1.0) < _SAME
-        made[k] = polynomials[inner] if same else shifted(polynomials[inner].tolist(), to, width)
-    return made
+        duration = stops[inner + 1] - stops[inner]
+        offset, width = (times[k] - stops[inner]) / duration, (times[k + 1] - times[k]) / duration
+        same = abs(offset) < _SAME and abs(width - 1.0) < _SAME
+        result[k] = polynomials[inner] if same else shifted(polynomials[inner].tolist(), offset, width)
+    return result

@@ -1,4 +1,4 @@
-"""What an impact leaves of an angular velocity: the interface, and the models of restitution behind it."""
+"""Angular velocity after an impact in space: the interface, and its restitution models."""
 
 import math
 import numbers
@@ -18,14 +18,14 @@ from rocking.restitution.space.impact import NO_MATTER
 
 @runtime_checkable
 class SpatialImpactLaw(Protocol):
-    """What an impact costs in space; the engine finds which points stay on the ground, a law how fast the body goes on.
+    """Interface of the restitution in space: the engine chooses the contact, the law returns the velocity after impact.
 
-    Any object with these two members serves.
+    Any object with these two members is accepted.
     """
 
     @property
     def label(self) -> str:
-        """What to call it in titles and tables."""
+        """Name in titles and tables."""
         ...
 
     def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
@@ -36,12 +36,12 @@ class SpatialImpactLaw(Protocol):
         body : SpatialBody
             The body.
         impact : SpatialImpact
-            Angular velocity and pivot before, the corner or edge that stays, and the vertical, in axes of the body.
+            Angular velocity and pivot before, the corner or edge in contact after, and the vertical, in body axes.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity after, in axes of the body; along the edge if there is one [rad/s].
+            Angular velocity after, in body axes; along the edge for an impact on an edge [rad/s].
         """
         ...
 
@@ -57,7 +57,7 @@ class ModelLaw:
         return self.model.name
 
     def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
-        """Return the angular velocity that the model gives."""
+        """Return the angular velocity of the model."""
         return self.model.turned(impact)
 
 
@@ -66,14 +66,14 @@ PLASTIC = SpatialHousner()
 
 
 class FixedSpatial:
-    """The direction of the projection, and r of the angular velocity: ``|w+| = r |w-|``, as in the plane.
+    """Fixed coefficient: the direction of the projection with ``|w+| = r |w-|``, as in the plane.
 
-    It never creates energy: a body that lands on its longer lever keeps at most what it had. A vertex that only grazes
-    the ground costs this share as well, which no real impact does: for bodies that turn about edges, not for wobblers.
+    The law never creates energy: it limits the energy of a body that lands on its longer lever. A vertex that only
+    grazes the ground loses the same fraction, unlike a real impact; use the law for rotation about edges.
     """
 
     def __init__(self, coefficient: float) -> None:
-        self.coefficient = checks.within("restitution", coefficient, 0.0, 1.0, hint="more would create energy")
+        self.coefficient = checks.within("restitution", coefficient, 0.0, 1.0, hint="a larger value creates energy")
 
     @property
     def label(self) -> str:
@@ -81,17 +81,17 @@ class FixedSpatial:
 
     def velocity_after(self, body: SpatialBody, impact: SpatialImpact) -> FloatArray:
         """Return the scaled projection."""
-        made = PLASTIC.turned(impact)  # Eq. 1
-        left = body.kinetic(impact.onto.point, made)
-        if not left > 0.0:
-            return made
-        bound = body.kinetic(impact.pivot, impact.velocity) / left
-        wanted = self.coefficient**2 * dot(impact.velocity, impact.velocity) / dot(made, made)
-        return np.asarray(math.sqrt(min(wanted, bound)) * made)  # Eq. 101
+        projected = PLASTIC.turned(impact)  # Eq. 1
+        energy_after = body.kinetic(impact.onto.point, projected)
+        if not energy_after > 0.0:
+            return projected
+        bound = body.kinetic(impact.pivot, impact.velocity) / energy_after
+        square_ratio = self.coefficient**2 * dot(impact.velocity, impact.velocity) / dot(projected, projected)
+        return np.asarray(math.sqrt(min(square_ratio, bound)) * projected)  # Eq. 101
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:
-    """Return an impact law of a word, a coefficient or a law."""
+    """Return the impact law of a name, a coefficient or a law."""
     if isinstance(restitution, (str, SpatialModel)):
         model = spatial_model(restitution)
         if model.needs_solid and body is not None and body.matter is None:
@@ -110,9 +110,9 @@ def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLa
 
 
 def _lacking(restitution: object) -> str:
-    """Return what an object is that is no law, and what it lacks."""
+    """Return the description of an object that is not a law, with its missing members."""
     if isinstance(restitution, type):
-        return f"the class {restitution.__name__}: create an object, {restitution.__name__}()"
+        return f"the class {restitution.__name__}; use an object, {restitution.__name__}()"
     if type(restitution).__module__ == "builtins":
         return f"{restitution!r:.60}"
     missing = [name for name in ("label", "velocity_after") if not hasattr(restitution, name)]

@@ -1,4 +1,4 @@
-"""What an impact, or a moment at which forces decide, leaves a body standing on."""
+"""Contact of a body after an impact, or after a choice by forces."""
 
 import numpy as np
 
@@ -21,17 +21,17 @@ from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
-CLOSED = 1e-12  # gaps below this share of the size of a body are closed
+CLOSED = 1e-12  # gap over the size of a body that counts as closed
 
 
 def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:
-    """Return what an impact on some vertices leaves, and the angular velocity after."""
-    # where all contacts pull (a vertex that grazes fast would stick only if pulled) the one with the least, which shows
-    found = of_impact(body, state, touching, law)
-    return found[0] if found else _least_pull(body, state, touching)
+    """Return the contact and velocity after an impact on a set of vertices."""
+    # if all contacts are tensile (a fast grazing vertex sticks under tension only), the one with the smallest tension
+    continuations = of_impact(body, state, touching, law)
+    return continuations[0] if continuations else _min_tension(body, state, touching)
 
 
-def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
+def _min_tension(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
     best: Continuation | None = None
     for contact in candidates(body, touching):
         velocity = state.plastic(body, contact)
@@ -46,24 +46,24 @@ def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...
 
 
 def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
-    """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not."""
-    # A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both:
-    # in the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner
-    # slips. Returns edge or face, after a plastic impact.
+    """Return the contact after impacts that accumulate at one time: the largest set of touching points."""
+    # A body that turns about the vertical on one corner while the next corner chatters comes to rest on both: without
+    # slip this is the limit. The impulses show the tension: a real corner slips. The result is an edge or a face after
+    # a plastic impact.
     contact = next(candidates(body, touching))
     velocity = state.plastic(body, contact)
     return Continuation(contact, velocity, impulses(body, state, contact, velocity))
 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
-    """Return a round base laid flat, as rolling alone never comes to rest; None where it would lift at once."""
+    """Return a round base at rest on its face, since rolling never ends; None if it would lift at once."""
     flat, still = complementarity.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
 
 def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
-    """Return what a round base that falls flat stands on, its far side or all of it, and the angular velocity after."""
+    """Return the contact of a round base that lands flat, its far side or its face, and the velocity after."""
     far = complementarity.rim(body, -state.pivot[:2])
     push = impulses(body, state, far, state.plastic(body, far))
     velocity = law.velocity_after(body, state.impact(body, far))
@@ -77,21 +77,23 @@ def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) ->
 def settled(
     body: SpatialBody, state: SpatialState, choice: Continuation, touching: tuple[int, ...], slow: float, *, weak: bool
 ) -> Continuation:
-    """Return what a body stands on once points that leave slower than `slow` [m/s] are taken to stay."""
+    """Return the contact if points with opening speeds up to `slow` [m/s] stay closed."""
     if body.round:
         push = forces(body, complementarity.face(body), np.zeros(3), state.up, state.field)[1]
         rests = (weak or choice.contact.mode is ContactMode.REST) and push.min() >= 0.0
         return Continuation(complementarity.face(body), np.zeros(3), choice.supports) if rests else choice
     opening = applied(cross(choice.velocity, body.vertices - choice.contact.pivot), state.up)
-    every = range(len(body.vertices)) if weak else touching
-    near = tuple(i for i in every if weak or i in choice.contact.points or opening[i] <= slow)
-    found = of_forces(body, state, near, choice.contact)
-    return Continuation(found[0].contact, found[0].velocity, choice.supports) if found else choice
+    indices = range(len(body.vertices)) if weak else touching
+    nearby = tuple(i for i in indices if weak or i in choice.contact.points or opening[i] <= slow)
+    continuations = of_forces(body, state, nearby, choice.contact)
+    return (
+        Continuation(continuations[0].contact, continuations[0].velocity, choice.supports) if continuations else choice
+    )
 
 
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[ContactSet, tuple[int, ...]]:
-    """Return the contact that initial conditions imply: the lowest touching points stay."""
-    # the face for a body that stands still
+    """Return the contact of initial conditions, and the touching points: the lowest points stay in contact."""
+    # the face for a body at rest
     if body.round:
         return _started_round(body, velocity, up), ()
     height = applied(body.vertices, up)
@@ -100,19 +102,19 @@ def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Co
     if size == 0.0 and len(touching) == len(body.vertices):
         return complementarity.face(body), touching
     rates = applied(cross(velocity, body.vertices), up)
-    low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
-    for number in low:
-        along = body.edges[number]
+    lowest = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
+    for index in lowest:
+        along = body.edges[index]
         alone = float(np.abs(velocity - along * dot(along, velocity)).max()) <= CLOSED * size
-        if (number + 1) % len(body.vertices) in low and alone:
-            return complementarity.edge(body, number), touching
-    return complementarity.vertex(body, low[0]), touching
+        if (index + 1) % len(body.vertices) in lowest and alone:
+            return complementarity.edge(body, index), touching
+    return complementarity.vertex(body, lowest[0]), touching
 
 
 def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> ContactSet:
     sine = norm(up[:2])
-    lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
-    if not np.any(lean):
+    direction = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
+    if not np.any(direction):
         return complementarity.face(body)
-    contact = complementarity.rim(body, -lean)
+    contact = complementarity.rim(body, -direction)
     return complementarity.rolling(contact) if sine > START_ROLLING else contact

@@ -28,14 +28,14 @@ from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
-_PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the end
+_PATIENCE, _MAX_LATE_STEPS = 300.0, 10_000  # largest time over 1 / p, and number of steps, after the end
 
 
-Ending = tuple[Outcome, Status] | None  # how a history has ended; None while it goes on
+Ending = tuple[Outcome, Status] | None  # end of a history; None before
 
 
 class SpatialReference:
-    """One history."""
+    """Engine of one history."""
 
     def __init__(
         self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: SpaceSettings
@@ -50,16 +50,16 @@ class SpatialReference:
         self.time, self.stretch = 0.0, 0
         self.place = np.zeros(2)
         self.touching: tuple[int, ...] = ()
-        self.at_once, self.moment = 0, -1.0  # events at one moment
+        self.at_once, self.moment = 0, -1.0  # consecutive events at one time
         self.late = 0  # steps after the end
-        self.landing = False  # whether a round base falls flat
-        self.sticks = False  # whether impacts piled up on this edge, so that no end of it is released
+        self.landing = False  # True while a round base falls flat
+        self.sticks = False  # True after accumulated impacts on this edge: neither end is released
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
     def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
         """Return the history from an attitude on the ground."""
-        # horizon: how long, or longer where its fate is open then [s]
+        # horizon: duration, extended while the outcome is open [s]
         self.horizon = horizon
         self.integration_state = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
@@ -72,32 +72,32 @@ class SpatialReference:
     def _start(self) -> None:
         contact, touching = started(self.body, self.velocity, self._up)
         self.contact = contact
-        # the base lies with its origin at the origin of the ground, and the body leans from there
+        # the upright base has its origin at that of the ground; the body is tilted from this position
         self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
         if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
         self.touching = tuple(i for i in touching if i not in contact.points)
         if self.touching and not np.any(self.velocity):
-            found = of_forces(self.body, self._state(), touching, self.contact)
-            if found:
-                self._stand(found[0].contact, touching)
+            continuations = of_forces(self.body, self._state(), touching, self.contact)
+            if continuations:
+                self._stand(continuations[0].contact, touching)
         if self.contact.mode is not ContactMode.REST:
             self._note(SpatialEventKind.UPLIFT, 0.0, self._kinetic())
 
     def _rest(self) -> Ending:
-        """Rest until the ground lifts the body, or to the end."""
+        """Rest until the next uplift, or to the end."""
         self.velocity = np.zeros(3)
         rotation = attitude.matrix(self.quaternion)
         tau = 0.0
         if self.stretch < self.ground.count:
             begin, end = self.ground.times[self.stretch : self.stretch + 2]
             tau = (self.time - begin) / (end - begin)
-        since = self.stretch, tau
-        found = event_functions.next_uplift(self.body, self.ground, rotation, self.settings.gravity, since)
-        if found is None:
+        position = self.stretch, tau
+        uplift = event_functions.next_uplift(self.body, self.ground, rotation, self.settings.gravity, position)
+        if uplift is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
             return Outcome.ROCKED if self.integration_state.events else Outcome.NO_UPLIFT, Status.GOOD
-        self.stretch, tau, edges = found
+        self.stretch, tau, edges = uplift
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
         lifted = event_functions.lifted(self.body, self._state(), edges)
@@ -109,35 +109,37 @@ class SpatialReference:
 
     def _move(self) -> Ending:
         """Advance to the end of the step, or to the first event before it."""
-        step, piece, whole = self._step()
+        step, piece, is_last = self._step()
         self.late += self._final is not False
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
         landing = event_functions.first_contact(self.body, self.contact, step, self.touching)
-        letting = event_functions.first_release(self.body, self.contact, step)
-        rim = None
+        release = event_functions.first_release(self.body, self.contact, step)
+        rim_event = None
         if self.body.round:
-            rim = event_functions.rim_events(self.body, self.contact, step, landing=self.landing)
-        held = False  # whether contact stays although the ground would let go
-        if letting is not None:
-            nearly_flat = event_functions.nearly_flat(self.body, rolling.value(step.up, letting[0]))
-            held = self.sticks if letting[1] >= 0 else nearly_flat
-        letting = None if held else letting
-        self.sticks &= held
-        at = min([1.0, *(e[0] for e in (landing, letting) if e is not None), *([] if rim is None else [rim])])
-        self._arrive(piece, at, step.up[:, 2], whole=whole and at == 1.0)
-        if self._up[2] <= 0.0:  # it lies before anything else happens
+            rim_event = event_functions.rim_events(self.body, self.contact, step, landing=self.landing)
+        is_held = False  # True if contact persists in spite of a tensile force
+        if release is not None:
+            nearly_flat = event_functions.nearly_flat(self.body, rolling.value(step.up, release[0]))
+            is_held = self.sticks if release[1] >= 0 else nearly_flat
+        release = None if is_held else release
+        self.sticks &= is_held
+        arrival = min(
+            [1.0, *(e[0] for e in (landing, release) if e is not None), *([] if rim_event is None else [rim_event])]
+        )
+        self._arrive(piece, arrival, step.up[:, 2], is_last=is_last and arrival == 1.0)
+        if self._up[2] <= 0.0:  # the body lies before any other event
             return self._ended()
-        if landing is not None and landing[0] == at:
+        if landing is not None and landing[0] == arrival:
             return self._impact(landing[1])
-        if rim is not None and rim == at:
+        if rim_event is not None and rim_event == arrival:
             return self._rim()
-        if letting is not None and letting[0] == at:
-            return self._released(letting[1])
-        return self._stepped(step, at, held=held)
+        if release is not None and release[0] == arrival:
+            return self._released(release[1])
+        return self._stepped(step, arrival, held=is_held)
 
     def _stepped(self, step: Step, at: float, *, held: bool) -> Ending:
-        """Look at where a step without event has led."""
+        """Check the state at the end of a step without event."""
         pulls = self.contact.mode is ContactMode.EDGE
         pulls = pulls and min(event_functions.end_forces(self.body, self.contact, step, at)) < -self.pull
         self.integration_state.held += step.length if pulls or held else 0.0
@@ -154,15 +156,15 @@ class SpatialReference:
         rate = self.p + norm(self.velocity)
         if self.contact.mode is ContactMode.ROLLING:
             up = self._up
-            # at most half of the way to lying flat: there the contact runs round
+            # at most half of the fall to flat, where the contact moves around the rim fast
             rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
-        length, last = self.settings.longest_step / rate, False
+        length, is_last = self.settings.longest_step / rate, False
         if self.stretch < self.ground.count:
-            left = float(self.ground.times[self.stretch + 1]) - self.time
-            length, last = min(length, left), length >= left
+            remaining = float(self.ground.times[self.stretch + 1]) - self.time
+            length, is_last = min(length, remaining), length >= remaining
         elif self.time < self.horizon:
             length = min(length, self.horizon - self.time)
-        field = -self.ground.part(self.stretch, self.time, length)
+        field = -self.ground.segment(self.stretch, self.time, length)
         field[2, 0] -= self.settings.gravity
         order = min(max(rolling.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
         places = self.place[None, :]
@@ -171,16 +173,20 @@ class SpatialReference:
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
             q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
-        part = rolling.trusted_part(q, w, length, self.settings.tolerance)
-        if not part > 0.0:
+        fraction = rolling.trusted_part(q, w, length, self.settings.tolerance)
+        if not fraction > 0.0:
             return None, None, False
-        q, w, up, places = (rolling.stretched(c, part) for c in (q, w, up, places))
-        field = rolling.stretched(field.T, part).T
+        q, w, up, places = (rolling.stretched(c, fraction) for c in (q, w, up, places))
+        field = rolling.stretched(field.T, fraction).T
         heading = (
             np.zeros(3) if self.contact.axis is None else applied(attitude.matrix(self.quaternion), self.contact.axis)
         )
-        step = Step(length * part, w, up, field, heading)
-        return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.contact), last and part == 1.0
+        step = Step(length * fraction, w, up, field, heading)
+        return (
+            step,
+            StepPiece(self.time, length * fraction, 1.0, q, w, places, self.contact),
+            is_last and fraction == 1.0,
+        )
 
     def _flow(self) -> rolling.PivotFlow:
         key = self.contact.mode, self.contact.points
@@ -190,13 +196,13 @@ class SpatialReference:
             self.flows[key] = rolling.PivotFlow(self.body, self.contact.pivot, self.contact.axis)
         return self.flows[key]
 
-    def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
+    def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, is_last: bool) -> None:
         self.quaternion = attitude.normalised(rolling.value(piece.quaternions, at))
         self.velocity = rolling.value(piece.velocities, at)
         self.place = rolling.value(piece.places, at)
         self.integration_state.add(piece, at, self._up, self._pivot, vertical)
         self.time = piece.start + at * piece.length
-        if whole:
+        if is_last:
             self.stretch += 1
             self.time = float(self.ground.times[self.stretch])
 
@@ -233,15 +239,15 @@ class SpatialReference:
             self.contact, self.landing = complementarity.rolling(self.contact), False
             return self._guard()
         if rolls and sine > 0.5 * event_functions.LANDING:
-            falls = event_functions.lands_flat(up, self.velocity)
-            if falls is not None:
-                self._stand(complementarity.rim(self.body, falls))
+            direction = event_functions.lands_flat(up, self.velocity)
+            if direction is not None:
+                self._stand(complementarity.rim(self.body, direction))
                 self.landing = True
             return self._guard()
         self.landing = False
         state = self._state()
         if rolls:
-            self.contact = complementarity.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
+            self.contact = complementarity.rim(self.body, state.pivot[:2])  # nearly flat: the point of contact is fixed
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
@@ -249,7 +255,7 @@ class SpatialReference:
     def _land(
         self, choice: Continuation, touching: tuple[int, ...], height: float = 0.0, *, piled: bool = False
     ) -> Ending:
-        """Stand on what an impact leaves; height: potential energy that was given up to lie flat [J]."""
+        """Continue after an impact; height: potential energy lost in lying flat [J]."""
         before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else height)
         self._stand(choice.contact)
         self.velocity = choice.velocity
@@ -264,10 +270,10 @@ class SpatialReference:
             self._note(SpatialEventKind.REST, 0.0, 0.0)
         return self._guard()
 
-    def _released(self, which: int) -> Ending:
-        if which < 0:
-            return self.integration_state.falls(self._pivot, self._up), Status.LOST_CONTACT
-        stays, leaves = self.contact.points[1 - which], self.contact.points[which]
+    def _released(self, end_index: int) -> Ending:
+        if end_index < 0:
+            return self.integration_state.outcome_of_flight(self._pivot, self._up), Status.LOST_CONTACT
+        stays, leaves = self.contact.points[1 - end_index], self.contact.points[end_index]
         self._stand(complementarity.vertex(self.body, stays), (leaves,))
         energy = self._kinetic()
         self._note(SpatialEventKind.CHANGE, energy, energy)
@@ -282,7 +288,7 @@ class SpatialReference:
         self.moment = self.time
         if self.at_once > _STUCK or len(self.integration_state.events) > self.settings.most_events:
             return Outcome.FAILED, Status.TOO_MANY_EVENTS
-        # a base of many corners may have no step without an impact; whether it still can fall is asked here too
+        # a base with many vertices may have no step without impact: the outcome is checked here too
         if self._final is False or self.contact.mode is ContactMode.REST:
             return None
         return self._ended()
@@ -290,10 +296,10 @@ class SpatialReference:
     def _ended(self) -> Ending:
         return self.integration_state.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
-    # ---- small parts ------------------------------------------------------------------------------------------------
+    # ---- details --------------------------------------------------------------------------------------------------
 
     def _stand(self, contact: ContactSet, touching: Iterable[int] = ()) -> None:
-        """Move the pivot, take rounding out of the attitude, and keep which other points touch."""
+        """Change the contact: move the pivot, correct rounding of the attitude, store the other touching points."""
         rotation = attitude.matrix(self.quaternion)
         self.place = self.place + applied(rotation, contact.pivot - self._pivot)[:2]
         if contact.mode is ContactMode.REST:
@@ -313,14 +319,14 @@ class SpatialReference:
 
     @property
     def _final(self) -> bool | None:
-        """Whether the motion is over: None after a patience beyond which nothing is decided any more."""
+        """True after the end of the motion; None after the longest extension."""
         end = max(self.horizon, self.ground.end)
-        if self.time > end + _PATIENCE / self.p or self.late > _MOST_LATE:
+        if self.time > end + _PATIENCE / self.p or self.late > _MAX_LATE_STEPS:
             return None
         return self.time >= end
 
     def _state(self) -> SpatialState:
-        field = -self.ground.part(self.stretch, self.time, 1.0)[:, 0]
+        field = -self.ground.segment(self.stretch, self.time, 1.0)[:, 0]
         field[2] -= self.settings.gravity
         axis, rotation = self.contact.axis, attitude.matrix(self.quaternion)
         along = np.zeros(3) if axis is None else self.contact.length * axis
@@ -334,5 +340,5 @@ class SpatialReference:
 
     @property
     def _weak(self) -> bool:
-        """Whether hardly any energy is left; a body on its way down has less than none, and is not at rest."""
+        """True if the energy is negligible; the absolute value excludes a falling body."""
         return self._kinetic() + abs(self._potential()) < self.weak

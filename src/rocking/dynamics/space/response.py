@@ -1,4 +1,4 @@
-"""The response of a body in space, under motions or let go: attitude, contact, impacts, energy, outcome, direction."""
+"""Response of a body in space: attitude, contact, impacts, energy, outcome, direction."""
 
 import math
 from dataclasses import dataclass, replace
@@ -39,34 +39,34 @@ SPATIAL_IMPACT = np.dtype([
     ("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("impulse", "f8"), ("pull", "f8"),
     ("contact", "U8"), ("vertices", "U64"),
 ])  # fmt: skip
-"""Fields of `SpatialResponse.impacts`: [s], [J], [J], vertical [N s], of that the part the ground would have to pull
-for the points to stick [N s], what stays, and its vertices."""
+"""Fields of `SpatialResponse.impacts`: [s], [J], [J], vertical impulse [N s], largest tensile impulse without slip
+[N s], contact after, and its vertices."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SpatialResponse(ResponseBase):
-    """What `simulate` returns of a body in space; everything that takes time is computed when first asked for.
+    """Response of a body in space without friction; costly quantities are computed at first access.
 
     Parameters
     ----------
     body : SpatialBody
         The body.
     ground : SpatialGround
-        The motion as it was integrated [m/s2].
+        The integrated motion [m/s2].
     law : SpatialImpactLaw
-        What impacts cost.
+        Restitution.
     settings : SpaceSettings
-        How it was integrated.
+        Settings of the integration.
     time : ndarray
-        Times of the samples, to the end or until the body lies [s].
+        Times of the samples, up to the end or until the body lies [s].
     trajectory : SpatialTrajectory
-        What the engine returned.
+        Result of the engine.
     end : float
-        End of the response; the engine may have gone on to find out whether the body overturns [s].
+        End of the response; the engine may continue beyond it to decide the outcome [s].
     components : tuple
-        Motions along x, y and upwards; None where there is none.
+        Motions along x, y and upwards; None for a component at rest.
     ends_early : bool
-        Whether it was followed for 15 / p after the motion only, because no impact cost energy in that time.
+        True if the response ends 15 / p after the motion because no impact lost energy in that time.
     scale : float
         Factor on the motion [-].
     """
@@ -110,17 +110,17 @@ class SpatialResponse(ResponseBase):
 
     @cached_property
     def azimuth(self) -> FloatArray:
-        """Direction in which the body leans at the samples, from x towards y [rad]."""
+        """Direction of tilt at the samples, from x towards y [rad]."""
         return attitude.azimuth(self.quaternion)
 
     @property
     def contact(self) -> IntArray:
-        """Number of the regime at the samples: 0 rest, 1 edge, 2 vertex, 3 rolling."""
+        """Code of the regime at the samples: 0 rest, 1 edge, 2 vertex, 3 rolling."""
         return self.states.contact
 
     @cached_property
     def centre(self) -> FloatArray:
-        """Path of the centre of mass on the ground, z above it, shape (n, 3) [m]."""
+        """Path of the centre of mass relative to the ground, z upwards, shape (n, 3) [m]."""
         return self.states.point(self.body.centre)
 
     @cached_property
@@ -130,69 +130,69 @@ class SpatialResponse(ResponseBase):
 
     @cached_property
     def intervals(self) -> list[tuple[float, float, ContactMode, tuple[int, ...]]]:
-        """Start and end [s], regime, and vertices on the ground, as long as they stay the same."""
-        found: list[tuple[float, float, ContactMode, tuple[int, ...]]] = []
+        """Intervals of one contact: start and end [s], regime, and vertices in contact."""
+        rows: list[tuple[float, float, ContactMode, tuple[int, ...]]] = []
         for piece in self.trajectory.pieces:
-            if found and piece.start >= self.end:
+            if rows and piece.start >= self.end:
                 break
             now = piece.contact.mode, piece.contact.points
-            if found and found[-1][2:] == now:
-                found[-1] = (found[-1][0], min(piece.end, self.end), *now)
+            if rows and rows[-1][2:] == now:
+                rows[-1] = (rows[-1][0], min(piece.end, self.end), *now)
             else:
-                found.append((piece.start, min(piece.end, self.end), *now))
-        return found
+                rows.append((piece.start, min(piece.end, self.end), *now))
+        return rows
 
     @cached_property
     def impacts(self) -> np.ndarray:
-        """Impacts in order: time, energy_before, energy_after, impulse, pull, contact, vertices."""
+        """Impacts in order, with the fields of `SPATIAL_IMPACT`."""
         rows = []
         for event in self.trajectory.impacts:
             if event.time > self.end:
                 break
-            stays, push = event.contact, event.impulses
-            total = push.sum() if stays.mode is ContactMode.EDGE else push[-1]
-            vertices = "-".join(map(str, stays.points))
+            contact, push = event.contact, event.impulses
+            total = push.sum() if contact.mode is ContactMode.EDGE else push[-1]
+            vertices = "-".join(map(str, contact.points))
             pull = max(0.0, -float(push.min()))
-            rows.append((event.time, event.before, event.after, total, pull, stays.mode.name.lower(), vertices))
+            rows.append((event.time, event.before, event.after, total, pull, contact.mode.name.lower(), vertices))
         return np.array(rows, dtype=SPATIAL_IMPACT)
 
     @property
     def peak_tilt(self) -> float:
-        """Largest tilt, between the samples too; a quarter turn if it overturned [rad]."""
+        """Largest tilt, also between the samples; a quarter turn after overturning [rad]."""
         return self.trajectory.peak_tilt
 
     @cached_property
     def overturning_direction(self) -> float:
-        """Direction in which it lies, from x towards y; NaN if it did not overturn [rad]."""
+        """Direction of overturning, from x towards y; NaN without overturning [rad]."""
         return self.trajectory.direction
 
     @property
     def overturned_over(self) -> str:
-        """Edge, vertex or rim over which it overturned, in words; empty if it did not."""
-        over = self.trajectory.fell_over
+        """Edge, vertex or rim of overturning as text; empty without overturning."""
+        over = self.trajectory.overturned_over
         if over is None or not over.points:
             return "" if over is None else "its rim"
         return f"{over.mode.name.lower()} {'-'.join(map(str, over.points))}"
 
     @cached_property
     def still_rocking(self) -> bool:
-        """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
+        """True if the body has not overturned and still moves at the end; `impacts` excludes later impacts."""
         return self.outcome is Outcome.ROCKED and int(self.at(self.end).contact[0]) != ContactMode.REST.code
 
     @property
     def _last_motion(self) -> tuple[str, float, str]:
         last = self.at(self.end)
         angle, rate = np.degrees(attitude.tilt(last.quaternion)[0]), math.hypot(*last.angular_velocity[0])
-        words = "leaning by {rotation:.3g} degrees and turning at {velocity:.3g} rad/s"
-        return "rocking", self.end, Message(words, {"rotation": angle, "velocity": rate})
+        template = "tilted by {rotation:.3g} degrees, rotating at {velocity:.3g} rad/s"
+        return "rocking", self.end, Message(template, {"rotation": angle, "velocity": rate})
 
     @property
     def _end_reason(self) -> str:
         if not self.ends_early:
             return super()._end_reason
         return (
-            f"no impact cost energy in the {_AFTER:g} / p after the motion, so it does not come to rest; duration= in "
-            "Python follows it further"
+            f"no impact lost energy in the {_AFTER:g} / p after the motion, so that the body does not come to rest; "
+            "use duration= in Python for a longer response"
         )
 
     @property
@@ -202,50 +202,50 @@ class SpatialResponse(ResponseBase):
         count = self.impacts.size
         impacts = f"{count} impact{'s' * (count != 1)}"
         if self.outcome is Outcome.OVERTURNED:
-            where = f" over {self.overturned_over}" if self.overturned_over else ""
+            contact = f" over {self.overturned_over}" if self.overturned_over else ""
             return (
-                f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{where} after {impacts}, "
+                f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{contact} after {impacts}, "
                 f"past the point of no return at {self.overturning_time:.4g} s"
             )
         sentence = f"rocked and stayed standing: largest tilt {math.degrees(self.peak_tilt):.4g} degrees, {impacts}"
-        if pulled := int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum()):
-            sentence += f"; at {pulled} of them a corner would have slipped or bounced rather than stuck"
+        if tensile := int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum()):
+            sentence += f"; at {tensile} of them a corner would have slipped or bounced rather than stuck"
         if self.cut_impacts:
             sentence += f"; at {self.cut_impacts} of them the base is so narrow that the loss is Housner's"
-        if passed := self.near_flat_passages:
+        if passages := self.near_flat_passages:
             sentence += (
-                f"; it rolled {passed} time{'s' * (passed != 1)} through lying nearly flat, after which small causes "
-                "have large effects: take many motions, not one"
+                f"; it passed {passages} time{'s' * (passages != 1)} through a nearly flat position, after which small "
+                "changes have large effects: use many motions, not one"
             )
-            if held := self.trajectory.held:
-                sentence += f"; there its rim would have hopped or slipped for {held:.2g} s"
+            if held_time := self.trajectory.held:
+                sentence += f"; in these positions its rim would have hopped or slipped for {held_time:.2g} s"
         return sentence
 
     @cached_property
     def cut_impacts(self) -> int:
-        """At how many impacts the model would have the impulse beyond the new foot, and has it at the foot."""
+        """Number of impacts at which the model moves the impulse from beyond the new foot to the foot."""
         cut = getattr(getattr(self.law, "model", None), "cut", None)
         if cut is None or self.body.matter is None:
             return 0
-        solid, found = self.body.matter()[0], 0
+        solid, count = self.body.matter()[0], 0
         for old, event in pairwise(self.trajectory.events):
             if event.time > self.end:
                 break
             if event.kind is not SpatialEventKind.IMPACT:
                 continue
-            if self.body.round:  # across the axis about which it lies down
+            if self.body.round:  # perpendicular to the axis of rotation
                 before = self.at(np.nextafter(event.time, 0.0))
                 spin = applied(before.rotation[0].T, before.angular_velocity[0])
                 step = self.body.radius / norm(spin[:2]) * np.array([spin[1], -spin[0], 0.0])
             else:
                 step, axis = event.contact.pivot - old.contact.pivot, event.contact.axis
                 step = step if axis is None else step - dot(step, axis) * axis
-            found += cut(solid, step)
-        return found
+            count += cut(solid, step)
+        return count
 
     @cached_property
     def near_flat_passages(self) -> int:
-        """How often a round base rolled through lying nearly flat, below 1 % of its slenderness angle."""
+        """Number of passages of a round base through a tilt below 1 % of its slenderness angle."""
         if not self.body.round:
             return 0
         rolling = [p for p in self.trajectory.pieces if p.contact.mode is ContactMode.ROLLING and p.start < self.end]
@@ -257,8 +257,8 @@ class SpatialResponse(ResponseBase):
     def energy(self) -> ResponseEnergy:
         """Kinetic and potential energy, work of the ground and losses at the samples [J].
 
-        The work of the ground is integrated along the history, -m a_g . v_C by Gauss on every step of the engine; the
-        losses are those of the impacts. Nothing is computed from the balance, so that the balance can be checked.
+        The work of the ground is the integral of -m a_g . v_C, by Gauss quadrature on every step of the engine; the
+        losses are those of the impacts. No term is computed from the balance, so that the balance is a check.
         """
         impacts = self.trajectory.impacts
         lost = np.concatenate([[0.0], np.cumsum([event.before - event.after for event in impacts])])
@@ -270,23 +270,23 @@ class SpatialResponse(ResponseBase):
     @property
     def _work(self) -> FloatArray:
         """Work of the ground up to each sample [J]."""
-        made, total, body = np.zeros(self.time.size), 0.0, self.body
+        work, total, body = np.zeros(self.time.size), 0.0, self.body
         for piece in self.trajectory.pieces:
             first, last = np.searchsorted(self.time, [piece.start, piece.end], side="left")
             if not (piece.end > piece.start and len(piece.quaternions) > 1 and piece.start < self.ground.end):
-                made[first:last] = total
+                work[first:last] = total
                 continue
             stops = np.concatenate([[piece.start], self.time[first:last], [piece.end]])
             half = 0.5 * np.diff(stops)
             times = (0.5 * (stops[1:] + stops[:-1]))[:, None] + half[:, None] * _NODES
-            q, w, place = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
-            states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
+            q, w, position = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
+            states = States(body, q, w, pivots(body, piece, q), position, np.zeros(len(q), dtype=np.int64))
             power = -body.mass * (self.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)  # Eq. 46
-            done = applied(power.reshape(times.shape), _WEIGHTS) * half
-            made[first:last] = total + np.cumsum(done)[:-1]
-            total += float(done.sum())
-        made[self.time >= self.trajectory.pieces[-1].end] = total
-        return made
+            increments = applied(power.reshape(times.shape), _WEIGHTS) * half
+            work[first:last] = total + np.cumsum(increments)[:-1]
+            total += float(increments.sum())
+        work[self.time >= self.trajectory.pieces[-1].end] = total
+        return work
 
     def at(self, time: Any) -> States:
         """Return the state of the body at any times within the response.
@@ -299,12 +299,12 @@ class SpatialResponse(ResponseBase):
         Returns
         -------
         States
-            Attitude, velocity, contact, places.
+            Attitude, velocity, contact, positions.
 
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or before the start or after the end by more than rounding.
+            If a time is not finite, or outside the response by more than rounding.
         """
         times = np.atleast_1d(self._times_within(time, self.trajectory.pieces[-1].end))
         return states_of(self.body, self.trajectory, times)
@@ -314,7 +314,7 @@ class SpatialResponse(ResponseBase):
         direction = self.overturning_direction
         return {
             "motions": {
-                axis: motion_answer(each, self.scale) for axis, each in zip(_AXES, self.components, strict=True)
+                axis: motion_answer(motion, self.scale) for axis, motion in zip(_AXES, self.components, strict=True)
             },
             "restitution": self.law.label, "peak_tilt": self.peak_tilt,
             "direction": None if math.isnan(direction) else direction,
@@ -353,9 +353,9 @@ class SpatialResponse(ResponseBase):
 
     @property
     def _tables(self) -> dict[str, AnswerRows]:
-        spelled = [(start, end, mode.name.lower(), points) for start, end, mode, points in self.intervals]
+        rows = [(start, end, mode.name.lower(), points) for start, end, mode, points in self.intervals]
         return {
-            "intervals": interval_rows(spelled, "contact", "vertices"), "impacts": AnswerRows.of(self.impacts),
+            "intervals": interval_rows(rows, "contact", "vertices"), "impacts": AnswerRows.of(self.impacts),
         }  # fmt: skip
 
     @property
@@ -384,39 +384,39 @@ def response_in_space(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> SpatialResponse:
-    """Return how a body rocks in space; without any component, when it is let go."""
-    # duration: how long to follow the body [s]; if not given, the motion and 15 / p after it, and where it then still
-    # rocks until it rests or lies, at most 300 / p after the motion, unless it rocks on without loss
-    made = SpatialBody.of(body)
+    """Return the response of a body in space without friction; on ground at rest without components."""
+    # duration [s]: by default the motion and 15 / p after it; while the body still rocks with losses, until it rests or
+    # lies, at most 300 / p after the motion
+    spatial_body = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start.check_grounded()
-    start = started(start, made.frequency(conventions.g))
-    p, shaken = made.frequency(settings.gravity), [motion for motion in components if motion is not None]
-    if shaken and not all(hasattr(motion, "duration") for motion in shaken):
-        ground_of(*components)  # says which of them is no motion
-    usual = max(motion.duration for motion in shaken) + _AFTER / p if shaken else _LONG / p
-    length = usual if duration is None else checks.positive("duration", duration, "s")
-    ground = ground_of(*components, until=length if shaken else np.inf, scale=scale)
-    plausibility.warn(plausibility.of_scaled(shaken, scale))
-    law = law_of(restitution, made)
+    start = started(start, spatial_body.frequency(conventions.g))
+    p, motions = spatial_body.frequency(settings.gravity), [motion for motion in components if motion is not None]
+    if motions and not all(hasattr(motion, "duration") for motion in motions):
+        ground_of(*components)  # an error that names the invalid component
+    default_length = max(motion.duration for motion in motions) + _AFTER / p if motions else _LONG / p
+    length = default_length if duration is None else checks.positive("duration", duration, "s")
+    ground = ground_of(*components, until=length if motions else np.inf, scale=scale)
+    plausibility.warn(plausibility.of_scaled(motions, scale))
+    law = law_of(restitution, spatial_body)
 
     def followed(until: float) -> SpatialTrajectory:
-        engine = SpatialReference(made, ground, law, settings)
+        engine = SpatialReference(spatial_body, ground, law, settings)
         return engine.run(start.quaternion, start.body_velocity, until)
 
-    found, ends_early, least = followed(length), False, length if shaken else 0.0
-    if shaken and duration is None and _rocks(found):
-        ends_early = not _loses_energy(found, length - _AFTER / p)
+    trajectory, ends_early, min_length = followed(length), False, length if motions else 0.0
+    if motions and duration is None and _rocks(trajectory):
+        ends_early = not _loses_energy(trajectory, length - _AFTER / p)
         longest = length + (_LONG - _AFTER) / p
-        longer = found if ends_early else followed(longest)
-        if longer is not found and longer.outcome is not Outcome.FAILED:
-            found, length = longer, longest
-    last = found.pieces[-1]
-    rests = duration is None and last.contact.mode is ContactMode.REST
-    end = min(length, max(least, last.start + _FINE / p) if rests else last.end)
-    steps = [motion.time_step for motion in shaken if isinstance(motion, GroundMotion)]
+        longer = trajectory if ends_early else followed(longest)
+        if longer is not trajectory and longer.outcome is not Outcome.FAILED:
+            trajectory, length = longer, longest
+    last = trajectory.pieces[-1]
+    is_at_rest = duration is None and last.contact.mode is ContactMode.REST
+    end = min(length, max(min_length, last.start + _FINE / p) if is_at_rest else last.end)
+    steps = [motion.time_step for motion in motions if isinstance(motion, GroundMotion)]
     time = samples(min(steps, default=_FINE / p), end)
-    return SpatialResponse(made, ground, law, settings, time, found, end, components, ends_early, scale)
+    return SpatialResponse(spatial_body, ground, law, settings, time, trajectory, end, components, ends_early, scale)
 
 
 def _rocks(history: SpatialTrajectory) -> bool:
@@ -424,20 +424,20 @@ def _rocks(history: SpatialTrajectory) -> bool:
 
 
 def _loses_energy(history: SpatialTrajectory, since: float) -> bool:
-    """Return whether an impact after a time costs energy; a rim that rolls on without one never comes to rest."""
+    """Return True if an impact after a time loses energy; otherwise a rolling rim never comes to rest."""
     return any(event.after < event.before for event in history.impacts if event.time > since)
 
 
 def started(start: SpatialStart, pace: float) -> SpatialStart:
-    """Return how a body starts, checked; pace: frequency parameter, or sqrt(g / size) [1/s]."""
-    most = 100.0 * pace
+    """Return a start after checks of its ranges; pace: frequency parameter, or sqrt(g / size) [1/s]."""
+    max_velocity = 100.0 * pace
     tilt = checks.within("tilt", start.tilt, 0.0, 0.5 * math.pi, unit="rad", open_high=True, hint="in radians")
     azimuth, yaw = (checks.number(name, getattr(start, name), "rad") for name in ("azimuth", "yaw"))
     spin = checks.real_array("angular_velocity", start.angular_velocity, "rad/s")
-    if spin.shape != (3,) or not (np.abs(spin) <= most).all():
+    if spin.shape != (3,) or not (np.abs(spin) <= max_velocity).all():
         raise InvalidValueError(
             "{parameter} must be three numbers {allowed}, got {value}", parameter="angular_velocity",
-            allowed=Range(-most, most, "rad/s"), value=start.angular_velocity,
+            allowed=Range(-max_velocity, max_velocity, "rad/s"), value=start.angular_velocity,
         )  # fmt: skip
     height = checks.within("height", start.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
     velocity = checks.real_array("velocity", start.velocity, "m/s")

@@ -1,4 +1,4 @@
-"""How to integrate a body in space that does not slip, one history or many."""
+"""Settings of the integration of a body in space without slip, for one history or many."""
 
 from dataclasses import dataclass
 
@@ -7,15 +7,15 @@ from rocking.dynamics.settings import SHORTEST_STEP, Settings, counted, ranged
 
 @dataclass(frozen=True)
 class SpaceSettings(Settings):
-    """How to integrate one history of a body in space without `friction`.
+    """Settings of the integration of one history of a body in space without `friction`.
 
     Parameters
     ----------
     gravity, most_events
         As for all mechanics, `Settings`.
     rest_speed : float
-        Speed, over sqrt(g R), below which a vertex that leaves the ground and would fall back at once stays; its square
-        is the energy, over that of overturning, at which a body comes to rest [-].
+        Speed over sqrt(g R); a vertex that opens more slowly and would close at once stays in contact. Its square is
+        the energy over that of overturning at which a body comes to rest [-].
     longest_step : float
         Longest Taylor step as p times time [-].
     order : int
@@ -33,7 +33,7 @@ class SpaceSettings(Settings):
 
 @dataclass(frozen=True)
 class SpaceBatchSettings(Settings):
-    """How to integrate many histories of bodies in space without `friction`.
+    """Settings of the integration of many histories of bodies in space without `friction`.
 
     Parameters
     ----------

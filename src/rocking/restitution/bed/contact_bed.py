@@ -1,4 +1,4 @@
-"""The bed: where the base touches, what stands under each point, and friction along the base line."""
+"""The bed: contact points of the base, their laws, and friction along the base line."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -26,9 +26,9 @@ class FrictionKind(IntEnum):
 class BaseFriction(ABC):
     """Friction between base and bed.
 
-    All points of a flat base move along the base line at one speed u, so that the bed sticks or slides as a whole:
-    the shear force is ``|T| <= mu N`` with N the sum of all normal forces. Which point takes which part of a sticking
-    force is not determined; results show it in proportion to the normal forces.
+    All points of a flat base have one velocity u along the base line, so that all stick or all slide: the shear force
+    is ``|T| <= mu N`` with N the sum of all normal forces. The distribution of a sticking force over the points is not
+    determined; results use the proportions of the normal forces.
     """
 
     @property
@@ -48,7 +48,7 @@ class Sticking(BaseFriction):
 
 @dataclass(frozen=True)
 class SlidingFriction(BaseFriction):
-    """What the laws share by which the base can slide."""
+    """Base class of friction laws with sliding."""
 
     coefficient: float  # mu [-]
 
@@ -80,15 +80,15 @@ class Coulomb(SlidingFriction):
 class RegularisedCoulomb(SlidingFriction):
     """Smooth friction: T = -mu N u / sqrt(u^2 + v^2).
 
-    Where Coulomb's law sticks, this one creeps at u = v / sqrt((mu N / T)^2 - 1), less than v while T is below
-    0.7 mu N: that is its error.
+    Instead of sticking, the base creeps at u = v / sqrt((mu N / T)^2 - 1), below v for T < 0.7 mu N: this is the error
+    of the law.
 
     Parameters
     ----------
     coefficient : float
         mu [-].
     creep : float
-        v, small against the landing speed [m/s].
+        v, small compared with the landing speed [m/s].
 
     Raises
     ------
@@ -113,28 +113,28 @@ Rule = Literal["ends", "trapezoid"]
 
 @dataclass(frozen=True, eq=False)
 class ContactBed:
-    """Contact points of a base, seen from the plumb line of the centre of mass, towards the new foot.
+    """Contact points of a base, relative to the plumb line of the centre of mass, positive towards the new foot.
 
     Parameters
     ----------
     positions : array_like
-        Where the points are, in growing order [m].
+        Positions of the points, increasing [m].
     law : ContactLaw
         One copy of the contact law.
     shares : array_like, optional
-        Copies of the law under each point; by default the law is the whole bed's, shared equally [-].
+        Copies of the law under each point; by default equal fractions with sum 1 [-].
     heights : array_like, optional
         Profile of the base: heights of the points over the base line [m].
     friction : BaseFriction, optional
         By default the base cannot slide.
     kinematics : {"exact", "small"}
-        Points of a rigid body at any rotation, or the small-base kinematics of Psycharis and Jennings (1983), which
-        lets the base line tilt without moving sideways and is meant for a base that sticks.
+        Exact rotation of a rigid body, or the small-base kinematics of Psycharis and Jennings (1983) without sideways
+        displacement, for a base that sticks.
 
     Raises
     ------
     InvalidValueError
-        If positions do not grow, or an array has another length or holds what is not a number.
+        If positions do not increase, or an array has another length or values that are not finite.
 
     Examples
     --------
@@ -156,19 +156,19 @@ class ContactBed:
         positions = checks.finite("positions", self.positions, "m")
         count = len(positions)
         if count > 1 and not bool((np.diff(positions) > 0.0).all()):
-            raise InvalidValueError("positions of contact points must grow; two points on one place?")
+            raise InvalidValueError("positions of contact points must increase; remove repeated points")
         shares = np.full(count, 1.0 / count) if self.shares is None else self.shares
         heights = np.zeros(count) if self.heights is None else self.heights
-        made: dict[str, Any] = {
+        values: dict[str, Any] = {
             "positions": positions,
             "shares": checks.finite("shares", shares, shape=(count,)),
             "heights": checks.finite("heights", heights, "m", (count,)),
             "kinematics": checks.one_of("kinematics", self.kinematics, get_args(Kinematics)),
         }
-        checks.all_positive("shares", made["shares"])
+        checks.all_positive("shares", values["shares"])
         checks.of_kind("law", self.law, ContactLaw, "a contact law")
         checks.of_kind("friction", self.friction, BaseFriction, "a friction of the base")
-        for name, value in made.items():
+        for name, value in values.items():
             object.__setattr__(self, name, value)
 
     @classmethod
@@ -183,21 +183,21 @@ class ContactBed:
         friction: BaseFriction | None = None,
         kinematics: Kinematics = "exact",
     ) -> Self:
-        """Return equal points along the base of a body, its feet included; the law is the whole bed's.
+        """Return equal points along the base of a body, including its feet; the law is that of the bed.
 
         Parameters
         ----------
         body : Body
-            The body; where its base is hollow there are no points between the stretches.
+            The body; there are no points between separate contact stretches of its base.
         count : int
-            Number of points, two or more; a body that stands on points has its two feet only.
+            Number of points, two or more; a body with point contacts has its two feet only.
         law : ContactLaw
-            The law of the whole bed.
+            The law of the bed.
         onto : {"left", "right"}
             The new foot.
         rule : {"trapezoid", "ends"}
-            Half a share for the ends of a stretch, as the trapezoidal rule gives, or equal shares for all points;
-            the first converges with the square of the spacing to the continuous bed, the second linearly.
+            Half weights at the ends of a stretch by the trapezoidal rule, or equal weights for all points. The first
+            converges quadratically with the spacing to the continuous bed, the second linearly.
         friction : BaseFriction, optional
             By default the base cannot slide.
         kinematics : {"exact", "small"}
@@ -214,18 +214,18 @@ class ContactBed:
             If there are fewer than two points or the rule is unknown.
         """
         count = checks.whole("count", count, 2, 100_000)
-        alike = checks.one_of("rule", rule, get_args(Rule)) == "ends"
+        is_equal = checks.one_of("rule", rule, get_args(Rule)) == "ends"
         positions, lengths = _along(contact_of(body, onto), body, count, onto)
-        shares = np.ones(len(positions)) if alike else lengths
+        shares = np.ones(len(positions)) if is_equal else lengths
         return cls(positions, law, shares / shares.sum(), friction=friction or Sticking(), kinematics=kinematics)
 
     def with_profile(self, heights: Any) -> Self:
-        """Return the same bed under a base that is not flat.
+        """Return the bed with a base that is not flat.
 
         Parameters
         ----------
         heights : array_like
-            Heights of the points over the base line, below zero for a bulge [m].
+            Heights of the points over the base line; negative for a bulge [m].
 
         Returns
         -------
@@ -241,7 +241,7 @@ class ContactBed:
 
 
 def _along(patches: FloatArray, body: Body, count: int, onto: Foot) -> tuple[FloatArray, FloatArray]:
-    """Points and the lengths of base they stand for."""
+    """Return points [m] and their lengths of the base [m]."""
     left, right = body.local_feet[0] - body.local_moments.x, body.local_feet[1] - body.local_moments.x
     ends = (left, right) if onto == "right" else (-right, -left)
     if count == 2 or len(patches) == 0:

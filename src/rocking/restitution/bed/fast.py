@@ -1,4 +1,4 @@
-"""The bed's fast engine as Python sees it: whether it is there, and impacts in and out."""
+"""The fast engine of the bed: availability, inputs and results."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -22,12 +22,12 @@ def _module() -> ModuleType | None:
 
 
 def available() -> bool:
-    """Return whether the bed's fast engine was built with this installation; else the reference serves."""
+    """Return True if the fast engine of the bed was built with this installation; otherwise the reference runs."""
     return _module() is not None
 
 
-def one(setup: Setup, most_steps: int = MOST_STEPS) -> Run:
-    """Compute one impact with its history."""
+def compute_one(setup: Setup, most_steps: int = MOST_STEPS) -> Run:
+    """Return the results of one impact with its history."""
     module = _module()
     assert module is not None
     results, counts = np.zeros((1, len(RESULTS))), np.zeros((1, len(COUNTS)), dtype=np.int64)
@@ -45,7 +45,7 @@ def one(setup: Setup, most_steps: int = MOST_STEPS) -> Run:
 
 
 def many(setups: Sequence[Setup], threads: int) -> Results:
-    """Compute many impacts; no row sees another, so that threads do not change a bit."""
+    """Return the results of many impacts; rows are independent, and the number of threads changes no bit."""
     module = _module()
     assert module is not None
     firsts: dict[int, int] = {}
@@ -80,7 +80,7 @@ def _numbers(setup: Setup) -> FloatArray:
 
 
 def _choices(setup: Setup, first: int, most_steps: int) -> IntArray:
-    """Return the row of whole numbers of an impact."""
+    """Return the row of integers of an impact."""
     bed = setup.rigid.bed
     numbers = [
         int(setup.law.kind), int(bed.friction.numbers[0]), int(bed.kinematics == "exact"), setup.end,

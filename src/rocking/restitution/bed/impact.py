@@ -1,6 +1,6 @@
-"""Impacts on a bed, resolved in time, and the coefficient that emerges, by three measures that share one limit.
+"""Impacts on a bed, resolved in time, and their coefficient of restitution by three measures with a common limit.
 
-By the next peak, where the energy of hops and vibration is not counted; by the energy at the end, where it is; by the
+The measures are the next peak, without the energy of hops and vibration; the energy at the end, with it; and the
 angular velocity at the end of an impulsive impact, which has no peak (docs/theory/contact_bed.md).
 """
 
@@ -23,30 +23,29 @@ from rocking.restitution.bed.setup import Results, Setup, settlement, setup_of
 
 
 class BedStatus(Enum):
-    """How the computation of an impact ended; the value is the sentence a user reads."""
+    """Status of the computation of an impact; the value is a sentence for reports."""
 
     PEAK = "the rotation reached its next peak"
-    PARTED = "the bed has parted"
-    TIME_OUT = "neither a peak nor the end of the impact came in the time allowed"
-    TOO_MANY_STEPS = "the steps allowed did not suffice"
-    FAILED = "the step fell below rounding: no result"
-    TOPPLED = "the body passed its highest point: it topples"
+    PARTED = "the contact with the bed has ended"
+    TIME_OUT = "neither a peak nor the end of the impact within the time limit"
+    TOO_MANY_STEPS = "too many steps"
+    FAILED = "no result: the step is smaller than rounding"
+    TOPPLED = "the body passed its highest point and overturns"
 
 
 @dataclass(frozen=True, slots=True)
 class Emergent:
     """Coefficients of restitution of one impact."""
 
-    # by_peak, by_energy, by_velocity: theta_dot_after / theta_dot_before by each measure; NaN where it does not apply
-    # [-]
+    # theta_dot_after / theta_dot_before by each measure; NaN for a measure that does not apply [-]
     by_peak: float
     by_energy: float
     by_velocity: float
-    stopped: bool  # whether the body did not step onto the new foot
+    stopped: bool  # True if the body did not step onto the new foot
 
     @property
     def coefficient(self) -> float:
-        """By the peak where there is one, by the velocity of an impulsive impact, else by energy [-]."""
+        """Coefficient by the peak, otherwise by the velocity of an impulsive impact, otherwise by energy [-]."""
         values = (self.by_peak, self.by_velocity, self.by_energy)
         return next((value for value in values if not math.isnan(value)), math.nan)
 
@@ -57,7 +56,7 @@ def emergent_of(setup: Setup, row: Results) -> Emergent:
     if status in {BedStatus.FAILED, BedStatus.TOO_MANY_STEPS}:
         raise InvalidValueError(
             "no coefficient of restitution of this impact: {status}", status=status.value,
-            hint="stiffness or damping far off?",
+            hint="check stiffness and damping",
         )  # fmt: skip
     rigid = setup.rigid
     rotation, velocity = row["rotation"], row["angular_velocity"]
@@ -75,13 +74,13 @@ def emergent_of(setup: Setup, row: Results) -> Emergent:
         return Emergent(by_peak, 0.0, math.nan, stopped=True)
     weight = rigid.mass * setup.gravity
     depth, elastic = settlement(rigid, setup.law, rotation, weight)
-    # above rigid standing, the static energy of the foot added back
+    # above rigid rest, plus the static energy of the foot
     energy = row["energy_end"] - weight * rigid.lift(0.0) + (weight * depth - elastic)
     return Emergent(by_peak, ratio(energy), math.nan, stopped=False)
 
 
 def status_of(code: float) -> BedStatus:
-    """Return how a computation ended."""
+    """Return the status of a code."""
     return tuple(BedStatus)[int(code)]
 
 
@@ -91,21 +90,21 @@ ENGINES: tuple[BedEngine, ...] = ("auto", "fast", "reference")
 
 @dataclass(frozen=True, eq=False)
 class BedImpact:
-    """An impact with its history.
+    """Impact with its history.
 
     Parameters
     ----------
     setup : Setup
         Body, bed, start.
     results : dict of str to float
-        Of the names in `setup.RESULTS` and `setup.COUNTS`, such as "bed_loss" [J] or "contacts": how often the body as
-        a whole came into contact with the bed; hops are one less.
+        Results by the names in `setup.RESULTS` and `setup.COUNTS`, such as "bed_loss" [J] or "contacts", the number of
+        contacts of the body with the bed, one more than the number of hops.
     samples : dict of str to ndarray
-        History, of the names in `setup.SAMPLES`.
+        History by the names in `setup.SAMPLES`.
     forces : ndarray, shape (samples, points)
         Normal force of each point [N].
     intervals : ndarray, shape (contacts, 3)
-        Point, begin and end of each contact; the end is infinite for those that last [-, s, s].
+        Point, start and end of each contact; the end is infinite for a permanent contact [-, s, s].
     """
 
     setup: Setup
@@ -121,26 +120,26 @@ class BedImpact:
 
     @property
     def coefficient(self) -> float:
-        """Ratio theta_dot_after / theta_dot_before, as `emergent` defines it [-]."""
+        """Ratio theta_dot_after / theta_dot_before by `emergent` [-]."""
         return self.emergent.coefficient
 
     @property
     def status(self) -> BedStatus:
-        """How the computation ended."""
+        """Status of the computation."""
         return status_of(self.results["status"])
 
     @property
     def impulse_position(self) -> FloatArray:
-        """Position k(t) of the resultant over the half base, from its middle to the new foot; NaN in flight [-]."""
+        """Position k(t) of the resultant, from the middle of the base (0) to the new foot (1); NaN in flight [-]."""
         normal = self.samples["normal"]
         with np.errstate(invalid="ignore", divide="ignore"):
-            at = self.samples["moment"] / normal
-        at[normal <= 0.0] = np.nan
-        return np.asarray(self._over_half_base(at))
+            positions = self.samples["moment"] / normal
+        positions[normal <= 0.0] = np.nan
+        return np.asarray(self._over_half_base(positions))
 
     @property
     def mean_impulse_position(self) -> float:
-        """Position k of the whole impulse between first touch and parting, the weight's share of it included [-]."""
+        """Position k of the impulse between first touch and parting, including that of the weight [-]."""
         impulse = self.results["impulse"]
         return float(self._over_half_base(self.results["impulse_moment"] / impulse)) if impulse > 0.0 else math.nan
 
@@ -150,7 +149,7 @@ class BedImpact:
 
     @property
     def duration(self) -> float:
-        """From the first touch beyond the old foot until only the new foot presses and is arrested [s]."""
+        """Time from the first touch beyond the old foot to contact at the new foot at rest only [s]."""
         touch, parting = self.results["touch"], self.results["parting"]
         return float(parting - touch) if 0.0 <= touch <= parting else math.nan
 
@@ -171,21 +170,21 @@ def bed_impact(
     tolerance: float = 1e-9,
     engine: BedEngine = "auto",
 ) -> BedImpact:
-    """Let a body rock down onto its bed and resolve the impact in time, until the next peak.
+    """Return the impact of a rocking body on its bed, resolved in time up to the next peak.
 
     Parameters
     ----------
     body : Body
         The body.
     bed : ContactBed
-        Its contact points, laws and friction.
+        Contact points, laws and friction.
     rotation : float, optional
-        Rotation about the old foot at which it is let go [rad].
+        Initial rotation about the old foot [rad].
     angular_velocity : float, optional
-        theta_dot at which it lands, instead [rad/s].
+        theta_dot at landing, in place of `rotation` [rad/s].
     impulsive : bool
-        Leave gravity out, start flat and end when the bed has parted: the limit of a hard bed for laws that absorb
-        the impact in one contact.
+        Without gravity, from flat contact to the end of contact: the limit of a hard bed for laws that absorb the
+        impact in one contact.
     ground_acceleration : (float, float)
         Horizontal and vertical acceleration of the ground during the impact [m/s2].
     tolerance : float
@@ -201,9 +200,9 @@ def bed_impact(
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, the law cannot carry the body, or there is no such engine.
+        If a value is outside its range, the law cannot carry the body, or the engine is unknown.
     MissingExtraError
-        If the fast engine was asked for and not built.
+        If the fast engine is requested but not built.
 
     Examples
     --------
@@ -215,28 +214,27 @@ def bed_impact(
     >>> round(impact.coefficient, 2)
     0.7
     """
-    asked = checks.one_of("engine", engine, ENGINES)
+    requested = checks.one_of("engine", engine, ENGINES)
     setup = setup_of(
         body, bed, rotation=rotation, angular_velocity=angular_velocity, impulsive=impulsive,
         ground_acceleration=ground_acceleration, tolerance=tolerance,
     )  # fmt: skip
-    if asked == "fast" and not fast.available():
-        raise MissingExtraError(
-            "the bed's fast engine was not built: it takes a C++17 compiler when rocking is installed"
-        )
-    return BedImpact(setup, *(reference if asked == "reference" or not fast.available() else fast).one(setup))
+    if requested == "fast" and not fast.available():
+        raise MissingExtraError("the fast engine of the bed was not built; install rocking with a C++17 compiler")
+    chosen = reference if requested == "reference" or not fast.available() else fast
+    return BedImpact(setup, *chosen.compute_one(setup))
 
 
 @dataclass(frozen=True, eq=False)
 class BedImpacts:
-    """Results of many impacts, a row each.
+    """Results of many impacts, one row per impact.
 
     Parameters
     ----------
     setups : sequence of Setup
         The impacts.
     results : dict of str to ndarray
-        Columns by name, as of `BedImpact`.
+        Columns by name, as for `BedImpact`.
     emergent : tuple of Emergent
         Coefficients of restitution by three measures; NaN for an impact that failed.
     """
@@ -247,17 +245,17 @@ class BedImpacts:
 
     @property
     def coefficient(self) -> FloatArray:
-        """Coefficients of restitution; NaN for an impact that failed, see `status` [-]."""
+        """Coefficients of restitution [-]; NaN for an impact that failed, see `status`."""
         return np.array([row.coefficient for row in self.emergent])
 
     @property
     def stopped(self) -> BoolArray:
-        """Whether the body did not step onto the new foot."""
+        """True if the body did not step onto the new foot."""
         return np.array([row.stopped for row in self.emergent])
 
     @property
     def status(self) -> list[BedStatus]:
-        """How each computation ended."""
+        """Status of each computation."""
         return [status_of(code) for code in self.results["status"]]
 
     @property
@@ -267,7 +265,7 @@ class BedImpacts:
 
 
 def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
-    """Compute many impacts; the bits of a row depend neither on the threads nor on the other rows.
+    """Return many impacts; results of a row depend neither on the threads nor on other rows.
 
     Parameters
     ----------
@@ -279,12 +277,12 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     Returns
     -------
     BedImpacts
-        A row an impact, in the order given; one that fails says so in its status and has a coefficient of NaN.
+        One row per impact, in the order of `setups`; a failed impact has a status and a coefficient of NaN.
 
     Raises
     ------
     InvalidValueError
-        If there is no impact, or the number of threads is not a whole number above zero.
+        If there is no impact, or the number of threads is not an integer above zero.
 
     Examples
     --------
@@ -303,8 +301,8 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     if fast.available():
         results = fast.many(rows, number)
     else:
-        computed = [reference.one(row)[0] for row in rows]
-        results = {name: np.array([each[name] for each in computed]) for name in computed[0]}
+        computed = [reference.compute_one(row)[0] for row in rows]
+        results = {name: np.array([result[name] for result in computed]) for name in computed[0]}
     emergent = []
     for setup, *row in zip(rows, *(column.tolist() for column in results.values()), strict=True):
         try:

@@ -1,4 +1,4 @@
-"""What a contact point is made of: a force for a depth, its speed and its past."""
+"""Laws of contact points: force from depth, speed and greatest depth."""
 
 import math
 from abc import ABC, abstractmethod
@@ -23,20 +23,20 @@ class LawKind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class LawNumbers:
-    """A law as both engines take it, after the mass of the body is known."""
+    """Numbers of a law for a body of given mass, in the form of both engines."""
 
     kind: LawKind  # branch of the equations
     stiffness: float  # of one copy of the law [N/m, or N/m^exponent]
-    damping: float = 0.0  # kelvin-Voigt dashpot [N s/m]
+    damping: float = 0.0  # Kelvin-Voigt dashpot [N s/m]
     exponent: float = 1.0  # power of the depth [-]
-    viscosity: float = 0.0  # hunt-Crossley chi [s/m]
+    viscosity: float = 0.0  # Hunt-Crossley chi [s/m]
     rebound: float = 1.0  # velocity ratio of plastic unloading [-]
 
 
 class ContactLaw(ABC):
-    """Normal force of a contact point; it never pulls.
+    """Normal force of a contact point, never tensile.
 
-    A contact point stands on `share` copies of the law: forces, stiffness and damping are proportional to it.
+    A contact point has `share` copies of the law: forces, stiffness and damping are proportional to it.
     """
 
     @abstractmethod
@@ -46,22 +46,22 @@ class ContactLaw(ABC):
         Parameters
         ----------
         mass : float
-            Mass of the body, which a damping ratio refers to [kg].
+            Mass of the body, for a damping ratio [kg].
 
         Returns
         -------
         LawNumbers
-            Stiffness, damping and the rest in SI.
+            Stiffness, damping and other numbers in SI.
         """
 
 
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
-    """Return the force of one copy of a law, written without its branches."""
+    """Return the force of one copy of a law [N]."""
     # Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
     # max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. See
     # docs/theory/contact_bed.md; Walton and Braun (1986) for the unloading branch. depth: depths d of the points [m];
-    # speed: their rates d', positive while they sink [m/s]; deepest: greatest depths so far; only plastic unloading
-    # remembers them [m]. Returns forces on the body, upwards [N].
+    # speed: their rates d', positive during loading [m/s]; deepest: greatest depths so far, for plastic unloading [m].
+    # Returns forces on the body, upwards [N].
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.KELVIN_VOIGT:
         value = law.stiffness * depth + law.damping * speed  # Eq. 117
@@ -79,7 +79,7 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
 
 
 def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArray:
-    """Return the elastic energy of one copy of a law."""
+    """Return the elastic energy of one copy of a law [J]."""
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.PLASTIC:
         if law.rebound == 0.0:
@@ -90,7 +90,7 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
 
 
 def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
-    """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact."""
+    """Return the depth at which a law absorbs an energy at constant speed, the depth scale of an impact [m]."""
     order = law.exponent + 1.0
     spring = float((order * energy / (copies * law.stiffness)) ** (1.0 / order)) if law.stiffness > 0.0 else math.inf
     return min(spring, energy / (copies * law.damping * speed)) if law.damping > 0.0 else spring
@@ -103,7 +103,7 @@ class KelvinVoigt(ContactLaw):
     Parameters
     ----------
     stiffness : float
-        k of one copy of the law; zero leaves the dashpot alone [N/m].
+        k of one copy of the law; zero for a dashpot only [N/m].
     damping : float, optional
         c of one copy [N s/m]; by default from `damping_ratio`.
     damping_ratio : float, optional
@@ -112,7 +112,7 @@ class KelvinVoigt(ContactLaw):
     Raises
     ------
     InvalidValueError
-        If a value is negative, both dampings are given, or the law would give no force at all.
+        If a value is negative, both dampings are given, or the law has no force.
 
     Examples
     --------
@@ -127,19 +127,19 @@ class KelvinVoigt(ContactLaw):
     def __post_init__(self) -> None:
         checks.within("stiffness", self.stiffness, 0.0, 1e18, unit="N/m")
         if self.damping is not None and self.damping_ratio is not None:
-            raise InvalidValueError("give damping or damping_ratio, not both: one of them follows from the other")
+            raise InvalidValueError("use damping or damping_ratio, not both")
         if self.damping is not None:
             checks.within("damping", self.damping, 0.0, 1e18, unit="N s/m")
         if self.damping_ratio is not None:
             checks.within("damping_ratio", self.damping_ratio, 0.0, 1e6)
         if self.stiffness == 0.0 and not self.damping:
-            raise InvalidValueError("stiffness must be > 0 N/m where there is no dashpot, got 0; a bed without force?")
+            raise InvalidValueError("stiffness must be > 0 N/m without a dashpot, got 0")
 
     @classmethod
     def from_layer(
         cls, modulus: float, area: float, thickness: float, *, damping_ratio: float = 0.0, confinement: float = 1.0
     ) -> Self:
-        """Return the law of an elastic layer under the whole base: k = E_eff A / t (docs/theory/contact_bed.md).
+        """Return the law of an elastic layer under the base: k = E_eff A / t (docs/theory/contact_bed.md).
 
         Parameters
         ----------
@@ -157,14 +157,14 @@ class KelvinVoigt(ContactLaw):
         Returns
         -------
         KelvinVoigt
-            The law of the whole bed.
+            The law of the bed.
 
         Examples
         --------
         >>> KelvinVoigt.from_layer(2e9, area=0.05, thickness=0.01).stiffness
         10000000000.0
         """
-        modulus = checks.positive("modulus", modulus, "Pa", hint="GPa?")
+        modulus = checks.positive("modulus", modulus, "Pa", hint="in Pa, not GPa")
         area = checks.positive("area", area, "m2")
         thickness = checks.length("thickness", thickness)
         return cls(  # Eq. 115
@@ -239,7 +239,7 @@ class Hertz(ContactLaw):
     radius: float
 
     def __post_init__(self) -> None:
-        checks.positive("modulus", self.modulus, "Pa", hint="GPa?")
+        checks.positive("modulus", self.modulus, "Pa", hint="in Pa, not GPa")
         checks.length("radius", self.radius)
 
     def numbers(self, mass: float) -> LawNumbers:
@@ -248,11 +248,11 @@ class Hertz(ContactLaw):
 
 @dataclass(frozen=True)
 class PlasticUnloading(ContactLaw):
-    """Linear loading, steeper unloading: k while new ground is pressed, k / e^2 on the way back and in again.
+    """Linear loading, steeper unloading: stiffness k for first loading, k / e^2 for unloading and reloading.
 
-    A point that drops alone comes back with the velocity ratio e; each point keeps its own greatest depth. With
-    e = 0 nothing comes back (the plastic Winkler bed of docs/theory/restitution.md), which only an impulsive impact
-    can use: a load that stays would make the contact chatter.
+    A single point rebounds with the velocity ratio e; each point has its own greatest depth. With e = 0 there is no
+    rebound (the plastic Winkler bed of docs/theory/restitution.md), for impulsive impacts only: under a permanent load
+    the contact would chatter.
 
     Parameters
     ----------

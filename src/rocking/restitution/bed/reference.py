@@ -1,7 +1,7 @@
-"""The bed by another road: every point summed, no branches stored, SciPy's integrators.
+"""Independent engine of the contact bed: sums over all points, with SciPy's integrators.
 
-It shares no code with the fast engine and, for laws without memory, needs no switches: forces are written with
-maximum and minimum, and the integrator's error control finds the kinks. Only sticking and sliding are located.
+It has no code in common with the fast engine. For laws without memory it needs no switches: forces use maximum and
+minimum, and the error control of the integrator resolves the kinks. Only sticking and sliding are located.
 """
 
 import math
@@ -32,14 +32,14 @@ class Field:
         self.slip = 0
 
     def points(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return depths, their rates and the forces of all points."""
-        at, heights = self.bed.positions, self.bed.heights
+        """Return depths [m], their rates [m/s] and the forces [N] of all points."""
+        positions, heights = self.bed.positions, self.bed.heights
         if self.bed.kinematics == "small":
-            depth, rate = -(x[Y] - at * x[THETA] + heights), -(x[W] - at * x[OMEGA])
+            depth, rate = -(x[Y] - positions * x[THETA] + heights), -(x[W] - positions * x[OMEGA])
         else:
             s, c = math.sin(x[THETA]), math.cos(x[THETA])
-            depth = -(x[Y] - at * s + heights * c)  # Eq. 122
-            rate = -(x[W] * c - x[U] * s - (at * c + heights * s) * x[OMEGA])
+            depth = -(x[Y] - positions * s + heights * c)  # Eq. 122
+            rate = -(x[W] * c - x[U] * s - (positions * c + heights * s) * x[OMEGA])
         value = self.bed.shares * force(self.setup.law, depth, rate, x[PAST:])
         return depth, rate, value
 
@@ -67,7 +67,7 @@ class Field:
 
     @property
     def held(self) -> bool:
-        """Whether the base sticks."""
+        """True if the base sticks."""
         return self.kind is FrictionKind.STICKING or (self.kind is FrictionKind.COULOMB and self.slip == 0)
 
     def __call__(self, _: float, x: FloatArray) -> FloatArray:
@@ -103,7 +103,7 @@ class Field:
         return kinetic + weight + push + elastic, elastic  # Eq. 125
 
     def settle(self, x: FloatArray, *, leaves: bool = False) -> None:
-        """Decide whether the base sticks, where it is at rest."""
+        """Set sticking or the direction of sliding of a base at rest."""
         if self.kind is not FrictionKind.COULOMB:
             return
         self.slip = 0
@@ -112,11 +112,11 @@ class Field:
             self.slip = -1 if shear > 0.0 else 1
 
 
-def one(setup: Setup, method: Method = "DOP853", tolerance: float | None = None) -> Run:
+def compute_one(setup: Setup, method: Method = "DOP853", tolerance: float | None = None) -> Run:
     """Compute one impact with its history."""
     from scipy.integrate import solve_ivp
 
-    integrate: Any = solve_ivp  # its stubs know no callable objects
+    integrate: Any = solve_ivp  # the stubs of solve_ivp lack callable objects
     field = Field(setup)
     x = np.concatenate([setup.state, np.zeros(7 + len(setup.rigid.bed.positions))])
     x[PAST:] = np.maximum(field.points(x)[0], 0.0)
@@ -125,33 +125,33 @@ def one(setup: Setup, method: Method = "DOP853", tolerance: float | None = None)
     if x[U] == 0.0:
         field.settle(x)
     scales, precision = _scales(setup), max(1e-3 * setup.tolerance if tolerance is None else tolerance, 1e-13)
-    times, states, now, status, steps = [0.0], [x], 0.0, 2, 0
-    while now < setup.longest and status == 2 and len(times) < 10**6:
+    times, states, time, status, steps = [0.0], [x], 0.0, 2, 0
+    while time < setup.longest and status == 2 and len(times) < 10**6:
         events = _events(field)
         run = integrate(
-            field, (now, setup.longest), x, method=method, rtol=precision, atol=precision * scales,
+            field, (time, setup.longest), x, method=method, rtol=precision, atol=precision * scales,
             events=[event for event, _ in events], first_step=1e-3 * setup.depth / setup.speed,
         )  # fmt: skip
         steps += len(run.t) - 1
         times += run.t[1:].tolist()
         states += list(run.y.T[1:])
-        now, x = float(run.t[-1]), run.y[:, -1].copy()
-        hit = next((what for found, (_, what) in zip(run.t_events, events, strict=True) if len(found)), None)
-        if hit is None:
+        time, x = float(run.t[-1]), run.y[:, -1].copy()
+        event_code = next((code for zeros, (_, code) in zip(run.t_events, events, strict=True) if len(zeros)), None)
+        if event_code is None:
             status = 2 if run.status == 0 else 4
             break
-        if hit < 0:
+        if event_code < 0:
             x[U] = 0.0
             field.settle(x, leaves=field.slip == 0)
         else:
-            status = hit
+            status = event_code
     return _report(field, before, np.array(times), np.array(states), (status, steps))
 
 
 def _events(field: Field) -> list[tuple[Event, int]]:
-    """Return what ends a stretch, with the status it gives; -1 for sticking and sliding."""
+    """Return the events that end an interval with their status; -1 for sticking and sliding."""
     setup = field.setup
-    found: list[tuple[Event, int]] = []
+    events: list[tuple[Event, int]] = []
 
     def peak(_: float, x: FloatArray) -> float:
         return float(x[OMEGA]) if x[IMPULSE] > 0.0 else 1.0
@@ -172,14 +172,14 @@ def _events(field: Field) -> list[tuple[Event, int]]:
         return float(field.coefficient * normal - abs(shear))
 
     if setup.end == END_AT_PEAK:
-        found += [(peak, 0), (topples, 5)]
+        events += [(peak, 0), (topples, 5)]
     else:
-        found.append((parts, 1))
+        events.append((parts, 1))
     if field.kind is FrictionKind.COULOMB:
-        found.append((slides, -1))
-    for event, _ in found:
+        events.append((slides, -1))
+    for event, _ in events:
         event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
-    return found
+    return events
 
 
 def _scales(setup: Setup) -> FloatArray:
@@ -198,8 +198,8 @@ def _report(field: Field, before: float, times: FloatArray, states: FloatArray, 
     rate = np.array([field.points(x)[1][setup.new_foot] for x in states])
     alone = ~np.delete(pressing, setup.new_foot, axis=1).any(axis=1) & (rate <= 1e-3 * setup.speed)
     touch = int(np.argmax(others)) if others.any() else -1
-    over = np.flatnonzero(alone[touch:]) if touch >= 0 else np.array([], dtype=int)
-    parting = touch + int(over[0]) if over.size else -1
+    released = np.flatnonzero(alone[touch:]) if touch >= 0 else np.array([], dtype=int)
+    parting = touch + int(released[0]) if released.size else -1
     gain = states[parting] - states[touch] if parting >= 0 else np.zeros_like(last)
     after, elastic = field.energy(last)
     depth = max(float(field.points(x)[0].max()) for x in states)
@@ -209,8 +209,8 @@ def _report(field: Field, before: float, times: FloatArray, states: FloatArray, 
         times[touch] if touch >= 0 else -1.0, times[parting] if parting >= 0 else -1.0,
         gain[IMPULSE], gain[MOMENT], gain[SHEAR], last[SLID],
     ]  # fmt: skip
-    whole = np.asarray(pressing.any(axis=1))
-    contacts = int(whole[0]) + int((whole[1:] & ~whole[:-1]).sum())
+    in_contact = np.asarray(pressing.any(axis=1))
+    contacts = int(in_contact[0]) + int((in_contact[1:] & ~in_contact[:-1]).sum())
     samples = [
         times, states[:, TRAVEL], pointwise.sum(axis=1), shear, pointwise @ field.bed.positions,
         states[:, BED_LOSS], states[:, FRICTION_LOSS], *states[:, :5].T,
@@ -221,12 +221,12 @@ def _report(field: Field, before: float, times: FloatArray, states: FloatArray, 
 
 
 def _intervals(times: FloatArray, pressing: BoolArray) -> FloatArray:
-    found: list[tuple[float, float, float]] = []
+    intervals: list[tuple[float, float, float]] = []
     for point, column in enumerate(pressing.T):
         change = np.diff(np.concatenate([[0], column.astype(np.int64), [0]]))
         ends = np.append(times, np.inf)
-        found += [
+        intervals += [
             (float(point), float(ends[a]), float(ends[b]))
             for a, b in zip(*(np.flatnonzero(np.equal(change, k)) for k in (1, -1)), strict=True)
         ]
-    return np.array(sorted(found, key=lambda f: f[2])).reshape(-1, 3)
+    return np.array(sorted(intervals, key=lambda f: f[2])).reshape(-1, 3)

@@ -14,7 +14,7 @@ from rocking.restitution.bed.impact import BedStatus, status_of
 from rocking.restitution.bed.laws import LawKind
 from rocking.restitution.bed.setup import Results, RigidRocking, Setup, setup_of
 
-_MOST_RUNS = 50
+_MAX_RUNS = 50
 _AT_REST = 1e-3
 
 
@@ -22,32 +22,32 @@ _AT_REST = 1e-3
 class BedRocking:
     """Peaks of free rocking on a bed."""
 
-    rotations: FloatArray  # rotation, without its sign, at the start and at each peak [rad]
-    times: FloatArray  # when they are reached [s]
-    touches: FloatArray  # when the impacts between them begin: the base touches beyond the old foot [s]
-    # ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one where the energy of a
-    # hop comes back [-]
+    rotations: FloatArray  # |rotation| at the start and at each peak [rad]
+    times: FloatArray  # times of the peaks [s]
+    touches: FloatArray  # start of the impacts between the peaks: first contact beyond the old foot [s]
+    # ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one if the energy of a hop
+    # returns [-]
     coefficients: FloatArray
 
 
 def bed_free_rocking(
     body: Body, bed: ContactBed, *, rotation: float, peaks: int, tolerance: float = 1e-9
 ) -> BedRocking:
-    """Let a body go on one foot and follow it over several impacts, hops and vibration carried along.
+    """Return the peaks of free rocking from one foot over several impacts, with hops and vibration.
 
-    With light damping (zeta <= 0.1) what an impact leaves in hops goes into the next, and the ratio from peak to peak
-    scatters: it is not a property of the body then (docs/theory/contact_bed.md).
+    With light damping (zeta <= 0.1) the energy of hops enters the next impact, and the ratio from peak to peak
+    scatters: it is then not a property of the body (docs/theory/contact_bed.md).
 
     Parameters
     ----------
     body : Body
         The body.
     bed : ContactBed
-        Its bed, of a law without memory.
+        Bed with a law without memory.
     rotation : float
-        Rotation at which it is let go [rad].
+        Initial rotation [rad].
     peaks : int
-        How many peaks to follow; fewer are returned where the body no longer rocks from foot to foot.
+        Largest number of peaks; fewer if the body no longer rocks from foot to foot.
     tolerance : float
         Relative error of a step [-].
 
@@ -73,11 +73,11 @@ def bed_free_rocking(
     peaks = checks.whole("peaks", peaks, 1)
     setup = setup_of(body, bed, rotation=rotation, tolerance=tolerance)
     if setup.law.kind is LawKind.PLASTIC:
-        raise InvalidValueError("plastic points remember their past, which is lost from peak to peak; use another law")
+        raise InvalidValueError("plastic points lose their history from peak to peak; use a law without memory")
     rigid = setup.rigid
     angles, times, touches, now, lingers = [float(rotation)], [0.0], list[float](), 0.0, False
-    for _ in range(_MOST_RUNS * peaks):
-        row = (fast.one(setup) if fast.available() else reference.one(setup))[0]
+    for _ in range(_MAX_RUNS * peaks):
+        row = (fast.compute_one(setup) if fast.available() else reference.compute_one(setup))[0]
         now += row["time"]
         if status_of(row["status"]) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:
             break
@@ -87,7 +87,7 @@ def bed_free_rocking(
             angles.append(row["rotation"])
             times.append(now)
             touches.append(now - row["time"] + row["touch"])
-        elif row["rotation"] > angles[-1]:  # vibration made the peak a double one
+        elif row["rotation"] > angles[-1]:  # vibration caused a double peak
             angles[-1], times[-1] = row["rotation"], now
         lingers = row["rotation"] <= 0.0
         setup = _turned(setup, row)
@@ -103,7 +103,7 @@ def _velocity(rigid: RigidRocking, rotation: float) -> float:
 
 
 def _turned(setup: Setup, row: Results) -> Setup:
-    """Return the next half cycle, seen from the other side."""
+    """Return the next half cycle, mirrored."""
     bed = setup.rigid.bed
     mirror = replace(bed, positions=-bed.positions[::-1], shares=bed.shares[::-1], heights=bed.heights[::-1])
     state = (row["y"], -row["rotation"], -row["u"], row["w"], -row["angular_velocity"])

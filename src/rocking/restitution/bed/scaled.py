@@ -1,4 +1,4 @@
-"""Impacts on a Kelvin-Voigt bed in numbers without units, as the table of the contact bed holds them."""
+"""Dimensionless impacts on a Kelvin-Voigt bed, in the form of the table of the contact bed."""
 
 import math
 from collections.abc import Sequence
@@ -16,13 +16,13 @@ from rocking.restitution.bed.impact import BedStatus, bed_impacts
 from rocking.restitution.bed.laws import KelvinVoigt
 from rocking.restitution.bed.setup import Setup, setup_of
 
-RELEASE = 0.05  # rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]
+RELEASE = 0.05  # initial rotation over the smallest slenderness angle: rocking of small amplitude [-]
 _TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
 
 
 @dataclass(frozen=True, slots=True)
 class ScaledImpact:
-    """A body on a Kelvin-Voigt bed, in numbers without units.
+    """A body on a Kelvin-Voigt bed, in dimensionless numbers.
 
     >>> impact = ScaledImpact(flatness=0.15, offset=0.0, points=2, damping=1.0, hardness=300.0)
     >>> round(float(resolved_coefficients([impact])[0]), 2)
@@ -30,12 +30,12 @@ class ScaledImpact:
     """
 
     flatness: float  # 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
-    offset: float  # way from the plumb line back to the middle of the base, over w [-]
+    offset: float  # distance from the plumb line back to the middle of the base, over w [-]
     points: int  # contact points from foot to foot
     damping: float  # damping ratio of the whole bed [-]
     hardness: float  # landing speed of the new foot times sqrt(k / m) over gravity [-]
-    friction: float = math.inf  # coefficient of friction; infinite where the base cannot slide [-]
-    # m h^2 / (I_C + m h^2): the height of the centre, which matters where the base slides [-]
+    friction: float = math.inf  # coefficient of friction; infinite for a base that cannot slide [-]
+    # m h^2 / (I_C + m h^2), for the height of the centre of a base that slides [-]
     height_share: float = 0.7
 
     def __post_init__(self) -> None:
@@ -45,7 +45,7 @@ class ScaledImpact:
 
     @property
     def setup(self) -> Setup:
-        """The impact, ready to be computed."""
+        """Setup of the impact for the engines."""
         body, feet, release, speed = _body(self.flatness, self.offset, self.height_share)
         stiffness = (self.hardness * conventions.g / speed) ** 2
         friction = Sticking() if math.isinf(self.friction) else Coulomb(self.friction)
@@ -54,17 +54,17 @@ class ScaledImpact:
 
 
 def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) -> FloatArray:
-    """Return coefficients of restitution resolved in time."""
+    """Return coefficients of restitution resolved in time [-]."""
     setups = [impact.setup for impact in impacts]
     r = np.full(len(setups), np.nan)
-    # a chattering point can use up its steps: another step tolerance takes another way through
+    # chattering points can exceed the number of steps: retry with another tolerance
     for tolerance in _TOLERANCES:
         failed = np.flatnonzero(np.isnan(r))
         if failed.size == 0:
             return r
-        found = bed_impacts([replace(setups[i], tolerance=tolerance) for i in failed.tolist()], threads=threads)
-        ended = [status in {BedStatus.PEAK, BedStatus.TOPPLED} for status in found.status]
-        r[failed] = np.where(ended, found.coefficient, np.nan)
+        batch = bed_impacts([replace(setups[i], tolerance=tolerance) for i in failed.tolist()], threads=threads)
+        ended = [status in {BedStatus.PEAK, BedStatus.TOPPLED} for status in batch.status]
+        r[failed] = np.where(ended, batch.coefficient, np.nan)
     if np.isnan(r).any():
         raise InvalidValueError(
             "{count} impacts did not end, the first is {impact}", count=int(np.isnan(r).sum()),
@@ -75,7 +75,7 @@ def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) 
 
 @lru_cache(maxsize=256)
 def _body(flatness: float, offset: float, share: float) -> tuple[MassPoints, tuple[float, float], float, float]:
-    """Body, feet, rotation of release and landing speed of the new foot."""
+    """Return body, feet [m], initial rotation [rad] and landing speed of the new foot [m/s]."""
     gyration = 1.0 / flatness - 1.0
     height, arm = math.sqrt(share * gyration), math.sqrt((1.0 - share) * gyration)
     feet = (-1.0 - offset, 1.0 - offset)
@@ -92,7 +92,7 @@ def _bed(
     shares = np.ones(points)
     shares[[0, -1]] = 0.5
     law = KelvinVoigt(stiffness, damping_ratio=damping)
-    # a base that slides needs the points of a rigid body; where it sticks, small rotations are the table's setting
+    # sliding needs the exact kinematics; for sticking the table uses small rotations
     slides = not isinstance(friction, Sticking)
     return ContactBed(
         np.linspace(*feet, points), law, shares / shares.sum(), friction=friction,

@@ -1,4 +1,4 @@
-"""An impact as both engines take it, and rigid rocking on the points of a bed, against which it is measured."""
+"""Setup of an impact for both engines, and rigid rocking on the points of a bed as its reference."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from rocking.restitution.bed.laws import LawKind, LawNumbers, depth_absorbing, s
 
 @dataclass(frozen=True)
 class RigidRocking:
-    """The body on rigid points: pivot, potential and inertia at each rotation."""
+    """Body on rigid points: pivot, potential and inertia at each rotation."""
 
     mass: float  # mass, inertia: mass [kg] and polar moment about the centre of mass [kg m2]
     inertia: float
@@ -31,11 +31,11 @@ class RigidRocking:
         return cls(moments.mass, moments.polar, moments.y, gravity, bed)
 
     def pivot(self, rotation: float) -> int:
-        """Return the point that touches at a rotation."""
+        """Return the index of the point in contact at a rotation [rad]."""
         return int(np.argmax(self._lifts(rotation)))
 
     def lift(self, rotation: float) -> float:
-        """Return how far the base centre is above the ground at a rotation [rad, m]."""
+        """Return the height of the base centre above the ground [m] at a rotation [rad]."""
         return float(self._lifts(rotation).max())
 
     def _lifts(self, rotation: float) -> FloatArray:
@@ -44,7 +44,7 @@ class RigidRocking:
         return np.asarray(self.bed.positions * math.sin(rotation) - self.bed.heights * math.cos(rotation))
 
     def potential(self, rotation: float) -> float:
-        """Return the potential energy above standing upright on the bed, m g (lift + h (cos theta - 1)) [J]."""
+        """Return the potential energy above rest on the bed, m g (lift + h (cos theta - 1)) [J]."""
         fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
         return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)  # Eq. 126
 
@@ -53,7 +53,7 @@ class RigidRocking:
         return float(self.inertia + self.mass * (self.height**2 + self.bed.positions[point] ** 2))
 
     def support(self, rotation: float, velocity: float) -> float:
-        """Return the force on the pivot while the body rocks."""
+        """Return the force on the pivot during rocking [N]."""
         point = self.pivot(rotation)
         s, h = float(self.bed.positions[point]), self.height
         small = self.bed.kinematics == "small"
@@ -63,7 +63,7 @@ class RigidRocking:
         return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)  # Eq. 127
 
     def furthest(self, side: float) -> float:
-        """Return |theta| of greatest potential on a side, at most pi/4 of a squat body [rad]: beyond it, it topples."""
+        """Return |theta| of greatest potential on a side, at most pi/4, beyond which the body overturns [rad]."""
         reach = max(side * self.bed.ends[1 if side > 0 else 0], 0.0)
         angle = (
             math.asin(min(reach / self.height, 1.0))
@@ -82,7 +82,7 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     alone = max(load / float(bed.shares[pivot]), 0.0)
     depth = deepest = float((alone / law.stiffness) ** (1.0 / law.exponent)) if law.stiffness else 0.0
     shallow = np.delete(above, pivot).min() >= deepest
-    # the load carried grows with the depth and curves upwards: Newton's method comes down from one foot alone
+    # the load is a convex increasing function of depth: Newton's method converges from above, from one foot
     for _ in range(0 if shallow else 60):
         pressed = np.maximum(depth - above, 0.0)
         slope = law.exponent * law.stiffness * pressed ** (law.exponent - 1.0)
@@ -104,16 +104,16 @@ RESULTS: Final = (
 )  # fmt: skip
 """Columns of the results of an impact."""
 
-COUNTS: Final = ("status", "steps", "rejected", "switches", "contacts", "forced")  # columns of its whole numbers
+COUNTS: Final = ("status", "steps", "rejected", "switches", "contacts", "forced")  # integer columns
 
 SAMPLES: Final = (
     "time", "travel", "normal", "shear", "moment", "bed_loss", "friction_loss", "y", "rotation", "u", "w",
     "angular_velocity",
 )  # fmt: skip
-"""Columns of its history."""
+"""Columns of the history of an impact."""
 
 
-Results = dict[str, Any]  # a number, or a column of them, of each of `RESULTS` and `COUNTS`
+Results = dict[str, Any]  # a number or a column for each of `RESULTS` and `COUNTS`
 
 Run = tuple[Results, dict[str, FloatArray], FloatArray, FloatArray]
 """Results of one impact, columns of `SAMPLES`, forces of the points, and intervals of contact."""
@@ -127,7 +127,7 @@ def named(results: FloatArray, counts: IntArray) -> Results:
 
 @dataclass(frozen=True)
 class Setup:
-    """One impact, ready to be computed."""
+    """Setup of one impact for the engines."""
 
     rigid: RigidRocking  # body and bed
     law: LawNumbers  # contact law under this body
@@ -140,26 +140,26 @@ class Setup:
     depth: float
     speed: float
     half_base: float
-    old_foot: int  # old_foot, new_foot: points that carry the body before and after
+    old_foot: int  # points in contact before and after the impact
     new_foot: int
-    impulsive: bool  # whether gravity is left out
+    impulsive: bool  # True without gravity
     push: float  # horizontal ground acceleration [m/s2]
     tolerance: float  # relative error of a step [-]
-    longest: float  # time after which the computation ends [s]
+    longest: float  # time limit of the computation [s]
 
     @property
     def gravity(self) -> float:
-        """Vertical acceleration that acts during the impact [m/s2]."""
+        """Vertical acceleration during the impact [m/s2]."""
         return 0.0 if self.impulsive else self.rigid.gravity
 
     @property
     def end(self) -> int:
-        """Where the impact ends."""
+        """End of the impact: a peak or the end of contact."""
         return END_AT_PARTING if self.impulsive else END_AT_PEAK
 
     @property
     def farthest(self) -> float:
-        """Rotation that ends the computation: the body topples [rad]."""
+        """Rotation beyond which the body overturns [rad]."""
         return max(self.rigid.furthest(1.0), self.rigid.furthest(-1.0)) * (1.0 + 1e-9)
 
 
@@ -174,7 +174,7 @@ def setup_of(
     tolerance: float = 1e-9,
     gravity: float = conventions.g,
 ) -> Setup:
-    """Return an impact, checked and ready to be computed; parameters as in `bed_impact`.
+    """Return the setup of an impact after checks; parameters as in `bed_impact`.
 
     Parameters
     ----------
@@ -183,11 +183,11 @@ def setup_of(
     bed : ContactBed
         Its bed.
     rotation, angular_velocity : float, optional
-        One of the two [rad], [rad/s].
+        Initial rotation [rad] or angular velocity at landing [rad/s], one of them.
     impulsive : bool
-        Whether gravity is left out.
+        True for an impact without gravity.
     ground_acceleration : (float, float)
-        Horizontal and vertical [m/s2].
+        Horizontal and vertical acceleration [m/s2].
     tolerance : float
         Relative error of a step [-].
     gravity : float
@@ -203,8 +203,8 @@ def setup_of(
     InvalidValueError
         If a value is outside its range or the law cannot carry the body.
     """
-    given: tuple[object, object] = (body, bed)
-    if not (isinstance(given[0], Body) and isinstance(given[1], ContactBed)):
+    arguments: tuple[object, object] = (body, bed)
+    if not (isinstance(arguments[0], Body) and isinstance(arguments[1], ContactBed)):
         raise InvalidValueError(
             "body and bed must be a Body and a ContactBed, got {body} and {bed}", body=f"{body!r:.40}",
             bed=f"{bed!r:.40}",
@@ -244,7 +244,7 @@ def _accelerations(values: object) -> tuple[float, float]:
     if not isinstance(values, (tuple, list, np.ndarray)) or np.shape(values) != (2,):
         raise InvalidValueError(
             parameter="ground_acceleration", allowed="two finite numbers, horizontal and vertical [m/s2]", value=values,
-            hint="for a horizontal one alone give (value, 0.0)",
+            hint="for horizontal acceleration only, use (value, 0.0)",
         )  # fmt: skip
     return (
         checks.number("horizontal ground acceleration", values[0], "m/s2"),
@@ -253,13 +253,12 @@ def _accelerations(values: object) -> tuple[float, float]:
 
 
 def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: float | None) -> tuple[float, float]:
-    """Return the angle of release [rad] and the velocity of landing [rad/s], one from the other."""
-    # the body starts as high as it must to land with the velocity asked for, at rest if half its range of rotations is
-    # enough
+    """Return the initial rotation [rad] and the velocity of landing [rad/s], one from the other."""
+    # the start has the energy of the requested velocity, at rest if half the range of rotations is sufficient
     if (rotation is None) == (angular_velocity is None):
-        raise InvalidValueError("give rotation or angular_velocity, one of them: each follows from the other")
+        raise InvalidValueError("use rotation or angular_velocity, exactly one of them")
     if len(rigid.bed.positions) < 2 or not rigid.bed.ends[0] < 0.0 < rigid.bed.ends[1]:
-        raise InvalidValueError("the bed must reach to both sides of the plumb line of the centre of mass")
+        raise InvalidValueError("the bed must extend to both sides of the plumb line of the centre of mass")
     limit = rigid.furthest(-1.0)
     if rotation is None:
         landing = checks.positive("angular_velocity", angular_velocity, "rad/s")
@@ -269,20 +268,20 @@ def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: floa
     if landing == 0.0:
         raise InvalidValueError(
             "{parameter} {value} rad does not lift the centre of mass", parameter="rotation", value=-angle,
-            hint="a rounded base?",
+            hint="check for a rounded base",
         )  # fmt: skip
     return angle, landing
 
 
-def _angle_of(rigid: RigidRocking, landing: float, most: float) -> float:
-    """Return the rotation from which the body falls to the landing velocity, or the most that is allowed."""
+def _angle_of(rigid: RigidRocking, landing: float, limit: float) -> float:
+    """Return the initial rotation for a landing velocity, at most a limit [rad]."""
 
     def missing(angle: float) -> float:
         return 0.5 * rigid.inertia_about(rigid.pivot(angle)) * landing**2 - rigid.potential(angle)
 
-    if rigid.gravity == 0.0 or missing(-most) >= 0.0:
-        return -most
-    low, high = 0.0, most
+    if rigid.gravity == 0.0 or missing(-limit) >= 0.0:
+        return -limit
+    low, high = 0.0, limit
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if missing(-middle) > 0.0 else (low, middle)
@@ -292,12 +291,12 @@ def _angle_of(rigid: RigidRocking, landing: float, most: float) -> float:
 def _on_the_old_foot(
     rigid: RigidRocking, law: LawNumbers, old: int, angle: float, landing: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state of rigid rocking at an angle, the old foot as deep in the bed as the support force asks."""
+    """Return the state of rigid rocking at an angle, with the old foot at its static depth in the bed."""
     inertia, bed = rigid.inertia_about(old), rigid.bed
-    left = max(0.5 * inertia * landing**2 - rigid.potential(angle), 0.0)
-    turning = math.sqrt(2.0 * left / inertia) if left > 1e-12 * inertia * landing**2 else 0.0
+    energy = max(0.5 * inertia * landing**2 - rigid.potential(angle), 0.0)
+    turning = math.sqrt(2.0 * energy / inertia) if energy > 1e-12 * inertia * landing**2 else 0.0
     load = max(rigid.support(angle, turning), 0.0)
     y = rigid.lift(angle) - settlement(rigid, law, angle, load)[0]
-    # rotation about the point: in the body's axes its velocity vanishes
+    # rotation about the point: its velocity vanishes in body axes
     along = -float(bed.heights[old]) * turning if bed.kinematics == "exact" else 0.0
     return (y, angle, along, float(bed.positions[old]) * turning, turning)

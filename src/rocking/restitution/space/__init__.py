@@ -1,4 +1,4 @@
-"""What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
+"""Restitution of a body in space: impacts between corners and edges."""
 
 from rocking.restitution.space.calibrated import SpatialCalibrated
 from rocking.restitution.space.energies import UnitEnergies, unit_energies

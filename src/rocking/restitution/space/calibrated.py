@@ -1,4 +1,4 @@
-"""The calibrated model in 3D: the plane model gives a landing of the whole base, in each direction."""
+"""The calibrated model in 3D: the plane model gives a landing of the full base, in each direction."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -17,10 +17,10 @@ _PLANE = Calibrated()
 
 
 class CalibratedPosition(ImpulsePosition):
-    """Position k with which a landing of the whole base has the coefficient of the plane model."""
+    """Position k at which a landing of the full base has the coefficient of the plane model."""
 
     def coefficient(self, landing: BaseLanding) -> float:
-        """Return the coefficient of the plane model, which depends on levers and moment of inertia alone."""
+        """Return the coefficient of the plane model, which depends on levers and moment of inertia only [-]."""
         gyration = landing.over_foot / self.moments.mass - self.height**2
         lengths = self.height, landing.old_lever, landing.new_lever, gyration, 0.0
         geometry = ImpactGeometry(*map(np.asarray, lengths))
@@ -29,44 +29,44 @@ class CalibratedPosition(ImpulsePosition):
 
 @lru_cache(maxsize=256)
 def calibrated_position(moments: SolidMoments, base: Base) -> CalibratedPosition:
-    """Return the position of the impulse by the calibrated model, kept for moments and base."""
+    """Return the impulse position by the calibrated model; cached by moments and base."""
     return CalibratedPosition(moments, base)
 
 
 @dataclass(frozen=True)
 class SpatialCalibrated(ImpulsePositionModel):
-    """The calibrated model: a landing of the whole base has the coefficient of the plane model in its direction.
+    """The calibrated model: a landing of the full base has the coefficient of the plane model in its direction.
 
     The coefficient gives the position k of the impulse between the feet (Eqs. 4, 104). As in `SpatialKed` this k holds
     for steps of any length in the same direction, with angular momentum about the impulse's point (Eq. 103). A loss
     larger than Housner's has k above 1, beyond the new foot.
 
-    This closure is this project's own. No measurement of impacts in 3D is known to it.
+    This closure is part of this project and not validated by measurements of impacts in 3D.
     """
 
     name = "calibrated-3d"
-    title = "fitted to the published measurements in the plane, with its impulse position in every direction"
+    title = "fitted to the published measurements in the plane, with the impulse position in all directions"
     reference = "this project, from the measurements in Mao et al. 2024, Buildings 14(7) 2119"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "a landing of the whole base loses the energy that the plane model gives in the direction of the step",
-        "a shorter step has its impulse at the same fraction of the way",
-        "the interface is like the interfaces of the measurements, of different laboratories and materials",
+        "a landing of the full base has the energy loss of the plane model in the direction of the step",
+        "a shorter step has its impulse at the same fraction of the step",
+        "the interface is similar to those of the measurements, from different laboratories and materials",
     )
     domain = (
-        "every impact on one corner or edge, in any attitude; measured for rectangles with 1.5 <= h/b <= 9.75 in the "
+        "all impacts on one corner or edge, in any attitude; measured for rectangles with 1.5 <= h/b <= 9.75 in the "
         "plane, an extrapolation elsewhere"
     )
     known_defects = (
-        "its numbers are those of 39 tests of small blocks that rocked in the plane; no test in 3D is among them",
-        "it is assumed that the fraction of the way is the same for small and large steps, and that the rotation at "
-        "the landing has no influence",
-        "onto an edge through the old pivot, and onto the whole base, it is Housner's impact",
+        "an empirical fit to 39 plane tests of small blocks, without tests in 3D",
+        "the assumptions that the fraction is equal for small and large steps, and that the rotation at the landing "
+        "has no influence, are not verified",
+        "equal to Housner's model onto an edge through the old pivot, and onto the full base",
     )
     highest = np.inf
 
     def position(self, impact: SpatialImpact) -> ImpulsePosition:
         """Return the position by the plane model."""
         if impact.base is None:
-            raise InvalidValueError("calibrated-3d needs the base of the body: give the impact its base")
+            raise InvalidValueError("calibrated-3d needs the base of the body; give base= of the impact")
         return calibrated_position(impact.body, impact.base)

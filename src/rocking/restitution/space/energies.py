@@ -1,4 +1,4 @@
-"""What every unit of a body loses in an impact: the paper's division into units, in space."""
+"""Energy loss of every unit of a body in an impact: the paper's division into units, in space."""
 
 from dataclasses import dataclass
 
@@ -45,12 +45,12 @@ class UnitEnergies:
         return np.asarray(self.lost / self.units.mass)
 
     def layers(self, count: int, height: float | None = None) -> tuple[FloatArray, FloatArray]:
-        """Return the energy lost layer by layer.
+        """Return the energy loss by layer.
 
         Parameters
         ----------
         count : int
-            Layers of equal height.
+            Number of layers of equal height.
         height : float, optional
             Top of the highest layer over the ground [m]; by default the highest unit.
 
@@ -59,12 +59,12 @@ class UnitEnergies:
         heights : ndarray, shape (count + 1,)
             Ends of the layers over the ground [m].
         lost : ndarray, shape (count,)
-            Energy lost in each [J].
+            Energy loss of each layer [J].
 
         Raises
         ------
         InvalidValueError
-            If there is no layer.
+            If `count` is below 1.
         """
         heights = self.units.centre[:, 2] - self.ground
         top = float(heights.max()) * (1.0 + 1e-12) if height is None else checks.positive("height", height, "m")
@@ -75,24 +75,24 @@ class UnitEnergies:
 
 
 def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int = 12) -> UnitEnergies:
-    """Return what every unit of a body loses in an impact by the stages of KED.
+    """Return the energy loss of every unit of a body in an impact by the stages of KED.
 
     Parameters
     ----------
     result : SpatialRestitution or SpatialImpact
-        The impact of a body that stands upright, with its matter.
+        The impact of an upright body, with its matter.
     units : Units or int
-        The units, or the divisions of `divided`.
+        The units, or the number of divisions for `divided`.
 
     Returns
     -------
     UnitEnergies
-        Energies of every unit; their sums converge to the exact integrals with the units' declared order.
+        Energies of every unit; their sums converge to the exact integrals with the declared order of the units.
 
     Raises
     ------
     InvalidValueError
-        If the body leans or has no matter.
+        If the body is tilted or has no matter.
 
     Examples
     --------
@@ -107,15 +107,15 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     """
     impact = result.impact if isinstance(result, SpatialRestitution) else result
     (solid, origin), _ = impact.standing_solid, impact.placed_solid
-    pieces = divided(solid, units) if isinstance(units, int) else units
-    fields = stage_velocities(impact, pieces.centre - solid.origin + origin)
-    before, level, left = (0.5 * pieces.mass * np.square(field).sum(axis=1) for field in fields)
-    return UnitEnergies(pieces, before, level, left, solid.ground)
+    unit_set = divided(solid, units) if isinstance(units, int) else units
+    fields = stage_velocities(impact, unit_set.centre - solid.origin + origin)
+    before, level, left = (0.5 * unit_set.mass * np.square(field).sum(axis=1) for field in fields)
+    return UnitEnergies(unit_set, before, level, left, solid.ground)
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
-    """Return the energy that stages 1 and 2 take at points of a part [m], over its volume [J/m3]."""
-    # the body stands upright, and the points are in the user's coordinates
+    """Return the energy loss of stages 1 and 2 at points of a part [m], over its volume [J/m3]."""
+    # the body is upright, and the points are in the user's coordinates
     (solid, origin), _ = impact.standing_solid, impact.placed_solid
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
     return np.asarray(0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1)))

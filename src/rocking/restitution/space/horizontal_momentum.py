@@ -1,4 +1,4 @@
-"""Vertical velocities vanish, the angular momentum of the rest is kept, in space."""
+"""Horizontal momentum in space: vertical velocities vanish, angular momentum of horizontal ones is conserved."""
 
 from dataclasses import dataclass
 
@@ -15,17 +15,17 @@ class SpatialHorizontalMomentum(SpatialModel):
     """
 
     name = "horizontal-momentum-3d"
-    title = "vertical velocities vanish, angular momentum of the horizontal ones is kept"
+    title = "vertical velocities vanish, angular momentum of the horizontal velocities is conserved"
     reference = "derived in this project from stage 1 of Mao et al. 2024, doi:10.3390/buildings14072119"
     assumptions = (
         "the impact removes the vertical velocity of every mass point, as in KED",
-        "what is left keeps its angular momentum about the new corner or edge",
+        "the remaining velocities conserve their angular momentum about the new corner or edge",
     )
-    domain = "every impact on one corner or edge"
+    domain = "all impacts on one corner or edge"
     known_defects = (
-        "where the old pivot was matters only as far as the body spins about the vertical: with both pivots in one "
-        "place (no impact at all) it still loses energy",
-        "no force model stands behind it",
+        "depends on the old pivot only for spin about the vertical: with coincident pivots (no impact) it still has "
+        "an energy loss",
+        "not derived from a force model",
     )
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:

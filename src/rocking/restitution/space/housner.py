@@ -1,4 +1,4 @@
-"""Housner's impact in space: plastic and sticking, angular momentum about the new support is kept."""
+"""Housner's impact in space: plastic and sticking, with angular momentum about the new support conserved."""
 
 from dataclasses import dataclass
 
@@ -9,24 +9,24 @@ from rocking.restitution.space.model import SpatialModel
 
 @dataclass(frozen=True)
 class SpatialHousner(SpatialModel):
-    """Angular momentum about the new corner, or its component along the new edge, is kept.
+    """Angular momentum about the new corner, or its component along the new edge, is conserved.
 
     ``I_B omega_+ = I_C omega_- + m rho_B x (omega_- x rho_A)`` about a corner B, and
     ``omega_+ = e . L_O'/(e . I_O' e)`` about an edge: the orthogonal projection of the motion, in the kinetic
-    metric, onto the motions that the new support allows.
+    metric, onto the admissible motions of the new support.
     """
 
     name = "housner-3d"
-    title = "angular momentum about the new corner or edge is kept"
+    title = "angular momentum about the new corner or edge is conserved"
     reference = "Housner 1963, BSSA 53(2) 403-417, extended to space by projection in this project"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding",
-        "the impulse acts at the new corner, or on the new edge, alone",
+        "the impulse acts at the new corner or on the new edge only",
     )
-    domain = "every impact on one corner or edge; an edge that the body would push through stops it"
+    domain = "all impacts on one corner or edge; the body stops where it would penetrate the ground at an edge"
     known_defects = (
-        "squat bodies would go through the ground beside the new corner",
-        "loses more than most measurements for bodies of slenderness below about 4",
+        "squat bodies would penetrate the ground near the new corner",
+        "larger energy loss than most measurements for bodies of slenderness below about 4",
     )
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:

@@ -1,4 +1,4 @@
-"""An impact in space before any model speaks: who turns about what, where it lands, momenta and energies."""
+"""An impact in space, independent of the model: pivot, landing, momenta and energies."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,27 +15,27 @@ Placed = tuple[Solid, FloatArray]  # a solid, and the origin of its own frame in
 UP = np.array([0.0, 0.0, 1.0])  # normal of the ground
 
 NO_MATTER = (
-    "this model needs the distribution of mass, got a body known by its mass, centre and inertia alone: use a Solid of "
-    "parts with their densities, SpatialBody.of(solid), SpatialBody.box or SpatialBody.cylinder, or a model that needs "
-    "no more than these, 'calibrated-3d', 'housner-3d' or 'horizontal-momentum-3d'"
+    "this model needs the distribution of mass, got a body with mass, centre and inertia only: use a Solid of "
+    "parts with densities, SpatialBody.of(solid), SpatialBody.box or SpatialBody.cylinder, or one of the models "
+    "'calibrated-3d', 'housner-3d' and 'horizontal-momentum-3d'"
 )
-"""What a body without a solid is told."""
+"""Message for a body without a solid."""
 
 NO_SOLID = (
-    "where the base of a body goes and what its units lose is told of a body as a solid: give the impact its matter; "
-    "the angular velocity alone is model.turned(impact)"
+    "motion of the base and energy loss of units need a solid: give the impact its matter; "
+    "for the angular velocity only, use model.turned(impact)"
 )
-"""What the same is told where the base or the units are asked for."""
+"""Message for a body without a solid if base or units are needed."""
 
 _UNIT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialImpact:
-    """A rigid body in any attitude that turns about one point of the ground and lands on another, or on an edge.
+    """Impact of a rigid body in any attitude that turns about a point of the ground and lands on a point or an edge.
 
-    Everything is in axes of the body, and the ground may lean in them: a body that falls from a corner onto an edge
-    of its base is tilted when it lands.
+    All vectors are in body axes. The ground may be tilted in these axes: a body that falls from a corner onto an edge
+    of its base is tilted at the landing.
 
     Parameters
     ----------
@@ -44,13 +44,13 @@ class SpatialImpact:
     velocity : ndarray, shape (3,)
         Angular velocity before the impact [rad/s].
     pivot : ndarray, shape (3,)
-        A point of the body that is at rest before the impact [m].
+        Point of the body at rest before the impact [m].
     onto : Corner or Edge
-        What the body lands on [m].
+        Corner or edge of landing [m].
     up : ndarray, shape (3,)
         Normal of the ground [-].
     matter : callable, optional
-        Returns the body as a solid and the origin of the solid's frame [m]; needed by models of the distribution of
+        Function that returns the body as a solid and the origin of its frame [m], for models with a distribution of
         mass.
     base : Base, optional
         Base of the body, in its axes [m]; needed by calibrated-3d.
@@ -58,7 +58,7 @@ class SpatialImpact:
     Raises
     ------
     InvalidValueError
-        If the normal is no unit vector.
+        If the normal is not a unit vector.
 
     Examples
     --------
@@ -85,8 +85,8 @@ class SpatialImpact:
         """Check the normal of the ground."""
         if not abs(dot(self.up, self.up) - 1.0) <= _UNIT:
             raise InvalidValueError(
-                "{parameter} must be {allowed}, got {value}: is it the vertical?", parameter="up",
-                allowed="a unit vector", value=self.up.tolist(),
+                "{parameter} must be {allowed}, got {value}", parameter="up",
+                allowed="a vertical unit vector", value=self.up.tolist(),
             )  # fmt: skip
 
     @cached_property
@@ -96,7 +96,7 @@ class SpatialImpact:
 
     @cached_property
     def placed_solid(self) -> tuple[Solid, Corner | Edge]:
-        """The body as a distribution of mass, and the landing place in the solid's own frame."""
+        """The body as a distribution of mass, and the landing corner or edge in the frame of the solid."""
         solid, origin = self._placed
         if solid.known is not None:
             raise InvalidValueError(NO_MATTER)
@@ -111,26 +111,26 @@ class SpatialImpact:
 
     @property
     def standing_solid(self) -> Placed:
-        """The body as a solid that stands upright on the ground, and the origin of the solid's frame [m].
+        """The body as an upright solid, and the origin of the solid's frame [m].
 
         Raises
         ------
         InvalidValueError
-            If there is no solid, or the ground leans in its axes.
+            If there is no solid, or the ground is tilted in its axes.
         """
         if self.matter is None:
             raise InvalidValueError(NO_SOLID)
         if not float(np.abs(self.up - UP).max()) <= _UNIT:
             raise InvalidValueError(
-                "the body must stand upright, its up (0, 0, 1), got up = {up}: where the base goes and what units "
-                "lose is not told of a body that leans; its angular velocity is model.turned(impact)",
+                "motion of the base and energy loss of units need an upright body with up = (0, 0, 1), got up = "
+                "{up}; for the angular velocity of a tilted body, use model.turned(impact)",
                 up=self.up.tolist(),
             )  # fmt: skip
         return self._placed
 
     @property
     def edge(self) -> FloatArray | None:
-        """Unit vector along the edge that the body lands on; None for a corner [-]."""
+        """Unit vector along the edge of landing; None for a corner [-]."""
         return self.onto.direction if isinstance(self.onto, Edge) else None
 
     @cached_property
@@ -177,17 +177,17 @@ class SpatialImpact:
         return 0.5 * (spread + crossed + moments.mass * dot(drift, drift))
 
     def with_momentum(self, momentum: FloatArray) -> FloatArray:
-        """Return the angular velocity that has an angular momentum about the landing place.
+        """Return the angular velocity for an angular momentum about the landing corner or edge.
 
         Parameters
         ----------
         momentum : ndarray, shape (3,)
-            About the landing point; of an edge its component along the edge counts [kg m2/s].
+            Angular momentum about the landing point; for an edge, the component along it applies [kg m2/s].
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity, along the edge if there is one [rad/s].
+            Angular velocity; along the edge for a landing on an edge [rad/s].
         """
         along = self.edge
         if along is None:
@@ -205,7 +205,7 @@ class SpatialImpact:
         return self.moments.second_about(np.zeros(3))
 
     def _momentum(self, projection: FloatArray) -> FloatArray:
-        # s x (G s) summed over the body needs the second moments alone
+        # s x (G s) summed over the body needs the second moments only
         spread = times(self._second, times(projection, self.spin).T)
         turning = np.array([spread[1, 2] - spread[2, 1], spread[2, 0] - spread[0, 2], spread[0, 1] - spread[1, 0]])
         shift = self.moments.mass * applied(skew(self.moments.centre), applied(projection, self.landing_velocity))

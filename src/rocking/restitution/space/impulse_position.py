@@ -1,7 +1,7 @@
-"""Models in 3D by the position of the impulse of a landing of the whole base, in each direction (Eq. 104).
+"""Models in 3D by the position of the impulse of a landing of the full base, in each direction (Eq. 104).
 
-As a function of the azimuth of the step the position k is analytic as long as neither foot changes. Polynomials through
-few exact values give it between those azimuths.
+The position k is an analytic function of the azimuth of the step as long as neither foot changes. Polynomials
+interpolate a few exact values between these azimuths.
 """
 
 import math
@@ -28,22 +28,22 @@ HIGHEST = 32  # degree of the polynomials, at most
 
 _SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-10, 1e-7
 _ARCS = 8
-_PIECE = 4096  # points at a time: what is computed of them stays in the cache
+_PIECE = 4096  # points per block, which fits in the cache
 
 
 @dataclass(frozen=True, eq=False)
 class BaseLanding:
-    """A landing of the whole base in one direction, from the old foot onto the new one."""
+    """Landing of the full base in one direction, from the old foot onto the new one."""
 
     edge: FloatArray  # unit vector along the new foot [-]; shape (3,)
-    offset: float  # of the new foot from the origin, in the direction of the step [m]
+    offset: float  # distance of the new foot from the origin, in the direction of the step [m]
     over_foot: float  # moment of inertia about the line through the foot of the plumb line [kg m2]
     old_lever: float  # distance of the old foot from the plumb line [m]
     new_lever: float  # distance of the new foot from the plumb line [m]
 
 
 class ImpulsePosition(ABC):
-    """Position k of a landing of the whole base by direction."""
+    """Position k of a landing of the full base by direction."""
 
     # breaks: azimuths at which a foot changes, in order [rad]
 
@@ -55,35 +55,35 @@ class ImpulsePosition(ABC):
 
     @abstractmethod
     def coefficient(self, landing: BaseLanding) -> float:
-        """Return the coefficient of restitution of a landing of the whole base [-]."""
+        """Return the coefficient of restitution of a landing of the full base [-]."""
 
     def at(self, step: FloatArray) -> float:
-        """Return k of the landing in a direction, in the solid's own frame; above 1 beyond the new foot."""
+        """Return k of the landing in a direction in the frame of the solid; above 1 beyond the new foot [-]."""
         angle, breaks = math.atan2(float(step[1]), float(step[0])), self.breaks
         if angle < breaks[0]:
             angle += 2.0 * math.pi
-        number = min(bisect_right(breaks, angle) - 1, len(breaks) - 2)
-        low, high = breaks[number : number + 2]
-        return _value(self.piece(number), (2.0 * angle - low - high) / (high - low))
+        index = min(bisect_right(breaks, angle) - 1, len(breaks) - 2)
+        low, high = breaks[index : index + 2]
+        return _value(self.piece(index), (2.0 * angle - low - high) / (high - low))
 
     def of_step(self, step: FloatArray) -> float:
-        """Return k of a step in the body's own frame; 1 where there is no step."""
+        """Return k of a step in the frame of the body; 1 for a step of length zero [-]."""
         return self.at(step) if float(np.abs(step).max()) > _ROUNDING * self.size else 1.0
 
-    def piece(self, number: int) -> list[float]:
+    def piece(self, index: int) -> list[float]:
         """Return Chebyshev coefficients of k between azimuth `number` of `breaks` and the next."""
-        if number not in self._pieces:
-            low, high = self.breaks[number : number + 2]
-            self._pieces[number] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
-        return self._pieces[number]
+        if index not in self._pieces:
+            low, high = self.breaks[index : index + 2]
+            self._pieces[index] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
+        return self._pieces[index]
 
     def table(self) -> list[list[float]]:
-        """Return a row for each piece: its first and last azimuth [rad], and coefficients, `HIGHEST` + 1 of them."""
+        """Return one row per piece: first and last azimuth [rad], and `HIGHEST` + 1 coefficients."""
         rows = [[*ends, *self.piece(k)] for k, ends in enumerate(pairwise(self.breaks))]
         return [row + [0.0] * (HIGHEST + 3 - len(row)) for row in rows]
 
     def exact(self, angle: float) -> float:
-        """Return k of the landing at an azimuth from x towards y [rad], without the polynomials."""
+        """Return k of the landing at an azimuth from x towards y [rad], without interpolation [-]."""
         moments, x, y = self.moments, math.cos(angle), math.sin(angle)
         edge = np.array([-y, x, 0.0])
         new, old = (_reach(self.base, sign * x, sign * y) for sign in (1.0, -1.0))
@@ -96,27 +96,27 @@ class ImpulsePosition(ABC):
 
     def _fitted(self, middle: float, half: float) -> list[float]:
         degree, values = 4, [self.exact(middle + half * math.cos(math.pi * j / 4)) for j in range(5)]
-        found = _coefficients(values)
-        while degree < HIGHEST and max(map(abs, found[-2:])) > _CONVERGED * max(1.0, *map(abs, values)):
+        coefficients = _coefficients(values)
+        while degree < HIGHEST and max(map(abs, coefficients[-2:])) > _CONVERGED * max(1.0, *map(abs, values)):
             degree *= 2
-            shares = [math.cos(math.pi * j / degree) for j in range(degree + 1)]
-            values = [self.exact(middle + half * shares[j]) if j % 2 else values[j // 2] for j in range(degree + 1)]
-            found = _coefficients(values)
-        return found
+            nodes = [math.cos(math.pi * j / degree) for j in range(degree + 1)]
+            values = [self.exact(middle + half * nodes[j]) if j % 2 else values[j // 2] for j in range(degree + 1)]
+            coefficients = _coefficients(values)
+        return coefficients
 
 
 class KedPosition(ImpulsePosition):
-    """Position k where the energy balance of Mao et al. (2024) puts the impulse."""
+    """Position k of the impulse by the energy balance of Mao et al. (2024)."""
 
     def __init__(self, solid: Solid) -> None:
         super().__init__(solid.local_moments, solid.local_base)
         self.solid, self.size = solid, solid.size
 
     def coefficient(self, landing: BaseLanding) -> float:
-        """Return the square root of the ratio of kinetic energies after and before."""
-        kept = self._projected(landing.edge, landing.offset)
+        """Return the square root of the ratio of kinetic energies after and before [-]."""
+        projected = self._projected(landing.edge, landing.offset)
         total = landing.over_foot + self.moments.mass * landing.new_lever**2
-        return math.sqrt(max(kept, 0.0) / total)  # Eq. 17, Mao et al. 2024
+        return math.sqrt(max(projected, 0.0) / total)  # Eq. 17, Mao et al. 2024
 
     def _projected(self, edge: FloatArray, offset: float) -> float:
         """Return the numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
@@ -129,21 +129,21 @@ class KedPosition(ImpulsePosition):
 
 @lru_cache(maxsize=256)
 def impulse_position(solid: Solid) -> KedPosition:
-    """Return the position of the impulse by KED, kept for the solid."""
+    """Return the impulse position by KED; cached by solid."""
     return KedPosition(solid)
 
 
 def _breaks(base: Base) -> list[float]:
     if isinstance(base, SupportPolygon):
         normals = [math.atan2(-float(along.direction[0]), float(along.direction[1])) for along in base.edges]
-        both = sorted(math.remainder(angle + turn, 2.0 * math.pi) for angle in normals for turn in (0.0, math.pi))
+        candidates = sorted(math.remainder(angle + turn, 2.0 * math.pi) for angle in normals for turn in (0.0, math.pi))
     else:
-        both = [2.0 * math.pi * (j / _ARCS - 0.5) for j in range(_ARCS)]
-    found = [both[0]]
-    found += [angle for last, angle in pairwise(both) if angle - last > _SAME]
-    if found[0] + 2.0 * math.pi - found[-1] <= _SAME:
-        found.pop()
-    return [*found, found[0] + 2.0 * math.pi]
+        candidates = [2.0 * math.pi * (j / _ARCS - 0.5) for j in range(_ARCS)]
+    angles = [candidates[0]]
+    angles += [angle for last, angle in pairwise(candidates) if angle - last > _SAME]
+    if angles[0] + 2.0 * math.pi - angles[-1] <= _SAME:
+        angles.pop()
+    return [*angles, angles[0] + 2.0 * math.pi]
 
 
 def _reach(base: Base, x: float, y: float) -> float:
@@ -165,7 +165,7 @@ def _cloud(part: Part) -> FloatArray:
 
 
 def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
-    """``Int z^4/(t^2 + z^2) dm = sum z^4/(t^2 + z^2) (s . dA)/5`` by Gauss points of the surface."""
+    """Return ``Int z^4/(t^2 + z^2) dm = sum z^4/(t^2 + z^2) (s . dA)/5`` by Gauss points of the surface."""
     terms = np.empty(cloud.shape[1])
     for first in range(0, terms.size, _PIECE):
         x, y, z, ax, ay, az = cloud[:, first : first + _PIECE]
@@ -182,35 +182,35 @@ def _height(points: FloatArray) -> FloatArray:
 
 
 def _coefficients(values: list[float]) -> list[float]:
-    """Chebyshev coefficients from values at cos(pi j/n)."""
+    """Return Chebyshev coefficients from values at cos(pi j/n)."""
     n = len(values) - 1
     ends = [0.5 if j in {0, n} else 1.0 for j in range(n + 1)]
-    found = []
+    coefficients = []
     for k in range(n + 1):
         total = sum(w * v * math.cos(math.pi * j * k / n) for j, (w, v) in enumerate(zip(ends, values, strict=True)))
-        found.append(2.0 * ends[k] * total / n)
-    return found
+        coefficients.append(2.0 * ends[k] * total / n)
+    return coefficients
 
 
 def _value(coefficients: list[float], x: float) -> float:
-    """Clenshaw's sum."""
-    one = two = 0.0
+    """Return the value of a Chebyshev series by Clenshaw's recurrence."""
+    current = previous = 0.0
     for coefficient in reversed(coefficients[1:]):
-        one, two = 2.0 * x * one - two + coefficient, one
-    return x * one - two + coefficients[0]
+        current, previous = 2.0 * x * current - previous + coefficient, current
+    return x * current - previous + coefficients[0]
 
 
 _ROUNDING = 1e-12
 
 
 class ImpulsePositionModel(SpatialModel):
-    """A model that keeps the angular momentum about a point of the way from the old pivot to the new one."""
+    """Base class of models with angular momentum conserved about a point between the old and the new pivot."""
 
     highest: ClassVar[float] = 1.0  # largest k; 1 is the new foot (Housner's model)
 
     @abstractmethod
     def position(self, impact: SpatialImpact) -> ImpulsePosition:
-        """Return the position of the impulse of landings of the whole base.
+        """Return the position of the impulse of landings of the full base.
 
         Parameters
         ----------
@@ -224,101 +224,101 @@ class ImpulsePositionModel(SpatialModel):
         """
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Keep the angular momentum about the impulse's point; about an edge, its component along a parallel line."""
+        """Return the velocity with angular momentum conserved about the impulse position, or along an edge [rad/s]."""
         step, axis = _step(impact), impact.edge
         k = min(self.position(impact).of_step(step), self.highest)
-        velocity = _kept(impact, step, k)
+        velocity = _velocity_about(impact, step, k)
         if k < 1.0 and _push(impact, velocity) < 0.0:
-            velocity = _kept(impact, step, 1.0)
+            velocity = _velocity_about(impact, step, 1.0)
         after = 0.5 * dot(velocity, applied(impact.inertia, velocity))
         if after > impact.energy:
             velocity = velocity * math.sqrt(impact.energy / after)
         return velocity if axis is None else dot(velocity, axis) * axis
 
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
-        """Return whether the contact force would be tensile."""
+        """Return the flag of a tensile contact force."""
         scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
         return (SpatialFlag.PULLS,) * bool(_push(impact, velocity) < -_ROUNDING * scale)
 
 
 @dataclass(frozen=True)
 class SpatialKed(ImpulsePositionModel):
-    """Kinetic energy distribution with a place for its impulse: steps of any size, from any pivot to any other.
+    """Kinetic energy distribution with an impulse position, for steps of any size between any pivots.
 
-    Of the paper is what a landing of the whole base costs, and with that where its impulse acts: k of the half distance
-    between the feet (`ImpulsePosition`), cut at 1, the new foot, beyond which the ground would have to pull. That k,
-    not the coefficient, is taken over to a step from any pivot P to any pivot Q: the impulse acts at
-    ``X = (P + Q)/2 + k (Q - P)/2``, and angular momentum about X is kept,
+    The paper gives the energy loss of a landing of the full base, and with it the impulse position: k times the half
+    distance between the feet (`ImpulsePosition`), at most 1, the new foot, beyond which the contact force is tensile.
+    The model uses this k, not the coefficient, for a step from any pivot P to any pivot Q: the impulse acts at
+    ``X = (P + Q)/2 + k (Q - P)/2``, and angular momentum about X is conserved,
     ``I_C w+ + m rho_X x (w+ x rho_Q) = I_C w- + m rho_X x (w- x rho_P)``; about an edge its component along the edge.
-    A rectangle that lands on its edge has the paper's coefficient, no step costs nothing, n small steps cost 1/n of a
-    large one, and a rim rolls without loss.
+    A rectangle that lands on its edge has the coefficient of the paper. The loss of a step of length zero is zero, that
+    of n small steps is 1/n of that of a large step, and a rim rolls without loss.
 
-    This closure is this project's own, not the paper's.
+    The closure is part of this project, not of the paper.
     """
 
     name = "ked-3d"
-    title = "momentum about the point where the paper's energy balance puts the impulse (this project's closure)"
+    title = "momentum about the impulse position of the paper's energy balance (this project's closure)"
     reference = "Mao, Deng, Shen & Wang 2024, doi:10.3390/buildings14072119, closed by momentum in this project"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "a landing of the whole base costs what the paper says, by one impulse between the old foot and the new one",
-        "a smaller step has its impulse at the same share of the way, that of the direction of the step in the body "
-        "that stands upright",
-        "beyond the new foot, or where it would have to pull, the impulse acts at the new foot (Housner's)",
+        "a landing of the full base has the loss of the paper, by one impulse between the old and the new foot",
+        "a smaller step has its impulse at the same fraction of the step, that of the direction of the step in the "
+        "upright body",
+        "for a position beyond the new foot, or a tensile impulse, the impulse acts at the new foot (Housner)",
     )
     needs_solid = True
     domain = (
         "every impact on one corner or edge, in any attitude; the paper publishes homogeneous rectangles in the plane"
     )
     known_defects = (
-        "of a landing of the whole base all defects of KED in the plane; on feet so narrow that k exceeds 1 the "
-        "paper's coefficient is not reached, and said so",
-        "that the share of the way is the same for small steps and large ones is assumed, and so is that the lean at "
-        "the landing does not matter",
-        "very squat bodies (k below 0.3) would gain energy in rare steps; the velocity is then cut at the energy",
-        "onto an edge through the old pivot, and onto the whole base, it is Housner's impact",
+        "for a landing of the full base all defects of KED in the plane; with feet so narrow that k exceeds 1 the "
+        "coefficient of the paper is not reached, which a flag reports",
+        "the assumptions that the fraction is equal for small and large steps, and that the tilt at the landing has "
+        "no influence, are not verified",
+        "very squat bodies (k below 0.3) would gain energy in rare steps; the velocity is then limited by the energy",
+        "equal to Housner's model onto an edge through the old pivot, and onto the full base",
     )
 
     def position(self, impact: SpatialImpact) -> ImpulsePosition:
-        """Return the position by the paper's energy balance."""
+        """Return the position by the energy balance of the paper."""
         return impulse_position(impact.solid)
 
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
-        """Return whether k was cut, and whether the contact force would be tensile."""
+        """Return the flags of a limited k and of a tensile contact force."""
         return (SpatialFlag.CUT,) * self.cut(impact.solid, _step(impact)) + super().flags(impact, velocity)
 
     def cut(self, solid: Solid, step: FloatArray) -> bool:
-        """Return whether k of a step was cut: the base is too narrow in this direction for the paper's loss.
+        """Return True if k of a step is limited: the base is too narrow in this direction for the loss of the paper.
 
         Parameters
         ----------
         solid : Solid
             The body.
         step : ndarray, shape (3,)
-            From the old pivot to the new one, in the solid's axes [m].
+            Vector from the old to the new pivot, in the axes of the solid [m].
 
         Returns
         -------
         bool
-            True if the impulse is taken at the new foot although the model would have it beyond.
+            True if the impulse position is moved to the new foot from beyond.
         """
         return impulse_position(solid).of_step(step) > 1.0 + _ROUNDING
 
 
 def _step(impact: SpatialImpact) -> FloatArray:
-    """From the old pivot to the landing point, or across the edge."""
+    """Return the vector from the old pivot to the landing point, perpendicular to a landing edge [m]."""
     step = impact.onto.point - impact.pivot
     return step if impact.edge is None else step - dot(step, impact.edge) * impact.edge
 
 
-def _kept(impact: SpatialImpact, step: FloatArray, k: float) -> FloatArray:
-    """Velocity with the angular momentum about X, which lies behind the landing point by (1 - k)/2 of the step."""
+def _velocity_about(impact: SpatialImpact, step: FloatArray, k: float) -> FloatArray:
+    """Return the velocity with the angular momentum about X, (1 - k)/2 of the step behind the landing [rad/s]."""
     arm, back = impact.moments.centre, 0.5 * (1.0 - k) * impact.moments.mass * step
     momentum = impact.angular_momentum + _cross(back, _centre_velocity(impact))
     inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back  # Eq. 103
     if impact.edge is not None:
         return impact.edge * (dot(impact.edge, momentum) / dot(impact.edge, applied(inertia, impact.edge)))
-    # Cramer's rule, since this matrix is not symmetric: the same on every processor
+    # Cramer's rule for a matrix that is not symmetric: equal on all processors
     a, b, c = inertia.T
     volume = dot(a, _cross(b, c))
     return np.array([dot(momentum, _cross(*pair)) for pair in ((b, c), (c, a), (a, b))]) / volume  # Eq. 103
@@ -329,7 +329,7 @@ def _centre_velocity(impact: SpatialImpact) -> FloatArray:
 
 
 def _push(impact: SpatialImpact, velocity: FloatArray) -> float:
-    """Vertical impulse of the ground [N s]."""
+    """Return the vertical impulse of the ground [N s]."""
     change = _cross(velocity, impact.moments.centre) - _centre_velocity(impact)
     return impact.moments.mass * dot(impact.up, change)
 

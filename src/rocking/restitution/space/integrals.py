@@ -1,9 +1,8 @@
-"""Integrals over the mass of a solid that are homogeneous about the place it lands on, as sums over its surface.
+"""Integrals over the mass of a solid, homogeneous about its landing point or edge, as sums over its surface.
 
-The attitude enters what stage 2 of KED keeps through the projection alone, so that the moments are made once for every
-landing place. Kept are not the tensors K of Eq. 106 but what they consist of: v along the direction that stage 2
-removes, or allows, is ``(linear . A u + quadratic . B W)/length``, with the components of s and their products; one
-symmetric matrix of those.
+Stage 2 of KED depends on the attitude through the projection only, so that the moments are computed once per landing.
+They are not the tensors K of Eq. 106 but their components: v along the direction that stage 2 removes, or allows, is
+``(linear . A u + quadratic . B W)/length``, with the components of s and their products, in one symmetric matrix.
 """
 
 import math
@@ -24,7 +23,7 @@ from rocking.restitution.ked import edge_integrals, ring_integral
 Features = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 _NEGLIGIBLE = 1e-17
-# a round surface hugs the tangent over a long way: 1e-10 of the integral needs no more
+# a round surface is close to its tangent over a long distance: this is sufficient for 1e-10 of the integral
 _NEGLIGIBLE_ROUND = 1e-13
 _ALONG = 1e-12
 _STEEP = 1e-3
@@ -53,7 +52,7 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
 
 
 def exact_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
-    """Return the exact integral of a part with flat faces about a level line; None for any other."""
+    """Return the exact integral of a part with flat faces about a level line; None for other shapes."""
     if not isinstance(part.shape, Polyhedron):
         return None
     if isinstance(part.shape, Prism) and np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
@@ -71,7 +70,7 @@ def _extruded_moment(part: Part, prism: Prism, point: FloatArray, edge: FloatArr
 
 
 class _Facets:
-    """Flat faces in their place, each edge between two of them once."""
+    """Flat faces of a part in its position, with each common edge once."""
 
     def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
         self.vertices, self.faces = vertices, faces
@@ -87,15 +86,15 @@ class _Facets:
         cones = (self.areas * s[self.faces[:, 0]]).sum(axis=1)
         along = self.areas[:, 0] * edge[0] + self.areas[:, 1] * edge[1]
         steep = np.abs(along) > _STEEP * np.sqrt(np.square(self.areas).sum(axis=1))
-        shares = np.divide(cones, along, out=np.zeros(len(along)), where=steep)
-        weights = np.bincount(self.numbers, self.signs * np.tile(shares, 3))
-        seen = np.stack([s[:, 1] * edge[0] - s[:, 0] * edge[1], s[:, 2]], axis=1)
-        start, end = seen[self.ends[weights != 0.0]].swapaxes(0, 1)
+        ratios = np.divide(cones, along, out=np.zeros(len(along)), where=steep)
+        weights = np.bincount(self.numbers, self.signs * np.tile(ratios, 3))
+        projected = np.stack([s[:, 1] * edge[0] - s[:, 0] * edge[1], s[:, 2]], axis=1)
+        start, end = projected[self.ends[weights != 0.0]].swapaxes(0, 1)
         total = float((weights[weights != 0.0] * edge_integrals(start, end)).sum()) / 20.0  # Eq. 322
-        # seen along the line the others are no areas, and would cancel
-        others, distance = TriangleSurface(s[self.faces[~steep]]), distance_to(edge)
+        # along the line the other faces have no projected area, and would cancel
+        horizontal_faces, distance = TriangleSurface(s[self.faces[~steep]]), distance_to(edge)
         negligible = _NEGLIGIBLE * float(np.abs(cones).sum() * np.square(s[:, 2]).max())
-        for points, areas in samples([others], distance, negligible, height_squared):
+        for points, areas in samples([horizontal_faces], distance, negligible, height_squared):
             terms = np.square(points[:, 2] ** 2 / np.maximum(distance(points), 1e-300)) * (points * areas).sum(axis=1)
             total += 0.2 * float(terms.sum())  # Eq. 107
         return total
@@ -108,7 +107,7 @@ def _facets(part: Part) -> _Facets:
 
 
 def distance_to(edge: FloatArray) -> Distance:
-    """Return the function that measures distances to a line through the origin."""
+    """Return the function of the distance to a line through the origin."""
     return lambda s: np.linalg.norm(np.cross(edge, s), axis=1)
 
 
@@ -144,14 +143,14 @@ _PAIRS = np.array([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)])
 
 @dataclass(frozen=True, eq=False)
 class KeptMoments:
-    """Moments of the mass points with what stage 2 of KED keeps of their velocities."""
+    """Moments of the mass points with the velocities after stage 2 of KED."""
 
     form: FloatArray  # products of n quadratic and m linear features over the squared length; shape (n + m, n + m)
     directions: FloatArray  # A: the directions of the linear features [-]; shape (m, 3)
-    products: FloatArray  # how each linear feature times s is made of the quadratic ones [-]; shape (n, m, 3)
-    # mass, first and second moments about the landing point from which the form is removed, at a corner; at an edge the
-    # form is what stays, and these are zero
-    whole: tuple[float, FloatArray, FloatArray]
+    products: FloatArray  # coefficients of each linear feature times s in the quadratic features [-]; shape (n, m, 3)
+    # mass, first and second moments about the landing point, from which the form is subtracted at a corner; zero at an
+    # edge, where the form is added
+    totals: tuple[float, FloatArray, FloatArray]
     sign: float
 
     @property
@@ -159,7 +158,7 @@ class KeptMoments:
         """``Int Q_ij dm``, shape (3, 3) [kg]."""
         count = len(self.directions)
         tensor = times(times(self.directions.T, self.form[-count:, -count:]), self.directions)
-        return self.whole[0] * np.eye(3) + self.sign * tensor
+        return self.totals[0] * np.eye(3) + self.sign * tensor
 
     @property
     def third(self) -> FloatArray:
@@ -167,7 +166,7 @@ class KeptMoments:
         count = len(self.directions)
         mixed = times(self.form[-count:, :-count], self._factors.reshape(-1, 9))
         tensor = np.einsum("pi,pjk->ijk", self.directions, mixed.reshape(-1, 3, 3))
-        return np.asarray(np.einsum("ij,k->ijk", np.eye(3), self.whole[1]) + self.sign * tensor)
+        return np.asarray(np.einsum("ij,k->ijk", np.eye(3), self.totals[1]) + self.sign * tensor)
 
     @property
     def fourth(self) -> FloatArray:
@@ -175,7 +174,7 @@ class KeptMoments:
         count = len(self.directions)
         form = self.form[:-count, :-count]
         tensor = np.einsum("pik,pq,qjl->ijkl", self._factors, form, self._factors, optimize=True)
-        return np.asarray(np.einsum("ij,kl->ijkl", np.eye(3), self.whole[2]) + self.sign * tensor)
+        return np.asarray(np.einsum("ij,kl->ijkl", np.eye(3), self.totals[2]) + self.sign * tensor)
 
     @cached_property
     def _factors(self) -> FloatArray:
@@ -188,18 +187,18 @@ class KeptMoments:
         return np.concatenate([quadratic, applied(self.directions, drift)])
 
     def energy_left(self, drift: FloatArray, gradient: FloatArray) -> float:
-        """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s`` [J]."""
+        """Return the kinetic energy of the velocities ``u + W s`` after stage 2 [J]."""
         state = self.coefficients(drift, gradient)
         along = dot(state, applied(self.form, state))  # Eq. 106
-        mass, first, second = self.whole
+        mass, first, second = self.totals
         crossed = 2.0 * dot(drift, applied(gradient, first))
-        every = mass * dot(drift, drift) + crossed + float((times(gradient, second) * gradient).sum())
-        return 0.5 * max(every + self.sign * along, 0.0)
+        total = mass * dot(drift, drift) + crossed + float((times(gradient, second) * gradient).sum())
+        return 0.5 * max(total + self.sign * along, 0.0)
 
 
 def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
-    """Return the moments of what stage 2 of KED keeps about a corner or an edge in the solid's own frame [m]."""
-    # about a corner two of three directions stay, so that the trace is twice the mass; about an edge it is the mass
+    """Return the moments after stage 2 of KED about a corner or an edge in the frame of the solid [m]."""
+    # about a corner two of three directions remain: the trace is twice the mass; about an edge it is the mass
     if isinstance(onto, Edge):
         return _about_line(solid, *onto.point.tolist(), *onto.direction.tolist())
     return _about_point(solid, *onto.point.tolist())
@@ -210,11 +209,11 @@ def _about_point(solid: Solid, x: float, y: float, z: float) -> KeptMoments:
     point = np.array([x, y, z])
     form = sum((of_part(part, point, _corner_features, (norm, None)) for part in solid.local_parts), np.zeros(()))
     products = np.zeros((6, 3, 3))
-    for number, (i, j) in enumerate(_PAIRS):
-        products[number, i, j] = products[number, j, i] = 1.0
-    found = solid.local_moments
-    whole = found.mass, found.mass * (found.centre - point), found.second_about(point)
-    return KeptMoments(form, np.eye(3), products, whole, -1.0)
+    for index, (i, j) in enumerate(_PAIRS):
+        products[index, i, j] = products[index, j, i] = 1.0
+    moments = solid.local_moments
+    totals = moments.mass, moments.mass * (moments.centre - point), moments.second_about(point)
+    return KeptMoments(form, np.eye(3), products, totals, -1.0)
 
 
 @lru_cache(maxsize=_CACHED)
@@ -228,9 +227,9 @@ def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -
     form = sum((of_part(part, point, features, graded) for part in solid.local_parts), np.zeros(()))
     e, f, g = frame
     # s = sigma e + t f + z g; quadratic features zz, z sigma, tz, tt, t sigma; linear ones z and t
-    none = np.zeros(3)
-    products = np.array([[g, none], [e, none], [f, g], [none, f], [none, e]])
-    return KeptMoments(form, np.stack([-f, g]), products, (0.0, none, np.zeros((3, 3))), 1.0)
+    zero = np.zeros(3)
+    products = np.array([[g, zero], [e, zero], [f, g], [zero, f], [zero, e]])
+    return KeptMoments(form, np.stack([-f, g]), products, (0.0, zero, np.zeros((3, 3))), 1.0)
 
 
 def edge_frame(direction: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Models in space by name, and the two questions that are asked of them."""
+"""Restitution models in space by name, and impacts of solids."""
 
 from functools import partial
 from typing import Any
@@ -26,7 +26,7 @@ _MODELS: dict[str, type[SpatialModel]] = {
 
 
 def spatial_models() -> dict[str, type[SpatialModel]]:
-    """Return every restitution model in space.
+    """Return the restitution models in space.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     Raises
     ------
     UnknownModelError
-        If there is no model of that name.
+        If the name is unknown.
     """
     if isinstance(model, SpatialModel):
         return model
@@ -65,7 +65,7 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     name = name if name in _MODELS else checks.spelling(f"{model}-3d", _MODELS)
     if name not in _MODELS:
         raise UnknownModelError(
-            "no restitution model in space is called {name!r}; there are {names}", name=model, names=", ".join(_MODELS),
+            "unknown restitution model in space {name!r}; models: {names}", name=model, names=", ".join(_MODELS),
             hint=checks.nearest(model, _MODELS),
         )  # fmt: skip
     return _MODELS[name]()
@@ -74,18 +74,18 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
 def impact_in_space(
     solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model: Any = DEFAULT_RESTITUTION
 ) -> SpatialRestitution:
-    """Return what an impact in space does to the angular velocity.
+    """Return the result of an impact in space.
 
     Parameters
     ----------
     solid : Solid
-        The body, at the moment of the impact standing as it was described.
+        The body, upright at the impact in its described position.
     velocity : array_like, shape (3,)
         Angular velocity before, along the axis and right-handed [rad/s].
     pivot : Corner, Edge or array_like, shape (2,)
-        What it turned about: a point (x, y) of the ground in the user's coordinates [m].
+        Pivot before the impact: a point (x, y) of the ground in the user's coordinates, a corner or an edge [m].
     onto : Corner, Edge or array_like, shape (2,)
-        What it lands on; a point (x, y) means a corner [m].
+        Corner or edge of landing; a point (x, y) means a corner [m].
     model : str or SpatialModel
         The model.
 
@@ -97,15 +97,15 @@ def impact_in_space(
     Raises
     ------
     InvalidValueError
-        If the body does not come down, or a value is not finite.
+        If the body does not rotate towards the ground, or a value is not finite.
     UnknownModelError
-        If there is no model of that name.
+        If the name of the model is unknown.
     GeometryError
-        If pivot or landing point are no points of the base: off the ground, or outside it.
+        If pivot or landing point are not points of the base: above the ground, or outside the base.
 
     Examples
     --------
-    A prism that falls back from one corner over its diagonal onto the opposite one:
+    A prism that rotates from one corner over its diagonal onto the opposite corner:
 
     >>> from rocking.bodies.solid import Solid, box
     >>> prism = Solid(box(1.0, 1.0, 4.0))
@@ -114,25 +114,25 @@ def impact_in_space(
     59.0
     """
     checks.of_kind("solid", solid, Solid, "a Solid")
-    found = spatial_model(model)
+    spatial = spatial_model(model)
     start, landing = _local(solid, "pivot", pivot), _local(solid, "onto", onto)
     before = vector("velocity", velocity, "rad/s")
     if isinstance(start, Edge) and np.abs(np.cross(before, start.direction)).max() > 1e-9 * np.abs(before).max():
-        raise InvalidValueError("a body that turns about an edge has its angular velocity along that edge")
+        raise InvalidValueError("velocity of a body that turns about an edge must be along the edge")
     pivot, speed = _nearest(solid, start, landing), norm(before)
     if not speed > 0.0:
-        raise InvalidValueError("velocity must not be zero: a body at rest has no impact")
+        raise InvalidValueError("velocity must not be zero")
     down = float(np.cross(before, middle_of_base(solid) - pivot)[2])
     if not down < 1e-12 * speed * solid.size:
         raise InvalidValueError(
-            "{parameter} must turn the base onto the ground about the pivot; its middle rises at {speed:.3g} m/s: is "
-            "the sign of the angular velocity wrong? The vector points along the axis, right-handed",
+            "{parameter} must rotate the base to the ground about the pivot, got a middle that rises at {speed:.3g} "
+            "m/s; check the sign: the vector is along the axis, right-handed",
             parameter="velocity", speed=down,
         )  # fmt: skip
     impact = SpatialImpact(
         solid.local_moments, before, pivot, landing, matter=partial(_placed, solid), base=solid.local_base
     )
-    return found.after(impact)
+    return spatial.after(impact)
 
 
 def _placed(solid: Solid) -> Placed:
@@ -142,14 +142,14 @@ def _placed(solid: Solid) -> Placed:
 def edge_coefficient(
     solid: Solid, model: Any = DEFAULT_RESTITUTION, *, start: float = 0, onto: float | None = None
 ) -> float:
-    """Return the coefficient of restitution of a body that falls back from one edge of its base onto another.
+    """Return the coefficient of restitution of a body that rotates from one edge of its base onto another.
 
-    A round base has no such impact of its own: free in space it rolls round its rim, and in the ideal model keeps its
-    energy where it passes flat (M. Srinivasan, A. Ruina, "Rocking and rolling: a can that appears to rock might
-    actually roll", 2008). What is returned for one is the coefficient of a drum that is held to one vertical plane; it
-    must not be used for a free one, which the response in space follows as it rolls.
+    A free round base has no such impact: it rolls around its rim, and in the ideal model it conserves its energy at
+    the flat position (M. Srinivasan, A. Ruina, "Rocking and rolling: a can that appears to rock might actually roll",
+    2008). For a round base the result is the coefficient of a drum guided in one vertical plane. Do not use it for a
+    free drum, whose rolling the response in space computes.
 
-    Onto the parallel edge it is the plane coefficient; from an edge e1 onto an edge e2 at an angle KED and
+    Onto the parallel edge the result is the plane coefficient; from an edge e1 onto an edge e2 at an angle KED and
     horizontal momentum give ``|e1 . e2|`` times the coefficient of e2, because the horizontal velocities are
     ``omega z (e1 x n)``.
 
@@ -160,20 +160,19 @@ def edge_coefficient(
     model : str or SpatialModel
         The model.
     start : float
-        Number of the edge it turned about; for a round base the direction of the tangent point [rad].
+        Index of the edge of rotation before; for a round base the direction of the tangent point [rad].
     onto : float, optional
-        Number of the edge that it lands on; by default the one on the opposite side. For a round base a
-        direction [rad].
+        Index of the edge of landing; by default that on the opposite side. For a round base a direction [rad].
 
     Returns
     -------
     float
-        theta_dot_after / theta_dot_before, zero where the body stops [-].
+        theta_dot_after / theta_dot_before, zero for a body that stops [-].
 
     Raises
     ------
     GeometryError
-        If there is no such edge, or none is parallel.
+        If the edge does not exist, or no edge is parallel.
 
     Examples
     --------
@@ -209,32 +208,32 @@ def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
 
 
 def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatArray:
-    """Return the point at rest that is nearest to the landing place: from there the step is measured."""
+    """Return the point at rest nearest to the landing, the start of the step [m]."""
     if isinstance(start, Corner):
         return start.point
     target = onto.point if isinstance(onto, Corner) else sum(_ends(solid, onto), np.zeros(3)) / 2.0
     first, last = _ends(solid, start)
     along = (target - start.point) * start.direction
-    low, high, share = (
+    low, high, position = (
         float(value.sum())
         for value in ((first - start.point) * start.direction, (last - start.point) * start.direction, along)
     )
-    return np.asarray(start.point + min(max(share, low), high) * start.direction)
+    return np.asarray(start.point + min(max(position, low), high) * start.direction)
 
 
 def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:
-    """Return the ends of the stretch of a line that the base touches."""
+    """Return the ends of the segment of a line in contact with the base [m]."""
     base, along = solid.local_base, edge.direction
     assert isinstance(base, (SupportPolygon, RoundBase))
     points = np.atleast_2d(base.vertices if isinstance(base, SupportPolygon) else base.centre)
     arm = points - edge.point[:2]
-    aside = np.abs(along[0] * arm[:, 1] - along[1] * arm[:, 0])
-    shares = (arm[:, 0] * along[0] + arm[:, 1] * along[1])[aside <= aside.min() + 1e-9 * solid.size]
-    return edge.point + float(shares.min()) * along, edge.point + float(shares.max()) * along
+    distances = np.abs(along[0] * arm[:, 1] - along[1] * arm[:, 0])
+    positions = (arm[:, 0] * along[0] + arm[:, 1] * along[1])[distances <= distances.min() + 1e-9 * solid.size]
+    return edge.point + float(positions.min()) * along, edge.point + float(positions.max()) * along
 
 
 def _gap_of_line(base: Base, edge: Edge) -> float:
-    """Return how far a line in the ground passes the base, zero or less where it touches it [m]."""
+    """Return the distance of a line on the ground from the base; zero or negative for contact [m]."""
     reach = base.radius if isinstance(base, RoundBase) else 0.0
     if isinstance(base, RoundBase):
         points = base.centre[None]
@@ -247,12 +246,12 @@ def _gap_of_line(base: Base, edge: Edge) -> float:
     return float(max(aside.min(), -aside.max())) - reach
 
 
-def _check_on_base(solid: Solid, name: str, given: FloatArray, gap: float) -> None:
+def _check_on_base(solid: Solid, name: str, point: FloatArray, gap: float) -> None:
     if gap > 1e-9 * solid.size:
-        x, y = (solid.origin + given)[:2].tolist()
+        x, y = (solid.origin + point)[:2].tolist()
         raise GeometryError(
-            "{parameter} must touch the base, got ({x:g}, {y:g}) m, which passes it at {gap:.3g} m or more",
-            parameter=name, x=x, y=y, gap=gap, hint="is it in the unit and the coordinates of the body?",
+            "{parameter} must touch the base, got ({x:g}, {y:g}) m, at {gap:.3g} m or more from the base",
+            parameter=name, x=x, y=y, gap=gap, hint="check unit and coordinates",
         )  # fmt: skip
 
 

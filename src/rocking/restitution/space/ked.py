@@ -20,9 +20,9 @@ _PLANE = 1e-14
 class SpatialKedPoint(SpatialModel):
     """Kinetic energy distribution in space: momentum gives the direction, energy the magnitude.
 
-    Stage 1 removes the vertical velocity of every mass point, ``v = P_h v_-``; stage 2 the part along the line to
-    the new corner, ``v'' = (1 - d d^T) v``, or all but the part that turns about the new edge. Energy alone fixes no
-    direction in space, so that the closure is this project's own: ``I_B w* = Int s x v'' dm`` and
+    Stage 1 removes the vertical velocity of every mass point, ``v = P_h v_-``; stage 2 the component along the line to
+    the new corner, ``v'' = (1 - d d^T) v``, or all but rotation about the new edge. Energy alone does not determine the
+    direction in space; the closure of this project is ``I_B w* = Int s x v'' dm`` and
     ``omega_+ = w* sqrt(2 T''/(w* . I_B w*))``. The factor is never below 1 (Cauchy-Schwarz), and a plane motion
     about an edge gives Eq. 17, Mao et al. 2024.
     """
@@ -32,24 +32,22 @@ class SpatialKedPoint(SpatialModel):
     reference = "Mao, Deng, Shen & Wang 2024, doi:10.3390/buildings14072119, extended to space in this project"
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
-        "the vertical velocity of every mass point is lost, then its part along the line to the new corner",
-        "the kinetic energy that is left becomes rotation in the direction of the angular momentum that is left",
+        "every mass point loses its vertical velocity, then its component along the line to the new corner",
+        "the remaining kinetic energy becomes rotation in the direction of the remaining angular momentum",
     )
     needs_solid = True
-    domain = (
-        "every impact on one corner or edge, in any attitude; the paper publishes homogeneous rectangles in the plane"
-    )
+    domain = "all impacts on one corner or edge, in any attitude; published for homogeneous rectangles in the plane"
     known_defects = (
         "all defects of KED in the plane",
-        "the closure is a choice: the paper's energy alone fixes no direction in space",
-        "where the old pivot was hardly matters: a corner that only grazes the ground costs a whole impact, so that a "
-        "wobbling body loses far too much, and the more the finer its base is divided; ked-3d has no such defect",
-        "about a point and about a line through it the coefficients differ (0.9132 and 0.9125 for a prism 1 x 1 x 4 "
-        "over its diagonal)",
+        "the closure is a choice: the energy of the paper does not determine the direction in space",
+        "almost independent of the old pivot: a corner that only grazes the ground has the loss of a full impact, so "
+        "that the loss of a wobbling body is too large and increases with the number of vertices; ked-3d avoids this",
+        "different coefficients about a point and about a line through the point (0.9132 and 0.9125 for a prism "
+        "1 x 1 x 4 over its diagonal)",
     )
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Return the direction of the momentum left, times what gives it the energy left."""
+        """Return the direction of the remaining momentum, scaled to the remaining energy [rad/s]."""
         direction = SpatialHorizontalMomentum().angular_velocity(impact)
         if impact.edge is not None:
             direction = np.sign(dot(impact.edge, direction)) * impact.edge
@@ -67,7 +65,7 @@ def energy_left(impact: SpatialImpact) -> float:
 
 
 def _is_plane(impact: SpatialImpact, edge: Edge, size: float) -> bool:
-    """Whether the velocities across an edge are those of the plane: Eq. 17's one integral, exact for extrusions."""
+    """Return True for a plane motion about an edge, where Eq. 17 has one integral, exact for extrusions."""
     slow, across = _PLANE * impact.speed, np.cross(impact.up, edge.direction)
     upright = abs(impact.up[0]) + abs(impact.up[1]) <= _PLANE
     still = abs(dot(impact.landing_velocity, across)) <= slow * size

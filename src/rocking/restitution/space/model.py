@@ -1,4 +1,4 @@
-"""What every restitution model in space is: an angular velocity after the impact, and where it comes from."""
+"""Base classes of restitution models in space: angular velocity after the impact, with reference and defects."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -17,23 +17,23 @@ _TOUCH = 1e-12
 
 
 class SpatialFlag(Enum):
-    """What a user must know about an impact in space; the value is the sentence."""
+    """Warning about an impact in space; the value is a sentence for reports."""
 
-    STOPS = "the model's equation turns the body into the ground: it does not step onto the new edge but stops"
+    STOPS = "the model rotates the body into the ground: the body stops and does not step onto the new edge"
     PENETRATES = (
-        "the base would go through the ground beside the new corner: the body lands on more than this corner, "
-        "and an impact with complementarity has to find out on what"
+        "the base would penetrate the ground near the new corner: the body lands on more than this corner; "
+        "use an impact with complementarity"
     )
     CUT = (
-        "the base is so narrow in this direction that the model would have the impulse beyond the new foot, where the "
-        "ground would have to pull: it is taken at the foot, as Housner has it"
+        "the base is so narrow in this direction that the impulse position of the model is beyond the new foot, where "
+        "the contact force is tensile: the impulse is moved to the foot, as in Housner's model"
     )
-    PULLS = "the ground would have to pull: the body does not come to stand on this corner or edge"
+    PULLS = "the contact force becomes tensile: the body does not stay on this corner or edge"
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialRestitution:
-    """What a model says about an impact in space.
+    """Result of a model for an impact in space.
 
     Parameters
     ----------
@@ -42,11 +42,11 @@ class SpatialRestitution:
     impact : SpatialImpact
         The impact.
     raw_velocity : ndarray, shape (3,)
-        Angular velocity that the model's equation gives [rad/s].
+        Angular velocity by the model's equation [rad/s].
     velocity : ndarray, shape (3,)
-        Angular velocity after the impact; zero where the body stops [rad/s].
+        Angular velocity after the impact; zero for a body that stops [rad/s].
     flags : tuple of SpatialFlag
-        What a user must know.
+        Warnings about the impact.
     """
 
     model: "SpatialModel"
@@ -77,7 +77,7 @@ class SpatialRestitution:
 
 
 class SpatialModel(ABC):
-    """One model of what an impact costs a body in space.
+    """Base class of restitution models in space.
 
     Attributes
     ----------
@@ -88,11 +88,11 @@ class SpatialModel(ABC):
     reference : str
         Publication with DOI, or the derivation in this project.
     assumptions, known_defects : tuple of str
-        What the model takes for granted, and where that is known to fail.
+        Assumptions of the model, and cases in which they are known to fail.
     domain : str
-        Impacts it holds for.
+        Impacts to which the model applies.
     needs_solid : bool
-        Whether it needs the distribution of mass, beyond mass, centre and inertia.
+        True if the model needs the distribution of mass, in addition to mass, centre and inertia.
     """
 
     name: ClassVar[str]
@@ -105,7 +105,7 @@ class SpatialModel(ABC):
 
     @abstractmethod
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Return what the model's equation gives about the corner or edge that the body lands on, in any attitude.
+        """Return the angular velocity by the model's equation about the corner or edge of landing, in any attitude.
 
         Parameters
         ----------
@@ -115,28 +115,28 @@ class SpatialModel(ABC):
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity, along the edge if the body lands on one [rad/s].
+            Angular velocity; along the edge for a landing on an edge [rad/s].
         """
 
     def flags(self, impact: SpatialImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
-        """Return what a user must know of this model's answer.
+        """Return warnings about the result of this model.
 
         Parameters
         ----------
         impact : SpatialImpact
             The impact.
         velocity : ndarray, shape (3,)
-            Angular velocity after it [rad/s].
+            Angular velocity after the impact [rad/s].
 
         Returns
         -------
         tuple of SpatialFlag
-            None by default.
+            Empty by default.
         """
         return ()
 
     def turned(self, impact: SpatialImpact) -> FloatArray:
-        """Return `angular_velocity`, checked.
+        """Return `angular_velocity` after a check for finite values.
 
         Parameters
         ----------
@@ -151,23 +151,23 @@ class SpatialModel(ABC):
         Raises
         ------
         InvalidValueError
-            If the model does not give finite numbers.
+            If a value is not finite.
         """
         raw = self.angular_velocity(impact)
         if not np.isfinite(raw).all():
             raise InvalidValueError(
-                "model {model} gives {velocity} rad/s for this impact", model=self.name, velocity=raw.tolist()
+                "model {model} must give finite values, got {velocity} rad/s", model=self.name, velocity=raw.tolist()
             )
         return raw
 
     def after(self, impact: SpatialImpact) -> SpatialRestitution:
-        """Return what the model says about an impact of a body that stands upright.
+        """Return the result of the model for an impact of an upright body.
 
         Parameters
         ----------
         impact : SpatialImpact
-            The impact, with its matter: the flags tell where the base goes. For a body that leans, or one known by
-            its moments alone, there is `turned`.
+            The impact, with its matter for the flags. For a tilted body, or a body with moments only, use
+            `turned`.
 
         Returns
         -------
@@ -177,7 +177,7 @@ class SpatialModel(ABC):
         Raises
         ------
         InvalidValueError
-            If the body leans or has no matter, or the model does not give finite numbers.
+            If the body is tilted or has no matter, or a value is not finite.
         """
         solid, _ = impact.standing_solid
         raw = self.turned(impact)
@@ -190,17 +190,17 @@ class SpatialModel(ABC):
 
 
 def least_rise(impact: SpatialImpact, velocity: FloatArray) -> float:
-    """Return the least vertical velocity of the base of an upright body that turns about its landing point [m/s]."""
+    """Return the smallest vertical velocity of the base of an upright body that turns about its landing point [m/s]."""
     solid, origin = impact.standing_solid
     base = solid.local_base
     points = base.vertices if isinstance(base, SupportPolygon) else middle_of_base(solid)[None, :2]
     arms = points - (impact.onto.point - origin)[:2]
-    least = float((velocity[0] * arms[:, 1] - velocity[1] * arms[:, 0]).min())
-    return least - base.radius * norm(velocity[:2]) if isinstance(base, RoundBase) else least
+    min_rise = float((velocity[0] * arms[:, 1] - velocity[1] * arms[:, 0]).min())
+    return min_rise - base.radius * norm(velocity[:2]) if isinstance(base, RoundBase) else min_rise
 
 
 def middle_of_base(solid: Solid) -> FloatArray:
-    """Return the middle of the base in the solid's own frame [m]."""
+    """Return the middle of the base in the frame of the solid [m]."""
     base = solid.local_base
     if isinstance(base, RoundBase):
         flat = base.centre

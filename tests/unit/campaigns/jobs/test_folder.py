@@ -266,5 +266,5 @@ def test_parameters_and_factor_of_an_own_model(own):
     assert made.coefficient(block, "right") == pytest.approx(0.5 / 3.0, rel=1e-15)
     assert model_in_file(f"{word}:share=0.25").coefficient(block, "right") == pytest.approx(1.0 / 3.0, rel=1e-15)
     for wrong in ("", ":part=0.3", ":share=0.3,part=1"):
-        with pytest.raises(UnknownModelError, match=r"'shared.py:Shared' takes the parameter share, got"):
+        with pytest.raises(UnknownModelError, match=r"'shared.py:Shared' accepts share, got"):
             model_in_file(word + wrong)

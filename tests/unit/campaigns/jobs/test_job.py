@@ -201,7 +201,7 @@ REFUSED = {
     "negative seed": ("seed = -1\n[body]", "[body]", r"campaign\.seed must be a number >= 0, got -1"),
     "seed as words": ('seed = "1"\n[body]', "[body]", r"campaign\.seed must be a whole number, got '1'"),
     "unknown model": ('[restitution]\nmodel = "kedd"\n[map]', "[map]",
-        r"restitution: no restitution model named 'kedd'"),
+        r"restitution: unknown restitution model 'kedd'"),
     "model twice": ('[restitution]\nmodels = ["ked", "ked"]\n[map]', "[map]", r"restitution: ked is given twice"),
     "two restitutions": ('[restitution]\nmodel = "ked"\nvalue = 0.9\n[map]', "[map]",
         r"restitution: exactly one of .*model and value"),

@@ -107,7 +107,7 @@ REFUSED = {
         f'[response]\n{BODY}[motion]\nsynthetic = "pulse-like"\npga = 1.0\npgv = 1.0\n',
         "to pga or to pgv, not to both",
     ),
-    "model": (TEXT + '[restitution]\nmodel = "best"\n', "no restitution model named 'best'"),
+    "model": (TEXT + '[restitution]\nmodel = "best"\n', "unknown restitution model 'best'"),
     "drawn per history": (
         TEXT + '[restitution.distribution]\nmean = 0.9\ndeviation = 0.01\neach = "history"\n',
         'must be "impact" for one history',

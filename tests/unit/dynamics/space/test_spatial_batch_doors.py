@@ -60,7 +60,7 @@ def test_a_bad_row_touches_no_other():
     bad[kept] = False
     assert (mixed.status[bad] == Status.INVALID.code).all()
     assert np.isnan(mixed["peak_tilt"][bad]).all()
-    assert "above the inside of the base" in mixed.refused[0]
+    assert "above the base" in mixed.refused[0]
     assert (good.status == Status.GOOD.code).all() or (good.overturned == 1.0).any()
     refused = [batch_in_space(bodies, RECORD, scales=[math.nan], engine=engine) for engine in ("fast", "reference")]
     for name, values in refused[0].values.items():

@@ -40,7 +40,7 @@ def test_a_box_is_its_closed_forms():
         ({"base": SQUARE[::-1]}, "counter-clockwise"),
         ({"base": SQUARE[[0, 1, 1, 2]]}, "convex"),
         ({"base": np.array([[0, 0], [1, 0], [0.6, 0.5], [1, 1], [0, 1.0]])}, "convex"),
-        ({"centre": [1.5, 0.5, 1.0]}, "would fall over by itself"),
+        ({"centre": [1.5, 0.5, 1.0]}, "would overturn under its weight"),
         ({"centre": [0.5, 0.5, -1.0]}, "height of the centre"),
         ({"centre": [0.5, math.nan, 1.0]}, "finite"),
         ({"inertia": np.diag([1.0, 1.0, 3.0])}, "principal moments"),
@@ -113,7 +113,7 @@ def test_components_with_different_steps_are_one_motion():
     )
     assert not found[~inside, 1].any()
     np.testing.assert_allclose(found[:, 2], 2.0 * pulse.acceleration(time), rtol=0.0, atol=1e-10)
-    with pytest.raises(InvalidValueError, match="vertical part of its own"):
+    with pytest.raises(InvalidValueError, match="must not have a vertical component"):
         ground_of(rk.GroundMotion(x.acceleration, 0.02, x.acceleration))
     with pytest.raises(InvalidValueError, match="GroundMotion"):
         ground_of([1.0, 2.0])
@@ -123,12 +123,12 @@ def test_components_with_different_steps_are_one_motion():
 def test_part_of_a_stretch_is_the_motion_there(start, length):
     """The line of a record with samples 1 s apart, from any instant on and over any unit of time."""
     ground = ground_of(rk.GroundMotion([0.0, 1.0, -2.0, 0.0], 1.0), rk.GroundMotion([0.5, -1.0, 4.0, 0.0], 1.0))
-    found = ground.part(1, 1.0 + start, length)
+    found = ground.segment(1, 1.0 + start, length)
     np.testing.assert_allclose(found[0, :2], [1.0 - 3.0 * start, -3.0 * length], rtol=0.0, atol=1e-14)
     np.testing.assert_allclose(found[1, :2], [-1.0 + 5.0 * start, 5.0 * length], rtol=0.0, atol=1e-14)
     assert not found[:, 2:].any()
     assert not found[2].any()
-    assert not ground.part(3, 3.0, length).any()
+    assert not ground.segment(3, 3.0, length).any()
 
 
 def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():

@@ -51,4 +51,4 @@ def test_places_on_the_base():
 
 def test_round_bases_are_warned_of():
     """Who asks for the edge coefficient of a drum is told that a free one rolls."""
-    assert "rolls round its rim" in " ".join(edge_coefficient.__doc__.split())
+    assert "rolls around its rim" in " ".join(edge_coefficient.__doc__.split())

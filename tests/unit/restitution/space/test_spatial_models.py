@@ -105,7 +105,7 @@ def test_a_round_base_turned_about_its_axis_is_the_same_base(azimuth):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"velocity": [1, -1, 0]}, "sign of the angular velocity wrong"),
+        ({"velocity": [1, -1, 0]}, "check the sign"),
         ({"velocity": [0, 0, 0]}, "must not be zero"),
         ({"velocity": [math.nan, 0, 0]}, "three finite numbers"),
         ({"velocity": [1, 0]}, "three finite numbers"),
@@ -113,7 +113,7 @@ def test_a_round_base_turned_about_its_axis_is_the_same_base(azimuth):
         ({"onto": (math.inf, 0.0)}, "three finite numbers"),
         ({"onto": Edge(np.zeros(3), np.array([1.0, 1.0, 0.0]))}, "unit vector"),
         ({"onto": Edge(np.zeros(3), np.array([0.0, 0.0, 1.0]))}, "unit vector"),
-        ({"pivot": PRISM.base.edges[0]}, "along that edge"),
+        ({"pivot": PRISM.base.edges[0]}, "along the edge"),
         ({"solid": box(1, 1, 1)}, "solid must be a Solid"),
     ],
 )
@@ -165,7 +165,7 @@ def test_a_body_that_leans_has_no_flags_and_no_units():
     leaning = shifted(PRISM, np.zeros(3), up=np.array([math.sin(0.3), 0.0, math.cos(0.3)]))
     bare = shifted(PRISM, np.zeros(3), matter=None)
     model = spatial_model("housner-3d")
-    for impact, words in ((leaning, "stand upright"), (bare, "give the impact its matter")):
+    for impact, words in ((leaning, "upright body"), (bare, "give the impact its matter")):
         for ask in (
             model.after,
             unit_energies,
