@@ -1,4 +1,4 @@
-"""The front door: how does a body rock under a motion, and how when it is let go."""
+"""Simulation of one body under a ground motion, or in free rocking."""
 
 import inspect
 from collections.abc import Callable
@@ -24,7 +24,7 @@ Called = TypeVar("Called", bound=Callable[..., Any])
 
 
 class IntegrationOptions(TypedDict, total=False):
-    """Options of one history and of many: the ground, and how to integrate."""
+    """Options of one or many histories: ground, and settings of the integration."""
 
     normal_restitution: float
     normal_restitution_law: str
@@ -59,10 +59,10 @@ def _shown(function: Called) -> Called:
     defaults: dict[str, Any] = {name: values[0] for name, values in UNCHANGED.items()}
     defaults |= {"gravity": Settings.gravity, "most_events": Settings.most_events}
     signature = inspect.signature(function)
-    *known, _ = signature.parameters.values()
+    *positional, _ = signature.parameters.values()
     keyword = inspect.Parameter.KEYWORD_ONLY
     options = [inspect.Parameter(name, keyword, default=defaults[name]) for name in MovedOptions.__annotations__]
-    function.__signature__ = signature.replace(parameters=[*known, *options])  # type: ignore[attr-defined]
+    function.__signature__ = signature.replace(parameters=[*positional, *options])  # type: ignore[attr-defined]
     return function
 
 
@@ -90,80 +90,77 @@ def simulate(
 def simulate(
     body: Any, motion: Any, restitution: Any = DEFAULT_RESTITUTION, *, friction: float | None = None, **options: Any
 ) -> Any:
-    """Return how a body moves under a ground motion.
+    """Return the response of a body to a ground motion.
 
     A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
-    edges and vertices of its base, or rolls on its rim, and does not slip; where it would leave the ground, the history
-    stops and says so; with `friction` it touches with all vertices of its convex hull, on which it rocks, slides, hops,
-    flies and falls into another pose. A round base under two components rolls and has no impacts, so that the
-    restitution does not matter; after it has rolled through lying nearly flat, small causes have large effects.
+    edges and vertices of its base, or rolls on its rim, without slip; a loss of contact stops the history with an error
+    status. With `friction` it is in contact at all vertices of its convex hull: it rocks, slides, hops, flies and falls
+    into another pose. A round base under two components rolls without impacts, so that the restitution has no
+    influence. After a nearly flat position of the base, small changes have large effects.
 
     Parameters
     ----------
     body : Body, Solid or SpatialBody
-        A plane body (Block, Section, MassPoints), or one in space, with mass, centre, inertia and base.
+        A plane body (Block, Section, MassPoints), or a body in space with mass, centre, inertia and base.
     motion : GroundMotion, Pulse, mapping or tuple
-        The motion along x; or ``{"x": .., "y": .., "z": ..}``, z upwards, or up to three in that order, all starting at
-        time zero. A record is taken as straight lines between its samples, a pulse exactly. A plane body takes x and z.
+        The motion along x; or ``{"x": .., "y": .., "z": ..}``, z upwards, or up to three in that order, with a common
+        start. A record is linear between its samples, a pulse is exact. A plane body uses x and z.
     restitution : str, RestitutionModel, float, mapping or ImpactLaw
         Model or its name, coefficient, ``{"left": r, "right": r}``, or a law (`SpeedRestitution`,
-        `RandomRestitution`). With friction it holds for rocking impacts, theta_dot_after / theta_dot_before without
-        slip: it fixes where the resultant of the impulses acts; if that takes more friction than there is, the foot
-        slides off under the friction there is. Landings from flight, and with None all impacts, follow from
-        complementarity. In space a model of `rocking.restitution.space`, with or without its "-3d" ("ked" needs the
-        distribution of mass, which a Solid, a box and a cylinder have), a coefficient from 0 to 1 (that share of the
-        angular velocity goes on, in the direction of the plastic impact), or any object with `velocity_after` and
-        `label`. In space with friction "housner-3d", "ked-3d", "calibrated-3d" or the coefficient of a landing of the
-        whole base.
+        `RandomRestitution`). With friction the coefficient applies to rocking impacts without slip and gives the
+        impulse position; if the friction demand exceeds the friction, the foot slides during the impact. Landings from
+        flight, and all impacts for None, follow from complementarity. In space: a model of `rocking.restitution.space`,
+        with or without "-3d" ("ked" needs a distribution of mass, as in a Solid, a box or a cylinder); a coefficient
+        from 0 to 1, the ratio of angular velocities with the direction of the plastic impact; or an object with
+        `velocity_after` and `label`. In space with friction: "housner-3d", "ked-3d", "calibrated-3d", or the
+        coefficient of a landing of the full base.
     friction : float, optional
-        Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
-        given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
-        then does.
+        Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. Without
+        friction the body only rocks; a `PureRockingWarning` reports a tensile contact force, with the response of a
+        body that may fly.
     normal_restitution : float
         Coefficient of normal restitution of a plane body, in [0, 1), with friction [-].
     normal_restitution_law : {"newton", "poisson", "stronge"}
-        What `normal_restitution` is the ratio of: normal velocities (Newton), normal impulses (Poisson), or, squared,
-        the work of the normal impulses (Stronge). They differ where sliding stops or turns during an impact.
-        Where Newton's or Poisson's law would create energy, or has no solution, Stronge's law applies.
+        Definition of `normal_restitution`: ratio of normal velocities (Newton), of normal impulses (Poisson), or,
+        squared, of the work of the normal impulses (Stronge). They differ if sliding stops or reverses during an
+        impact. Stronge's law replaces another law that would create energy or has no solution.
     gravity : float
         Acceleration of gravity [m/s2].
     engine : {"auto", "fast", "reference"}
-        Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone, and for bodies in space
-        with friction.
+        Engine; `Response.engine` is the one that ran. The fast engine applies to plane bodies without friction, and to
+        bodies in space with friction.
     linear, rest_speed, most_events, longest_step, order, tolerance
-        How to integrate: see the settings of the mechanics, `PlaneSettings`, `ContactSettings`, `SpaceSettings` and
-        `HullSettings`, which have the defaults and the limits.
+        Settings of the integration: see `PlaneSettings`, `ContactSettings`, `SpaceSettings` and `HullSettings` for
+        defaults and limits.
     angular_velocity : float, or array_like of shape (3,) in space
-        theta' at the start; in space three numbers in axes of the ground [rad/s].
+        Initial angular velocity theta'; in space three numbers in axes of the ground [rad/s].
     start : Start or SpatialStart, optional
-        Instead of rotation and angular_velocity: a plane body, with friction also lifted or pushed along, or how a body
-        in space leans.
+        Initial position and velocity, in place of rotation and angular_velocity; with friction also height and other
+        velocities.
     duration : float, optional
-        How long to follow the body [s]; if not given, the motion and 15 / p (with friction 15 sqrt(R / g)) after it,
-        and where the body then still rocks until it rests, at most 300 / p (300 sqrt(R / g)) after the motion. A body
-        whose impacts lose no energy never rests: it is followed for 15 / p alone. The summary states whether the body
-        still rocks.
-        With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
-        leans less: `outcome` needs it. In space with friction until it rests.
+        Duration [s]; by default the motion and 15 / p (with friction 15 sqrt(R / g)) after it, extended while the body
+        rocks, up to 300 / p (300 sqrt(R / g)) after the motion. A body without energy loss at impacts has 15 / p only.
+        The summary includes a motion that continues at the end. With friction, a rotation beyond the slenderness angle
+        extends the response on ground at rest until the outcome is known; in space with friction until rest.
     stream : int
         Number of the history, for random coefficients.
     scale : float
         Factor on all components of the motion [-].
     rotation : float
-        theta at the start; how far a body in space leans towards x [rad].
+        Initial rotation theta; for a body in space the tilt towards x [rad].
 
     Returns
     -------
     Response, ContactResponse, SpatialResponse or HullResponse
-        Of a plane body, of one with friction, of one in space, of that with friction: motion, impacts, outcome and
-        more.
+        Response of a plane body, of a plane body with friction, of a body in space, or of a body in space with
+        friction: motion, impacts, outcome and other results.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the mechanics of the body do not have the option.
+        If a value is outside its range, or an option does not apply to the body.
     MissingExtraError
-        If engine="fast" and it was not built.
+        If engine="fast" and the engine was not built.
 
     Examples
     --------
@@ -213,31 +210,31 @@ def free_rocking(
     friction: float | None = None,
     **options: Any,
 ) -> Any:
-    """Return how a body moves when it is let go, or pushed, on ground at rest.
+    """Return the response of a body with an initial rotation or velocity on ground at rest.
 
     Parameters
     ----------
     body : Body, Solid or SpatialBody
         As for `simulate`.
     rotation : float
-        theta of a plane body at the start, positive to the right; how far a body in space leans towards x [rad].
+        Initial rotation theta of a plane body, positive to the right; tilt of a body in space towards x [rad].
     restitution : str, RestitutionModel, float, mapping or ImpactLaw
         As for `simulate`.
     friction : float, optional
         As for `simulate` [-].
     **options
-        All other options of `simulate` but scale. If no duration is given, the body is followed until it rests or lies,
-        or for 300 / p; with friction 60 sqrt(R / g).
+        Other options of `simulate`, without scale. The default duration is until the body rests or lies, at most
+        300 / p; with friction 60 sqrt(R / g).
 
     Returns
     -------
     Response, ContactResponse, SpatialResponse or HullResponse
-        As of `simulate`; the motion is None.
+        As for `simulate`; the motion is None.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the mechanics of the body do not have the option.
+        If a value is outside its range, or an option does not apply to the body.
 
     Examples
     --------
@@ -247,8 +244,8 @@ def free_rocking(
     >>> round(4.0 * float(response.impacts["time"][0]), 9)
     2.793372816
     >>> from rocking.dynamics import SpatialBody, SpatialStart
-    >>> leaning = SpatialStart(tilt=0.1, azimuth=0.25 * 3.141592653589793)  # corner to opposite corner: r = 59 / 71
-    >>> first = rk.free_rocking(SpatialBody.box(1.0, 1.0, 4.0), restitution="housner", start=leaning).impacts[0]
+    >>> tilted = SpatialStart(tilt=0.1, azimuth=0.25 * 3.141592653589793)  # corner to opposite corner: r = 59 / 71
+    >>> first = rk.free_rocking(SpatialBody.box(1.0, 1.0, 4.0), restitution="housner", start=tilted).impacts[0]
     >>> round(float((first["energy_after"] / first["energy_before"]) ** 0.5) / 59.0 * 71.0, 12)
     1.0
     """
@@ -262,8 +259,8 @@ def _follow(
     rotation: float = 0.0, angular_velocity: Any = 0.0, duration: float | None = None, **options: Any,
 ) -> Any:  # fmt: skip
     mechanics = mechanics_for(body, options["friction"])
-    begun = mechanics.begun(start, rotation, angular_velocity)
-    settings, own = mechanics.split(options, mechanics.settings, mechanics.options)
+    initial = mechanics.begun(start, rotation, angular_velocity)
+    settings, own_options = mechanics.split(options, mechanics.settings, mechanics.options)
     return mechanics.follow(
-        body, motion(mechanics), restitution, settings, start=begun, scale=scale, duration=duration, **own
+        body, motion(mechanics), restitution, settings, start=initial, scale=scale, duration=duration, **own_options
     )

@@ -1,4 +1,4 @@
-"""`simulate_many`: every body under every motion at every scale with every restitution, as a labelled dataset."""
+"""`simulate_many`: all combinations of bodies, motions, scales and restitutions, as a labelled dataset."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Unpack
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def simulate_many(  # noqa: PLR0913 - every one of them is a question that users ask
+def simulate_many(  # noqa: PLR0913 - independent options
     bodies: Body | Sequence[Body],
     motions: Motion | Sequence[Motion],
     restitution: Any = DEFAULT_RESTITUTION,
@@ -31,37 +31,36 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     progress: Callable[[int], None] | None = None,
     **options: Unpack[IntegrationOptions],
 ) -> "xr.Dataset":
-    """Return the outcome of every combination of bodies, motions, scales and restitutions.
+    """Return the outcome of all combinations of bodies, motions, scales and restitutions.
 
     Parameters
     ----------
     bodies : Body, Solid or SpatialBody, or a sequence of them
-        All plane bodies, or all in space; of the latter one that cannot be gives its histories a status.
+        All plane bodies, or all in space; an invalid body in space gives its histories an error status.
     motions : GroundMotion, Pulse or mapping as for `simulate`, or a sequence of them
-        Of plane bodies all records or all pulses; in space None for ground at rest.
+        All records or all pulses for plane bodies; in space None for ground at rest.
     restitution : as for `simulate`, or a list of such
-        Laws that change from impact to impact cannot be mixed with others.
+        A law that varies from impact to impact must be the only restitution.
     friction : float or array_like, optional
-        Coulomb's coefficients between bodies and ground [-]: they may slide, hop and fly, as in `simulate`.
+        Coulomb's coefficients between bodies and ground [-]: bodies may slide, hop and fly, as in `simulate`.
     scale : float or array_like
         Factors on the motions [-].
     rotation, angular_velocity : float or array_like
-        theta [rad] and theta' [rad/s] of plane bodies at the start, as for `simulate`. Rows of one length state one
-        start per entry, for a basin of attraction for example; a number holds for each start.
+        Initial theta [rad] and theta' [rad/s] of plane bodies, as for `simulate`. Rows of equal length give one start
+        per entry, for example for a basin of attraction; a single number applies to all starts.
     start : Start or SpatialStart, or a sequence of them, optional
-        Instead of these: the starts of plane bodies, which friction may also lift or push along. In space the starts
-        of the bodies, the lowest vertex at rest on the ground. Upright at rest if not given.
+        Starts in place of rotation and angular_velocity; in space with the lowest vertex at rest on the ground. The
+        default is upright at rest.
     duration : float, optional
-        How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
-        that a history goes on until its energy decides whether it overturns. With friction as for `simulate`, in space
-        until it rests in one of its stable poses.
+        Duration for bodies in space [s]; by default to the end of the motion, on ground at rest 300 / p, extended until
+        the energy determines the outcome. With friction as for `simulate`, in space until rest in a stable pose.
     threads : int, optional
         Threads of the fast engine; the results do not depend on them.
     twin : bool
-        Compute every history again with all steps halved, and tell by how much its peak changes and whether its
-        verdict does (`twin_change`, `twin_flips`): what the integration leaves open. It takes three times as long.
+        Compute every history a second time with half steps, for the change of its peak and outcome (`twin_change`,
+        `twin_flips`), a measure of the integration error. The computation takes three times as long.
     progress : callable, optional
-        Called with the number of histories done since the last call.
+        Function called with the number of histories finished since the last call.
     **options
         normal_restitution, normal_restitution_law, gravity, engine, linear, rest_speed, most_events, longest_step,
         order and tolerance, as for `simulate`; in space without friction the last five are those of
@@ -70,19 +69,18 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     Returns
     -------
     xarray.Dataset
-        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
-        ``start`` too, with peak_tilt and the direction of overturning; with friction over ``friction`` too, with how
-        far they slid, in space also with the stable pose in which they end. Plane bodies with starts have ``start`` as
-        the last dimension, with initial_rotation [rad] and initial_angular_velocity [rad/s] as its coordinates. Every
-        history that rocks alone ends with its motion: energy then decides the outcome and the peak of the swings to
-        come, whose impacts are not counted, so that ``still_rocking`` is the state at the end of the motion.
-        Its attributes say which engine ran, and why bodies in
-        space were refused.
+        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and others, with units. In space also
+        over ``start``, with peak_tilt and the direction of overturning. With friction also over ``friction``, with the
+        sliding distance, and in space the final stable pose. Plane bodies with starts have ``start`` as the last
+        dimension, with the coordinates initial_rotation [rad] and initial_angular_velocity [rad/s]. Without friction a
+        history ends with its motion. Energy then determines the outcome and the peak of later half cycles, without
+        their impacts; ``still_rocking`` is the state at the end of the motion. The attributes contain the engine, and
+        the reasons for refused bodies in space.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the combination is empty.
+        If a value is outside its range, or there is no combination.
     MissingExtraError
         If xarray is not installed, or engine="fast" and it was not built.
 
@@ -97,8 +95,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> sliding = rk.simulate_many(blocks[0], pulse, friction=[0.2, 0.6])
     >>> (sliding.sliding_distance > 0.0).squeeze().values.tolist()
     [True, False]
-    >>> let_go = rk.simulate_many(blocks[1], pulse, 0.9, rotation=[-0.1, 0.0, 0.1])
-    >>> let_go.outcome.dims[-1], let_go.initial_rotation.values.tolist()
+    >>> released = rk.simulate_many(blocks[1], pulse, 0.9, rotation=[-0.1, 0.0, 0.1])
+    >>> released.outcome.dims[-1], released.initial_rotation.values.tolist()
     ('start', [-0.1, 0.0, 0.1])
     >>> box = rk.dynamics.SpatialBody.box(width=0.5, depth=0.6, height=2.0)
     >>> in_space = rk.simulate_many(box, {"x": pulse, "y": pulse}, "housner", friction=[0.2, 0.6])
@@ -108,10 +106,10 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     extra("xarray", "simulate_many")
     mechanics = mechanics_for_all(bodies, friction)
     frictions = frictions_of(friction)
-    stated = {
+    given_options = {
         **options, "friction": next(iter(frictions.tolist()), None), "rotation": rotation, "start": start,
         "angular_velocity": angular_velocity, "duration": duration, "threads": threads, "twin": twin,
         "progress": progress,
     }  # fmt: skip
-    settings, own = mechanics.split(stated, mechanics.batch_settings, mechanics.batch_options)
+    settings, own = mechanics.split(given_options, mechanics.batch_settings, mechanics.batch_options)
     return mechanics.follow_many(Combinations(bodies, motions, listed(restitution), scale, frictions, **own), settings)

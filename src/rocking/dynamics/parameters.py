@@ -16,7 +16,7 @@ from rocking.restitution.registry import BOUND_ROUNDING, energy_refusal
 from rocking.restitution.registry import coefficients_of as _coefficients_of
 
 COMPLEMENTARITY = "complementarity alone"  # label of restitution=None with friction
-UNIMPOSED = -1.0  # no coefficient: impacts are plastic by complementarity, or follow `bounce` [-]
+UNIMPOSED = -1.0  # no coefficient: impacts are plastic by complementarity, or follow `normal_restitution` [-]
 
 _NEGLIGIBLE = 1e-4
 
@@ -160,7 +160,7 @@ class RockingParameters:
             Acceleration of gravity [m/s2].
         may_be_none : bool
             True if the restitution may be None, for a body with friction: impacts are then plastic by complementarity,
-            or follow `bounce`.
+            or follow `normal_restitution`.
 
         Returns
         -------

@@ -48,7 +48,7 @@ class SpatialReference:
         self.flows: dict[tuple[ContactMode, tuple[int, ...]], rolling.PivotFlow] = {}
         self.rolling = RollingFlow(body)
         self.time, self.stretch = 0.0, 0
-        self.place = np.zeros(2)
+        self.ground_point = np.zeros(2)
         self.touching: tuple[int, ...] = ()
         self.at_once, self.moment = 0, -1.0  # consecutive events at one time
         self.late = 0  # steps after the end
@@ -73,7 +73,7 @@ class SpatialReference:
         contact, touching = started(self.body, self.velocity, self._up)
         self.contact = contact
         # the upright base has its origin at that of the ground; the body is tilted from this position
-        self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
+        self.ground_point = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
         if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
         self.touching = tuple(i for i in touching if i not in contact.points)
@@ -167,9 +167,9 @@ class SpatialReference:
         field = -self.ground.segment(self.stretch, self.time, length)
         field[2, 0] -= self.settings.gravity
         order = min(max(rolling.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
-        places = self.place[None, :]
+        places = self.ground_point[None, :]
         if self.contact.mode is ContactMode.ROLLING:
-            state = self.quaternion, self.velocity, self.place
+            state = self.quaternion, self.velocity, self.ground_point
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
             q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
@@ -199,7 +199,7 @@ class SpatialReference:
     def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, is_last: bool) -> None:
         self.quaternion = attitude.normalised(rolling.value(piece.quaternions, at))
         self.velocity = rolling.value(piece.velocities, at)
-        self.place = rolling.value(piece.places, at)
+        self.ground_point = rolling.value(piece.places, at)
         self.integration_state.add(piece, at, self._up, self._pivot, vertical)
         self.time = piece.start + at * piece.length
         if is_last:
@@ -207,7 +207,7 @@ class SpatialReference:
             self.time = float(self.ground.times[self.stretch])
 
     def _add_rest(self, until: float) -> None:
-        rows = self.quaternion[None], np.zeros((1, 3)), self.place[None]
+        rows = self.quaternion[None], np.zeros((1, 3)), self.ground_point[None]
         self.integration_state.add(
             StepPiece(self.time, until - self.time, 1.0, *rows, self.contact), 1.0, self._up, self._pivot
         )
@@ -301,7 +301,7 @@ class SpatialReference:
     def _stand(self, contact: ContactSet, touching: Iterable[int] = ()) -> None:
         """Change the contact: move the pivot, correct rounding of the attitude, store the other touching points."""
         rotation = attitude.matrix(self.quaternion)
-        self.place = self.place + applied(rotation, contact.pivot - self._pivot)[:2]
+        self.ground_point = self.ground_point + applied(rotation, contact.pivot - self._pivot)[:2]
         if contact.mode is ContactMode.REST:
             self.quaternion = attitude.flat(self.quaternion)
         elif contact.axis is not None:

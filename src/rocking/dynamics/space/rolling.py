@@ -148,7 +148,7 @@ class _Series:
         def empty(count: int) -> list[Terms]:
             return [[] for _ in range(count)]
 
-        self.q, self.w, self.place = ([[x] for x in component.tolist()] for component in state)
+        self.q, self.w, self.ground_point = ([[x] for x in component.tolist()] for component in state)
         self.level = [[[x] for x in row] for row in matrix(state[0])[:2].tolist()]
         first = [[x] for x in carried(state[0], field)]
         self.up, self.field = first[:3], [first[i : i + 3] for i in range(3, len(first), 3)]
@@ -179,7 +179,7 @@ class RollingFlow:
             self._contact(s, k)
             self._dynamics(s, k)
             self._advance(s, k, length / (k + 1))
-        return np.array(s.q).T, np.array(s.w).T, np.array(s.up).T, np.array(s.place).T
+        return np.array(s.q).T, np.array(s.w).T, np.array(s.up).T, np.array(s.ground_point).T
 
     def _advance(self, s: _Series, k: int, factor: float) -> None:
         """Add the next power of all integrated series."""
@@ -200,7 +200,7 @@ class RollingFlow:
             )
         _add(s.w, [factor * spin[k] for spin in s.spin])
         _add([*s.n, s.h], [factor * s.bend[0][k], factor * s.bend[1][k], -factor * fall])
-        _add(s.place, [-factor * self.body.radius * term for term in traced])  # Eq. 100
+        _add(s.ground_point, [-factor * self.body.radius * term for term in traced])  # Eq. 100
 
     def _contact(self, s: _Series, k: int) -> None:
         """Add the terms of the motion of the lowest point along the rim."""
