@@ -78,8 +78,8 @@ def map(
         problem = body_and_motion(arguments, "overturning-map", table, restitution)
     with bar("histories", quiet=as_json) as progress:
         picture = "picture" in exports.names
-        maps, others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
-    deliver(MapAnswer(problem, *maps, written, length or "m", others), exports, as_json=as_json)
+        (arrays, compared), others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
+    deliver(MapAnswer(problem, arrays, compared, written, length or "m", others), exports, as_json=as_json)
 
 
 def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":

@@ -13,9 +13,11 @@ from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
+from rocking.cli.compared import model_facts, show_models
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError, located
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
+from rocking.errors import InvalidValueError, RockingError, located
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
@@ -190,12 +192,28 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
         made = any_body_of(arguments.body_table(body), files)
         motions = motions_of(named, files, paired=not isinstance(made, Body))
         problem = problem_of(checked(ResponseTables, tables), made, motions[0], scale=1.0, inputs=files)
-        with bar("histories", len(motions), quiet=quiet) as progress:
-            found = []
-            for k in range(len(motions)):
-                found.append(replace(problem, motion=motions[k]).answer())
-                progress(1)
-    return SeveralAnswer([motions[k] for k in range(len(motions))], found, display)
+        listed = [motions[k] for k in range(len(motions))]
+        label = next(iter(problem.restitutions))
+        others = COMPARED_RESTITUTIONS if label == DEFAULT_RESTITUTION else ()
+        responses: dict[str, Any] = {}
+        with bar("histories", len(listed) * (1 + len(others)), quiet=quiet) as progress:
+            for name in (label, *others):
+                try:
+                    responses[name] = _followed(problem, listed, name if name != label else ..., progress)
+                except RockingError as error:
+                    if name == label:
+                        raise
+                    responses[name] = error
+    return SeveralAnswer(listed, responses.pop(label), display, label, responses)
+
+
+def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:
+    """Return the responses to motions with one restitution."""
+    responses = []
+    for motion in motions:
+        responses.append(replace(problem, motion=motion).answer(law))
+        progress(1)
+    return responses
 
 
 @dataclass(frozen=True)
@@ -205,6 +223,8 @@ class SeveralAnswer:
     motions: list[Any]
     responses: list[Any]
     display: Display
+    label: str  # of the restitution
+    others: dict[str, Any]  # responses with the compared models
 
     def answer(self) -> Answer:
         """Return each motion with its outcome, peak and number of impacts."""
@@ -216,11 +236,12 @@ class SeveralAnswer:
             }
             for motion, response in pairs
         ]  # fmt: skip
-        return Answer({"overturned": self._overturned, "motions": rows})
+        facts = model_facts(self.label, self.others, _overturned)
+        return Answer({"overturned": self._overturned, "restitution": self.label, "motions": rows, **facts})
 
     @property
     def _overturned(self) -> int:
-        return sum(each.outcome is Outcome.OVERTURNED for each in self.responses)
+        return int(_overturned(self.responses)["overturned"])
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines
@@ -239,9 +260,15 @@ class SeveralAnswer:
         page.rows(rows, ("motion", peak.name, "outcome", *shown, "impacts"), named, most=count)
         page.line()
         page.facts(source_lines([MotionSummary.of(motion) for motion in self.motions]))
+        show_models(page, self.answer(), display, self.label, _overturned(self.responses))
         page.line(
             "One motion alone shows more; how likely it is to overturn: rocking predict; its margin: rocking assess."
         )
+
+
+def _overturned(responses: list[Any]) -> dict[str, Any]:
+    count = sum(response.outcome is Outcome.OVERTURNED for response in responses)
+    return {"overturned": count, "share": count / len(responses)}
 
 
 def _peak(response: Any) -> dict[str, float]:

@@ -139,7 +139,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         raise InvalidValueError("no history has a result; check the scale of the motion and its unit (m/s2)")
     overturned = results["overturning"][: len(points)]
     beside: dict[str, Chance] = {}
-    if isinstance(body, Body) and (restitution is None or (isinstance(restitution, str) and restitution in MEASURED)):
+    if restitution is None or (isinstance(restitution, str) and restitution in MEASURED):
         for name in conventions.COMPARED_RESTITUTIONS:
             try:
                 other_mechanics = _mechanics(
