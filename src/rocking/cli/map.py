@@ -78,7 +78,8 @@ def map(
         problem = body_and_motion(arguments, "overturning-map", table, restitution)
     with bar("histories", quiet=as_json) as progress:
         picture = "picture" in exports.names
-        (arrays, compared), others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
+        maps, others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
+    arrays, compared = maps
     deliver(MapAnswer(problem, arrays, compared, written, length or "m", others), exports, as_json=as_json)
 
 
