@@ -1,4 +1,4 @@
-// What goes into the engine and what comes out: plain arrays, one entry a history.
+// Inputs and results of the engine: plain arrays, one entry per history.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -28,7 +28,7 @@ struct Shake {
 
 constexpr int kBlock = 32;  // stretches whose accelerations have a range of their own
 
-// Least and largest accelerations of one direction [m/s2].
+// Smallest and largest accelerations of one direction [m/s2].
 struct Ranges {
     std::vector<Range> within;  // each block
     std::vector<Range> later;   // from each block to the end, zero included
@@ -46,7 +46,7 @@ struct Motions {
     void find_ranges();
 };
 
-// How an impact changes the velocity: r = r_side * table(speed), or r_side * quantile_side(share_side * random number).
+// Velocity change at an impact: r = r_side * table(speed), or r_side * quantile_side(share_side * random number).
 enum class LawKind : int { constant = 0, of_speed = 1, random = 2 };
 struct Law {
     LawKind kind = LawKind::constant;
@@ -71,7 +71,7 @@ struct Trace {
 struct Rows {
     std::int64_t count;
     const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left, *q_right, *q_left;
-    const double* share[2];  // of the probability of a random law that a side draws from: what lies beyond creates energy
+    const double* share[2];  // fraction of the probability of a random law that a side samples: larger values create energy
     const double *scale, *rotation, *velocity;
     const std::int64_t *motion, *key;
     // results
@@ -104,8 +104,8 @@ inline double parts_of(const Shake& shake, double p, double over_gravity, double
     return std::max(1.0, std::ceil(reach / longest_step));  // Eq. 53
 }
 
-// Reach, p times a step under 1 g, up to which order 6 leaves out less, reach^7 / 7! of p alpha, than a hundredth of what
-// order 8 may leave out at its longest step: as good, and quicker.
+// Reach, p times a step under 1 g, up to which the truncation error of order 6, reach^7 / 7! of p alpha, is below a hundredth
+// of that of order 8 at its longest step: equally accurate, and faster.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }  // Eq. 54
 
 // Whether all steps of a row are so short that order 6 takes the place of order 8. Under b g a rotation goes wrong by some

@@ -105,7 +105,7 @@ double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
     return 2.0;
 }
 
-// An impact, at a place within the step [rad per stretch]. Whether more comes of it is told by settle().
+// An impact, at a position within the step [rad per stretch]. settle() decides on further events.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];
@@ -130,7 +130,7 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     return (lane.impacts >= set.most_impacts) | (idx[i] >= last[i]) | (after <= s.calm);
 }
 
-// What may follow an impact: too many of them, the end of the motion, rest.
+// Consequences of an impact: too many of them, the end of the motion, rest.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::settle(int i) {
     const double after = -v[i];
@@ -168,7 +168,7 @@ double Kernel<G, U, N, D, Z, L>::largest(int i, int side) const {
     return r * interpolated(law.at, law.value[side], rows.share[side][lanes[i].row]);
 }
 
-// Lane variables of the side on which the body stands.
+// Lane variables of the side of contact.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::stand(int i) {
     const Side& s = here(i);

@@ -9,8 +9,8 @@ namespace ROCKING_ISA {
 // those that land to fill registers of their own, few enough for the caches. A single history takes one.
 constexpr int kMany = 8, kGroups = 3;
 
-// A history has the same bits alone and among many: where processors that matter never come (plain beside AVX2), one set
-// of kernels serves both, and where a wider register brings a single history nothing, that of AVX2 serves it.
+// A history has the same bits alone and among many: where such processors are rare (plain and AVX2), one set of
+// kernels is used for both, and where a wider register has no effect on a single history, that of AVX2 is used.
 template <int N, int D, bool Z, bool L>
 Run rows_of(bool single) {
 #if defined(ROCKING_X86) && !defined(ROCKING_AVX2) && !defined(ROCKING_AVX512)
@@ -33,7 +33,7 @@ Run kernel_for(bool single, const Choice& c) {
         return c.linear ? rows_of<8, 1, false, true>(single) : rows_of<8, 1, false, false>(single);
     }
     if (c.linear) return nullptr;
-    // many take order 6 wherever it serves; a single history takes it when a user asks, and order 4 likewise
+    // many histories use order 6 where it applies; a single history on request only, and order 4 likewise
     if (c.order == 6) {
         if (c.degree == 7) return rows_of<6, 7, false, false>(false);
         return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);

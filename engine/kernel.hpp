@@ -1,6 +1,6 @@
 // The fast engine: Taylor steps of many histories side by side, each lane at its own sample of its own motion.
 //
-// A lane holds u = alpha - |theta| and its derivative, on the side on which the body stands:
+// A lane holds u = alpha - |theta| and its derivative, on the side of contact:
 //     u'' = p^2 { (1 + a_z / g) S + s (a_x / g) C },   S = sin u, C = cos u   (slender-linear: S = u, C = 1),
 // with s = +1 on the right foot. S and C are carried as series: S' = C u', C' = -S u'. One expansion covers one stretch
 // of the motion or a part of it; whatever is not a plain step (impact, uplift, rest, the top, the end) is left to the
@@ -23,7 +23,7 @@ constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the en
 constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
 constexpr double kMostSteps = 2e7;      // steps of a history
 constexpr double kLongest = 40.0;       // stretches that flights to rest may take
-constexpr double kHeights = 0.1;        // what the heights of these flights may add to the logarithm of their gain
+constexpr double kHeights = 0.1;        // bound on the contribution of the heights of these flights to the logarithm of their gain
 constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
 constexpr double kHalfPi = 1.57079632679489661923;
 
@@ -40,10 +40,10 @@ class Kernel {
     using Bits = std::uint64_t;              // one a lane of a group
 
     // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
-    // not above it are of no interest. It may lie below the highest point by what a step adds.
+    // not above it are ignored. It may be below the highest point by the change within a step.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
-    // Forces of the ground so far: the least normal one over m g, the largest ratio of horizontal to normal; of the foot on
-    // which it stands -2 m R^2 / I_o, and sine and cosine of alpha.
+    // Forces of the ground so far: the smallest normal one over m g, the largest ratio of horizontal to normal; of the foot
+    // of contact -2 m R^2 / I_o, and sine and cosine of alpha.
     alignas(64) double least[W], demand[W], lever[W], sine_of[W], cosine_of[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U], spans[U];  // of the steps of a group
@@ -67,7 +67,7 @@ class Kernel {
         double q[2];  // m R^2 / I_o of the sides
         double ax, az, step, peak_signed, peak_time, over_time, first_uplift;  // the highest point found so far
     } lanes[W];
-    double least_before[W], demand_before[W];  // of a body that has passed over its foot: what they were up to there
+    double least_before[W], demand_before[W];  // values at the passage of a body over its foot
     // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are,
     // the places up to which they count, and the heights there if the body has turned round by then, or -1.
     alignas(64) double waiting[N + 1][M * P] = {}, bases[M * P] = {};

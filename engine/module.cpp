@@ -191,7 +191,7 @@ static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, c
     std::stable_sort(list.end() - tail, list.end(), [&](auto a, auto b) { return length(a) > length(b); });
 }
 
-// Each share in turn, by all threads together; nobody waits for the others in between.
+// All shares in turn, by all threads together; no thread waits for others in between.
 static void share_out(std::deque<Share>& shares, const Motions& m, const Law& law, const Rows& all, const Settings& set,
                       int threads, Work& total) {
     std::mutex one_at_a_time;

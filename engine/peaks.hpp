@@ -5,8 +5,8 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Takes over a step, up to a place in it at which the body stands `height` above the ground; whether it comes down there
-// tells, with the way in which it starts, that it has turned round.
+// Stores a step, up to a position in it at which the body is at `height` above the ground. A return to the ground there,
+// with the initial direction, implies a turning point.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step made, double upto, double height, bool comes_down) {
     const int s = peaks_waiting++;
@@ -15,8 +15,8 @@ void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step made, double upto, double h
     const bool turns = made[0] < 0.0 && comes_down;
     bases[s] = alpha[i] - u[i];
     peaks[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
-    // Never by more, even when the highest point is found: what the lane does next must not depend on when that is, and
-    // so on other lanes.
+    // Never by more, even if the highest point is known: the next action of a lane must not depend on the time of the
+    // search, and so on other lanes.
     if (turns) peak[i] = std::max(peak[i], std::max(bases[s], height));
     if (peaks_waiting == M * P) find_peaks();
 }

@@ -51,8 +51,8 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
     return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
 }
 
-// What holds the body down over some stretches from now on: least moments of both sides, how much they vary in all over
-// their least values, and how steeply they change with the rotation.
+// Restoring moments over the next stretches: smallest moments of both sides, their total variation over the
+// smallest values, and their derivative with respect to the rotation.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most_varies, Window& w) const {
     const Lane& lane = lanes[i];
@@ -119,7 +119,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     holding(i, lane.side, at, d);
     const double held = value_of<D>(d, tau[i]);
     if (!(held > 0.0)) return false;
-    if (after <= kNothing * unit) return true;  // what is left is below all digits that count
+    if (after <= kNothing * unit) return true;  // the remainder is below all significant digits
     if (!(after <= set.rest * unit)) return false;
     holding(i, -lane.side, at, d);
     const double across = value_of<D>(d, tau[i]), r = largest(i, lane.side < 0), q = largest(i, lane.side > 0), lost = 1.0 - r * q;
@@ -131,7 +131,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const std::int64_t rest_of_it = (last[i] - idx[i]) / stride;
     const std::int64_t stretches = guess > left ? std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it) : 1;
     const double end = left + static_cast<double>(stretches - 1);
-    // What follows grows with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2), so that
+    // The result increases with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2), so that
     // (2 x + 1)^2 <= spare / flights, and x <= spare / flights / 8 since no root is above its tangent. Beyond this
     // variation of the ground it is bound to fail, so the rest of the window need not be seen.
     const double spare = 4.0 * (end * rate) - 3.0 * flights, least = 0.999999 * (1.0 + kHeights) * (1.0 + kHeights);
@@ -229,7 +229,7 @@ bool Kernel<G, U, N, D, Z, L>::may_lift(const Lane& lane, Range across, Range up
     return pull * r.cosine >= weight * r.sine * (1.0 - 1e-12) || push * l.cosine >= weight * l.sine * (1.0 - 1e-12);
 }
 
-// Both sides let go at once, which takes a ground that falls faster than gravity: against the ground's push.
+// Both sides uplift at once, for a ground that falls faster than gravity: against the push of the ground.
 ROCKING_KERNEL
 int Kernel<G, U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) const {
     const double* a = motions.data + at;

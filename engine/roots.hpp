@@ -1,4 +1,4 @@
-// First zero of a polynomial on (0, 1]: Bernstein coefficients show where there is none, halving isolates it, and
+// First zero of a polynomial on (0, 1]: Bernstein coefficients exclude intervals, bisection isolates it, and
 // Newton's method within a bracket locates it to rounding. Grazing without crossing is no zero.
 #pragma once
 #include "pack.hpp"

@@ -101,7 +101,7 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
     }
 }
 
-// The motion of the row at a place of the queue, if it is at hand.
+// The motion of the row at a position of the queue, if available.
 ROCKING_KERNEL
 const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t place) const {
     if (place >= end) return nullptr;
@@ -109,14 +109,14 @@ const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t place) const {
     return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size()) ? &motions.shakes[k] : nullptr;
 }
 
-// The next row at hand that needs a lane, made ready; those that do not are done with.
+// The next available row that needs a lane, prepared; other rows are finished here.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::look_for_one() {
     ready.row = -1;
     while (next < end) {
         const std::int64_t row = listed(next++);
-        // What rows further on will need comes from memory in the meantime. It stands here because compilers take calls
-        // of functions that do nothing else for calls that do nothing.
+        // Prefetch the data of later rows from memory. The call is here because compilers treat calls of functions
+        // without other effects as calls without effect.
         if (const Shake* shake = shake_of(next + 6)) {
             ROCKING_PREFETCH(shake);
             ROCKING_PREFETCH(reinterpret_cast<const char*>(shake + 1) - 1);
@@ -213,7 +213,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     u[i] = alpha[i] - std::fabs(angle);
     v[i] = -lane.side * speed * lane.step;
     raise_peak(i, std::fabs(angle), 0.0);
-    if (u[i] < 0.0) {  // let go beyond the top: the start counts
+    if (u[i] < 0.0) {  // start beyond the top
         const double* a = motions.data + idx[i];
         double s, c;
         sine_cosine(u[i], s, c);

@@ -1,5 +1,5 @@
-// Sine and cosine for |x| <= pi / 2, as Taylor polynomials: what is left out is below half a unit of one up to 1.2, and
-// below 3e-16 up to the end. A body that has turned further lies, and is followed no more.
+// Sine and cosine for |x| <= pi / 2, as Taylor polynomials: the truncation error is below half a unit of one up to 1.2, and
+// below 3e-16 up to the end. A body with a larger rotation lies.
 #pragma once
 #include "pack.hpp"
 

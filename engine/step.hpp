@@ -37,7 +37,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
 }
 
 // One Taylor step of some registers; lanes that have an event keep their state until it is resolved. The loops stay
-// rolled up: what they hold is as much as a processor looks ahead, and as fits where it keeps what it has decoded.
+// not unrolled: their bodies fill the window of out-of-order execution, and fit in the cache of decoded instructions.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
     // every lane reads a motion of its own, more streams than processors foresee: lines ahead, a lane a turn
@@ -64,7 +64,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             S[0][j] = sines[r + j];
             C[0][j] = cosines[r + j];
         }
-        // Terms that have just been made come last, so that what depends on them waits for little.
+        // New terms come last, so that dependent operations wait for few of them.
         ROCKING_UNROLL
         for (int k = 0; k < N; ++k) {
             const Pack inverse(1.0 / (k + 1)), shared(1.0 / (k + 2)), bow((k + 1.0) / (k + 2));
@@ -152,7 +152,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             select(event, i0, i1).store(idx + at);
             u1.store(u_end + at);
             v1.store(v_end + at);
-            // what happens beyond a quarter turn is of no interest
+            // the range beyond a quarter turn is ignored
             (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
             const Pack top = Pack::load(fastest + at);
             max(top, abs(v1)).store_where(goes, fastest + at);

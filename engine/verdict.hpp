@@ -25,8 +25,8 @@ bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     return weight * s > back * c && weight > 0.0;  // Eq. 36
 }
 
-// How far out a body that is not yet beyond return is looked at again: where it would be, as the ground shakes from now
-// on, or on the ground; a thousandth further out at least.
+// Distance at which a body before the point of no return is checked again: where it would be under the motion from now
+// on, or on the ground; at least a thousandth further out.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::next_look(int i) const {
     double back, weight;
@@ -42,7 +42,7 @@ std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     return lane.block + k / kBlock;
 }
 
-// From now on, over gravity: the most that the ground can push the body back, and the least that it can weigh.
+// From now on, over gravity: the largest push of the ground against the rotation, and the smallest weight.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight) const {
     const std::int64_t block = block_at(i);

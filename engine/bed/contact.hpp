@@ -1,4 +1,4 @@
-// The bed: what each contact point does, and the force of all of them on the body.
+// The bed: state of each contact point, and the force of all points on the body.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ enum Friction : int { kSticking = 0, kCoulomb = 1, kRegularised = 2 };
 // away: no touch; pressing: on the loading branch; lagging: the bed is slower than the body, no force; spring: unloading
 enum class Mode : std::uint8_t { away, pressing, lagging, spring };
 
-struct Points {  // towards the new foot; share: copies of the law that stand under the point
+struct Points {  // towards the new foot; share: copies of the law under the point
     std::int64_t count = 0;
     const double *at = nullptr, *height = nullptr, *share = nullptr;
 };
@@ -219,7 +219,7 @@ public:
         }
     }
 
-    // The margins of point i at the start and the nodes of a step; returns how many there are.
+    // Margins of point i at the start and the nodes of a step; returns their number.
     template <std::size_t K>
     int margins(std::int64_t i, const Place (&x)[K], double (&g)[2][K]) const {
         const double s = p_.points.at[i], z = p_.points.height[i];

@@ -98,7 +98,7 @@ struct Solver {
 };
 
 // (lambda / h - J) x = r for a state of two positions and three velocities, by elimination of the positions: a matrix of three
-// rows. What the rates of the positions owe to the positions themselves is left out: Newton's method makes up for it.
+// rows. The influence of the positions on their own rates is neglected: Newton's method corrects for it.
 template <class T>
 class Reduced {
 public:
@@ -245,7 +245,7 @@ bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& un
         if (!(change < 1e30)) return false;
         if (round > 0) contraction = before > 0.0 ? std::max(change / before, 0.1 * contraction) : contraction;
         if (round > 1 && contraction > 2.0) return false;
-        // what is left is about rate / (1 - rate) of the last change
+        // the remaining change is about rate / (1 - rate) of the last one
         settled = change <= 1e-3 || (contraction < 0.5 && change * contraction / (1.0 - contraction) <= 1e-2);
         before = change;
     }

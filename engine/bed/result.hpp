@@ -1,4 +1,4 @@
-// What one impact begins with, and what comes out of it.
+// Inputs and results of one impact.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -7,8 +7,8 @@
 namespace rocking::bed {
 
 constexpr double kLeak = 0.09;   // energy that one step may lose or find, over tolerance and energy of the impact
-constexpr double kBudget = 7.0;  // the same for the whole impact: as it is used up, steps are allowed less
-constexpr double kLeast = 3e-4;  // what is always allowed of it, near rounding
+constexpr double kBudget = 7.0;  // energy error budget of an impact: the smaller the remainder, the smaller the allowance of a step
+constexpr double kLeast = 3e-4;  // fraction of the budget that is always allowed, near rounding
 constexpr double kAgain = 1.2;   // first step after a switch over the last such step, where forces begin as d^n
 
 class Run : Switches {
@@ -69,7 +69,7 @@ private:
     double after_ = 0.0;
     bool after_switch_ = false;
     int stuck_ = 0, early_ = 0, late_ = 0;
-    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // what step_ says about the time after x_
+    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // knowledge of step_ about the time after x_
     bool local_known_ = false;
     Tangent<5> local_;
 
@@ -141,7 +141,7 @@ private:
         out_.status = kTimeOut;
     }
 
-    // What a step may lose or find: less as the budget is used up, unless the step gives some of it back.
+    // Allowed energy error of a step: decreases with the used budget, unless the error has the opposite sign.
     double allowance(double leak) const {
         const double used = leak * out_.residual > 0.0 ? std::abs(out_.residual) / (kBudget / kLeak * leak_) : 0.0;
         return leak_ * std::max(1.0 - used, kLeast);
@@ -192,7 +192,7 @@ private:
             if ((late >= 0.0 && late <= instant_) || !(fall > 0.0) || more > std::max(0.02 * h, instant_) || more < -0.5 * h) break;
             h += more;
         }
-        // a step that ends late may have passed another switch: a shorter one knows better
+        // a step that ends late may have passed another switch: use a shorter one
         late_ = late > instant_ ? late_ + 1 : 0;
         if (late_ > 0 && late_ <= 3) return false;
         // on its own polynomial the step ends before the switch, or grazes it; but not for ever
@@ -319,7 +319,7 @@ private:
         return true;
     }
 
-    // What is left of the sliding is taken out by a shear impulse: its moment turns the body, its work is counted.
+    // A shear impulse removes the remaining sliding: its moment turns the body, its work is counted.
     void arrest() {
         const double h = p_.height, inertia = p_.inertia + p_.mass * h * h, impulse = -p_.mass * p_.inertia / inertia * x_[kU];
         out_.friction_loss -= 0.5 * impulse * x_[kU];

@@ -38,7 +38,7 @@ protected:
 
     double peak_margin(const State& x) const { return start_.end == kAtPeak ? x[kOmega] : 1.0; }
 
-    // Slower than this share of the landing speed, the new foot is arrested.
+    // Ratio to the landing speed below which the new foot is at rest.
     static constexpr double kArrested = 1e-3;
 
     double arrest_margin(const Place& at) const { return -bed_.rate(start_.new_foot, at) - kArrested * start_.speed; }
@@ -50,7 +50,7 @@ protected:
         return bed_.margin(c.point, c.which, place(x, p_.exact));
     }
 
-    // The first switch inside the step, as a share of it; causes_ holds what switches there.
+    // The first switch inside the step, as a fraction of it; causes_ holds its causes.
     double first_cause() {
         causes_.clear();
         first_ = 1.0;

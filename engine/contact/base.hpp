@@ -33,7 +33,7 @@ inline void sine_cosine(double x, double& sine, double& cosine) {
 
 struct Base {
     double inertia, height, lever[3];  // j = I_C / m; h; d of the left foot [1] and of the right one [2]
-    double size, pace, slow, alpha[3];  // R; sqrt(g / R); speed that is none; slenderness angle of each side
+    double size, pace, slow, alpha[3];  // R; sqrt(g / R); speed that counts as zero; slenderness angle of each side
     double width() const { return lever[kRight] - lever[kLeft]; }
 };
 
@@ -42,7 +42,7 @@ struct State {
     int touching = kBoth;
 };
 
-// Where a foot is, seen from the centre, and how far the centre is above its height at rest while that foot touches the ground.
+// Position of a foot relative to the centre, and rise of the centre above rest while that foot is in contact.
 struct Arm {
     double x, z, rise;
 };
@@ -67,7 +67,7 @@ struct Mode {
 };
 constexpr Mode kRest{kBoth, 0}, kFlight{0, 0};
 
-// The state with rounding taken out of what the contacts fix.
+// The state with exact contact conditions.
 inline State kept(const Base& b, State s, int feet, bool stick) {
     if (!feet) return s;
     if (feet == kBoth) {

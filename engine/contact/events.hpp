@@ -1,4 +1,4 @@
-// What must stay above zero while a mode lasts, its sign a moment after the start, and when it first falls below.
+// Functions that are positive during a mode, their sign just after the start, and their first zero.
 #pragma once
 #include "series.hpp"
 
@@ -9,7 +9,7 @@ enum class End { none, landing, loss_of_contact, slipping, sticking, lying };
 struct Function {
     End kind;
     int exact;     // leading coefficients that carry no rounding
-    double scale;  // what rounding of the others is measured by
+    double scale;  // scale of the rounding of the other coefficients
     double c[kTerms];
 };
 
@@ -111,7 +111,7 @@ inline int zeros(const double* c, int n, double* out) {
     return count;
 }
 
-// Whether bounds on the series of one foot that carries already say that nothing happens.
+// True if bounds on the series of one foot in contact exclude an event.
 inline bool uneventful(Mode m, const Series& c, double mu) {
     if (m.feet != kLeft && m.feet != kRight) return false;
     const double *normal = c.normal[m.feet], *gap = c.gap[kBoth - m.feet];
@@ -136,7 +136,7 @@ inline double first_fall(const double* c, int n) {
     return 2.0;
 }
 
-// When the first function falls below zero, and what happens then.
+// Time of the first zero of an event function, and its event.
 inline double first_end(const Functions& f, double stretch, double tolerance, End& kind) {
     double first = 2.0;
     kind = End::none;

@@ -71,7 +71,7 @@ class SlidingFoot {
         return {turning, ratio * across - along};
     }
 
-    // By how much the friction that would hold the foot exceeds what there is; direction in which it would slide.
+    // Excess of the friction demand of the foot over the available friction; direction of sliding.
     double over(const Tilted& s, double push, double lift, double& direction) const {
         if (mu_ >= kHolds) return -1.0;
         const double sine = std::sin(alpha_ - s.rotation), cosine = std::cos(alpha_ - s.rotation), v2 = s.velocity * s.velocity;
@@ -81,7 +81,7 @@ class SlidingFoot {
         return std::fabs(along) - mu_ * across;
     }
 
-    // Runge and Kutta, order 4, over a part of what is left of the step.
+    // Runge and Kutta, order 4, over a fraction of the remaining step.
     Tilted moved(const Tilted& s, double h, const Line& push, const Line& lift, double part, double direction) const {
         const double half = 0.5 * h, pm = push.at(0.5 * part), lm = lift.at(0.5 * part);
         const Rates a = rates(s.rotation, s.velocity, push.begin, lift.begin, direction);

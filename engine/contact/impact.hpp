@@ -25,7 +25,7 @@ class Impact {
         speed_ = largest_speed(b_, s_);
     }
 
-    // What it does with e of each foot; whether another law than the one that was asked for had to step in.
+    // Result with e of each foot; true if another law than the requested one replaces it.
     bool resolve(const double (&bounce)[3], Struck& made, bool& stands_in) const {
         stands_in = false;
         if (law_.kind == Bounce::newton ? newton(bounce, made, true) : grown(bounce, law_.kind, made)) return true;

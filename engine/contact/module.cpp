@@ -96,7 +96,7 @@ class Library {
     std::vector<Motion> motions_;
 };
 
-// Bodies: alpha, p, R, mu and the length of a step, each a row; push and lift at begin and end of every step; the first of the
+// Bodies: alpha, p, R, mu and the length of a step, one row each; push and lift at start and end of every step; the first of the
 // states (rotation, velocity, slip) is given.
 static void slide(Table<const double> bodies, Block<const double> push, Block<const double> lift, Block<double> states, double gravity) {
     const std::size_t count = bodies.shape(1), steps = push.shape(0);

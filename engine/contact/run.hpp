@@ -42,7 +42,7 @@ struct Motion {
 };
 
 struct Row {
-    double scale, end;  // factor on the motion; how long to follow it [s]
+    double scale, end;  // scale factor of the motion; end of the history [s]
     State start;
 };
 
@@ -63,7 +63,7 @@ class Run {
         : b_(base), m_(motion), law_(law), row_(row), set_(set), s_(row.start) {}
 
     Result run() {
-        s_ = cleaned(b_, s_, 1e-13 * largest_speed(b_, s_));  // what the caller's sine left of zero
+        s_ = cleaned(b_, s_, 1e-13 * largest_speed(b_, s_));  // corrects the rounding of the caller's sine
         bool falls = false;
         for (int foot : {kLeft, kRight}) falls |= (s_.touching & foot) && away(b_, s_, foot) < 0.0;
         if (falls) strike(kFlight);
@@ -176,7 +176,7 @@ class Run {
         r_.sliding_distance += std::fabs(c_.unit * at * path);
     }
 
-    // What a step leaves behind: peaks, when the centre passes over the foot.
+    // Records a step: peaks, and the passage of the centre over the foot.
     void keep(double at, const State& reached) {
         const int n = c_.n;
         const double start = now();
@@ -275,7 +275,7 @@ class Run {
         change();
     }
 
-    // A body that hardly moves after an impact stands, if the ground lets it.
+    // A body with small velocities after an impact comes to rest, if its forces allow it.
     State calmed(const State& after) const {
         if (after.touching != kBoth || !(std::max(std::fabs(after.w), std::fabs(after.spin) * b_.size) <= b_.slow)) return after;
         State calm = kept(b_, after, kBoth, false);

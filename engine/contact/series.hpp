@@ -16,7 +16,7 @@ struct Ground {
 struct Series {
     double unit, stiff;
     int n;            // terms
-    bool converged;   // whether what they leave out is below rounding
+    bool converged;   // true if the truncation error is below rounding
     double rotation[kTerms], x[kTerms], rise[kTerms], tangential[kTerms], sliding[kTerms], normal[3][kTerms], gap[3][kTerms];
 };
 

@@ -1,4 +1,4 @@
-// A body on the vertices of its hull, the ground under it, and what both are to the equations.
+// A body on the vertices of its hull, the ground under it, and their quantities in the equations.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -96,7 +96,7 @@ struct Motion {
     int degree = 0;
 };
 
-// Gravity less the acceleration of the ground, in axes of the plane, by powers of the share of a step.
+// Gravity minus the acceleration of the ground, in axes of the plane, by powers of the fraction of a step.
 struct Field {
     Vec power[kPowers];
     int degree = 0;
@@ -136,8 +136,8 @@ struct Ground {
         made.degree = n;
     }
 
-    // The same over several stretches of lines: the cubic with the moments of the motion, which are all that the end of a step knows
-    // of it up to the fourth order. Returns how far it lies beside the samples within.
+    // The field over several stretches of lines: the cubic with the moments of the motion, on which the end of a step depends up to
+    // the fourth order. Returns its distance from the samples within.
     double across(std::int64_t stretch, double start, double span, Field& made) const {
         const double end = start + span;
         const std::int64_t first = stretch;

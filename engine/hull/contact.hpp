@@ -6,9 +6,9 @@ namespace rocking::hull {
 
 constexpr double kSingular = 1e-12, kStraight = 1e-12;
 constexpr int kTurns = 60, kNewton = 20, kTries = 6;
-constexpr double kNearly = 1e-2;  // change of directions from which Newton goes on
+constexpr double kNearly = 1e-2;  // change of directions below which Newton's method takes over
 constexpr double kSwing = 1e-7;  // by which a direction is turned for the slope
-constexpr int kBegin = 6;  // turns after which a facet of many corners goes on by Newton
+constexpr int kBegin = 6;  // iterations before Newton's method for a facet with many corners
 constexpr std::size_t kCorners = 8;  // of a facet with more no single one sticks
 
 struct Contact {
@@ -16,7 +16,7 @@ struct Contact {
     bool operator==(const Contact& o) const { return members == o.members && stuck == o.stuck; }
 };
 
-// Where a member stands among the members, looked for first beyond `from`: lists that are gone through together go on alike.
+// Index of a member among the members, searched first beyond `from`: parallel lists continue in the same order.
 inline std::size_t slot_of(const Points& members, int i, std::size_t from) {
     for (std::size_t k = from; k < members.size(); ++k)
         if (members[k] == i) return k;
@@ -30,7 +30,7 @@ struct Placed {
     Vec second;
 };
 
-// What would happen without forces, and where they act.
+// Motion without contact forces, and points of action of the forces.
 struct Problem {
     const Body* body = nullptr;
     Mat axes;
@@ -52,14 +52,14 @@ struct Problem {
     Vec ground(double x, double y) const { return x * axes.a + y * axes.b; }
 };
 
-// What a candidate does; lists go with the members of the contact.
+// Motion and forces of a candidate; lists correspond to the members of the contact.
 struct Solution {
     Contact contact;
     Vec linear, angular;
     Numbers normals;
     double shape[3];  // of the normal forces of more than three
     Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
-    bool exists = false, doomed = false;  // doomed: it breaks a law, and the rest of it was not asked for
+    bool exists = false, doomed = false;  // doomed: it violates a law, and the remaining values are not computed
 };
 
 struct Wrench {
@@ -98,7 +98,7 @@ bool answered(const Problem& p, const Wrench* columns, const Wrench* rows, const
     return eliminated<n>(t, sizes, answer);
 }
 
-// Shares what holds the sticking vertices as their normal forces are shared, and as these would resist turning.
+// Divides the tangential forces of sticking vertices in proportion to normal forces and resistance to rotation.
 inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
     const Points& stuck = s.contact.stuck;
     const int n = static_cast<int>(stuck.size());
@@ -149,7 +149,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     const int n = static_cast<int>(carrying.size()), shapes = n <= 3 ? n : 3, rest = static_cast<int>(stuck.size());
     Wrench columns[size], rows[size];
     double known[size] = {}, answer[size];
-    const auto weights = [&](int k, Vec at, double* w) {  // of the shapes in what a vertex carries
+    const auto weights = [&](int k, Vec at, double* w) {  // weights of the distributions at a loaded vertex
         if (n > 3) w[0] = 1.0, w[1] = dot(p.axes.a, at), w[2] = dot(p.axes.b, at);  // Eq. 253
         else w[0] = w[1] = w[2] = 0.0, w[k] = 1.0;
     };
@@ -202,7 +202,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     return true;
 }
 
-// What certain forces do, pulled or not, so that the vertices of s.contact stay on the ground; carrying: slots of members.
+// Solution with forces at the loaded slots, also tensile ones, that keeps the vertices of s.contact closed; carrying: slots of members.
 inline bool linear(const Problem& p, const Points& carrying, Solution& s) {
     const std::size_t shapes = std::min<std::size_t>(carrying.size(), 3), rest = s.contact.stuck.size();
     switch (shapes + (rest > 0 ? 2 : 0) + (rest > 1 ? 1 : 0)) {
@@ -269,7 +269,7 @@ inline bool solved(int n, double t[][kCorners + 1]) {
     return true;
 }
 
-// What forces on a few vertices do to their rates, in axes of the ground.
+// Effect of forces at a few vertices on their rates, in axes of the ground.
 struct Yields {
     static constexpr std::size_t kMost = 4;
     Points at;
@@ -292,7 +292,7 @@ struct Yields {
     int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
 };
 
-// What spares a candidate work: forces on those that touch, what it does without sliding, and the violation from which it is out.
+// Data that exclude a candidate without solution: forces at touching vertices, motion without sliding, and the violation limit.
 struct Aid {
     const Yields* table;
     const Solution* holding;
@@ -308,7 +308,7 @@ inline Flat unit(Flat a) {
     return size > 0.0 ? Flat{a.x / size, a.y / size} : Flat{};
 }
 
-// A contact as directions of sliding see it: of up to three vertices, one of which may stick, without the rest of the solution.
+// Contact for the directions of sliding: up to three vertices, one of which may stick, without the other values of the solution.
 class Rubbing {
   public:
     Few<Flat> ways;  // by member, in axes of the ground
@@ -348,7 +348,7 @@ class Rubbing {
     bool turned_alone(int slot, double soft) {
         constexpr int m = n - 1 + rest, room = m ? m : 1;
         const auto part = [](Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-        int from[room], axis[room], row[room];  // of the other forces: where, along what; and the rates that they hold
+        int from[room], axis[room], row[room];  // other forces: point and direction; rates that they constrain
         Flat pushes[room];
         int count = 0;
         for (int k = 0; k < n; ++k)
@@ -522,7 +522,7 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
 inline bool turned_whole(const Problem& p, const Points& free, double still, Solution& s) {
     const Points& members = s.contact.members;
     const Vecs begun = s.directions;
-    const auto follow = [&](const double* u) {  // directions, and what the body does with them; lengths in sizes of the body
+    const auto follow = [&](const double* u) {  // directions, and the motion of the body with them; lengths over the size of the body
         for (int k : free) {
             const Vec r = p.body->points[members[k]], turn = u[2] / p.body->size * cross(p.axes.c, r);
             Vec rate = p.ground(u[0], u[1]) + turn;
@@ -652,8 +652,8 @@ inline Points outline(const Problem& p, const Points& touching) {
     return made;
 }
 
-// What may stay of the touching vertices: all, the edges of their border, single ones. staying: those that do not leave; a chord between
-// two of them, with others beyond it, is no edge.
+// Possible contacts of touching vertices: all, the edges of their border, single ones. staying: vertices that do not leave; a chord with
+// vertices beyond it is not an edge.
 inline std::vector<Points> faces(const Problem& p, const Points& touching, const Points& staying) {
     const Points border = outline(p, touching);
     std::vector<Points> made;

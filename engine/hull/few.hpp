@@ -1,4 +1,4 @@
-// Short lists that keep up to eight items in themselves: no heap for what most contacts have.
+// Short lists with up to eight items inside: no heap for most contacts.
 #pragma once
 #include <algorithm>
 #include <cstddef>

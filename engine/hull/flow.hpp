@@ -11,7 +11,7 @@ struct Mode {
     Contact contact;
     Vecs starts;          // by member: direction in which it starts to slide, axes of the ground
     Few<char> starting;
-    bool pulled = false;  // no contact obeys every law, and this one stands in
+    bool pulled = false;  // true if no contact satisfies all laws, and this one replaces it
     bool stuck(std::size_t k) const { return has(contact.stuck, contact.members[k]); }
     bool resting() const { return contact.members.size() > 2 && contact.stuck.size() == contact.members.size(); }
 };
@@ -58,7 +58,7 @@ class Flow {
         solution_.contact = c, known_ = false;
     }
 
-    // f: where the forces go, if they are asked for.
+    // f: output of the forces, optional.
     void rates(const State& s, Vec field, Rates& r, Forces* f, Mat* kept = nullptr) {
         const Mat axes = frame(s.q);
         if (kept) *kept = axes;
@@ -205,7 +205,7 @@ class Flow {
         if (f) f->normals.assign(1, normal), f->pulls.assign(1, pull);
     }
 
-    // Adds what the contact does to accelerations without it; false where no force answers.
+    // Adds the effect of the contact to accelerations without contact; false without a solution.
     bool act(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) {
         const Contact& c = mode_->contact;
         if (kind_ == kFlight) {

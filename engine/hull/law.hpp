@@ -1,4 +1,4 @@
-// Where the impulse of a landing acts: on the way from where the body stood to where it lands.
+// Impulse position of a landing: between the old support and the landing point.
 #pragma once
 #include "body.hpp"
 

@@ -99,7 +99,7 @@ class Library {
         for (std::thread& worker : crew) worker.join();
     }
 
-    // One history whose steps never cross samples: its results, its nodes and impacts, their contacts, and what a response asks besides.
+    // One history with steps that never cross samples: its results, nodes and impacts, their contacts, and other data for a response.
     nb::tuple trace(Table<const double> numbers, Table<const Whole> choices, Table<double> results, Table<Whole> counts, double rest_speed, double tolerance, Whole most_events) const {
         expect(numbers.shape(0) == 1 && numbers.shape(1) == kNumbers && choices.shape(0) == 1 && choices.shape(1) == kChoices && results.shape(0) == 1 && results.shape(1) == kResults &&
                    counts.shape(0) == 1 && counts.shape(1) == kCounts,
@@ -121,8 +121,8 @@ class Library {
         return {kept, {values.size() / columns, columns}, owner};
     }
 
-    // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, place, velocity,
-    // spin; gravity. Choices: body, motion, law, facet on which the body stood.
+    // Numbers: coefficient or position, scale, horizon, friction; axes of the plane; half sizes of the shelf; attitude, position, velocity,
+    // spin; gravity. Choices: body, motion, law, initial facet.
     Result one(const double* v, const Whole* c, const Settings& set, Trace* trace = nullptr) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e9) && !(v[k] == kInfinite && (k == 3 || k == 13 || k == 14))) return {};

@@ -13,7 +13,7 @@ constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
 // speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
 constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
-constexpr double kFlatWithin = 1e-6;  // gaps over the size, below all of which a facet lands with all its corners
+constexpr double kFlatWithin = 1e-6;  // gap over the size below which a facet lands with all its corners
 constexpr double kAhead = 1e-6, kCrowded = 1e-2, kGathered = 1e-7, kGathering = 1e-4, kPatience = 100.0, kMargin = 0.1, kAfter = 0.1, kDrift = 1e-2, kNudge = 0.1;
 constexpr int kPiled = 30, kMany = 200, kCrowd = 12, kHalvings = 80;
 
@@ -30,7 +30,7 @@ struct Settings {
 // A history at the ends of its steps, and its impacts.
 struct Trace {
     std::vector<double> nodes, impacts;           // time, attitude, place, velocity, spin; time, kinetic energy before and after
-    std::vector<std::int64_t> members, stuck, struck;  // what touches and what sticks at each node, what touches after each impact: how many, which
+    std::vector<std::int64_t> members, stuck, struck;  // contacts at each node, and after each impact: number of vertices, indices
     double least_cosine = 1.0;
     bool fell = false;
 };
@@ -56,7 +56,7 @@ class Run {
         length_ = span_ = 0.1 / pace_;
     }
 
-    // stood: the facet on which the body stood before it was tilted.
+    // stood: the facet under the body before the tilt.
     Result run(const State& start, double horizon, int stood) {
         s_ = start;
         until_ = greater(horizon, g_.end());
@@ -104,12 +104,12 @@ class Run {
         return r_;
     }
 
-    // What a state leaves behind: peaks, and whether the vertical through the centre has left the first pose.
+    // Records a state: peaks, and the departure of the centre from the initial pose.
     void keep() {
         const Mat axes = frame(s_.q);
         const double tilt = dot(upright_, axes.c), tilting = -dot(upright_, cross(s_.spin, axes.c)), span = time_ - kept_;
         note(tilt, time_);
-        if (span > 0.0 && tilting_ < 0.0 && tilting > 0.0) {  // least cosine of Hermite's cubic
+        if (span > 0.0 && tilting_ < 0.0 && tilting > 0.0) {  // smallest cosine of Hermite's cubic
             const double d0 = tilting_ * span, d1 = tilting * span, rise = tilt - tilt_;
             const double c3 = d0 + d1 - 2.0 * rise, c2 = 3.0 * rise - 2.0 * d0 - d1;
             const double root = std::sqrt(greater(c2 * c2 - 3.0 * c3 * d0, 0.0)), at = -d0 / (c2 + root);
@@ -204,7 +204,7 @@ class Run {
         }
     }
 
-    // Least distance of the centre of pressure from the border, times the pull, and what friction leaves over.
+    // Smallest margin of rest: moment of the pressure about the border, or friction.
     double stands(Vec pull) const {
         double least = lesser(-pull.z, slips(pull));
         for (const Side& s : sides_)
@@ -231,7 +231,7 @@ class Run {
         return flow_.samples[3];
     }
 
-    // Slip of what only starts to slide, at the end of the step, over what ends that.
+    // Slip of a vertex that starts to slide, at the end of the step, over its limit.
     double fastest_start() const {
         double most = 0.0;
         for (std::size_t k = 0; k < mode_.starting.size(); ++k)
@@ -295,7 +295,7 @@ class Run {
         finish(kind);
     }
 
-    // Whether the step may go on to a later sample, and then how long it is.
+    // True if the step may continue to a later sample, with its length.
     bool crosses(double& whole) {
         std::int64_t last = stretch_ + 1;
         if (g_.motion->degree != 1 || last < smooth_ || trace_) return false;
@@ -371,7 +371,7 @@ class Run {
         fallen();
         std::sort(falls_.begin(), falls_.end());
         for (const Fall& f : falls_)
-            for (const double end : {lesser(f.high, part), part})  // stages lie beside the motion
+            for (const double end : {lesser(f.high, part), part})  // stages are approximate
                 if ((end == part ? at(f.what, end) : near(f.what, end)) < 0.0) {
                     part = located(f, lesser(f.low, end), end), first = f.what.kind;
                     break;
@@ -428,7 +428,7 @@ class Run {
         return searched(f, low, high, close);
     }
 
-    // Goes on to the zero along the last derivative, if that is so near that its error, of the second order, is none.
+    // Continues to the zero along the last derivative, if it is so near that the second-order error is zero.
     bool nudged(const Watch& w, double value, double slope, double close) {
         const double part = part_;
         for (int k = 0; k < 4; ++k) {
@@ -542,7 +542,7 @@ class Run {
             if (lesser(high + dot(up, b_.points[i]), later + dot(after, b_.points[i])) < reach && !has(members, i)) watched_.push_back({kGap, i, -1});
     }
 
-    // What must not fall below zero: a height, an acceleration or a speed.
+    // Value of an event function: a height, an acceleration or a speed.
     double margin(const Watch& w, const State& s, const Mat& axes, const Forces& f) const {
         if (w.kind == kGap || w.kind == kShelf) {
             const Vec p = b_.points[w.i];
@@ -614,7 +614,7 @@ class Run {
         return nullptr;
     }
 
-    // What may stay, solved when asked for: first what sticks wherever it does not slide yet, larger faces first; flight last.
+    // Candidates, solved on demand: sticking before sliding, larger faces before smaller ones, flight last.
     class Candidates {
       public:
         // limit: violation of a law from which a candidate is of no use
@@ -628,7 +628,7 @@ class Run {
                     if (!moving_of(moving, i)) free.push_back(i);
                 const std::size_t n = free.size();
                 const auto add = [&](int stuck, std::size_t sticks) {
-                    // a facet that slides as a whole comes before what edges and single vertices do
+                    // a fully sliding facet comes before edges and single vertices
                     if (p.friction < kInfinite || sticks == members.size())
                         ways.push_back({sticks == n ? 0 : members.size() > 2 && !sticks ? 1 : n - sticks + 1, ways.size(), static_cast<int>(f), stuck});
                 };
@@ -647,7 +647,7 @@ class Run {
             return k < made_.size() ? &made_[k] : nullptr;
         }
 
-        // Finds also what is of no use, from the beginning.
+        // Includes invalid candidates, from the start.
         void all() { limit_ = kInfinite, next_ = 0, made_.clear(); }
 
       private:
@@ -713,7 +713,7 @@ class Run {
         std::size_t next_ = 0;
     };
 
-    // What stands in where no candidate obeys every law: no gap closes, and the ground pulls least.
+    // Replacement if no candidate satisfies all laws: no gap closes, and the tension is smallest.
     template <class Fits>
     static const Solution* least_pull(const Problem& p, Candidates& all, const Points& touching, double slack, Fits fits) {
         const Solution* best = nullptr;
@@ -742,11 +742,11 @@ class Run {
         bool leaves;
     };
 
-    // The first candidate whose forces obey every law. exclude: what has just ended; closed: what an impact has stopped;
-    // leaves: one of its vertices leaves, so that no way of sticking or sliding keeps all of them.
+    // The first candidate with forces that satisfy all laws. exclude: ended contacts; closed: vertices stopped by an impact;
+    // leaves: one of its vertices leaves, so that neither sticking nor sliding keeps all of them.
     void choose(const Points& touching, const Contact* exclude = nullptr, const Points* closed = nullptr, bool leaves = false) {
         if (ended_ != kGood || guarded()) return;
-        if (!at_once_ || closed) over_.clear();  // what has ended at this moment is not taken again
+        if (!at_once_ || closed) over_.clear();  // contacts that ended at this time are not used again
         if (exclude) over_.push_back({*exclude, leaves});
         const bool crowd = crowded();
         if (crowd && time_ > gathered_) return gather();
@@ -757,7 +757,7 @@ class Run {
             if (held || leaves_at <= slow_) near.push_back(i);
             if (held || leaves_at <= kStrikes * speed_) still.push_back(i);
         }
-        // what leaves slowly stays beside what is at rest, not in its place
+        // a slowly leaving vertex may stay in addition to vertices at rest, not instead of them
         const auto fits = [&](const Solution& s) {
             const Points& m = s.contact.members;
             return still.empty() || m.empty() || std::any_of(m.begin(), m.end(), [&](int i) { return has(still, i); });
@@ -772,7 +772,7 @@ class Run {
                     moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
                 }
         Candidates candidates(p, touching, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
-        // what has ended may have to go on if nothing else is possible
+        // an ended contact may continue if there is no other
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
             for (double slack : kLadder)
@@ -876,7 +876,7 @@ class Run {
         return true;
     }
 
-    // Turns by the least small angle that brings an edge or a facet onto the ground.
+    // Turns by the smallest angle that brings an edge or a facet onto the ground.
     void level(const Points& members) {
         const Mat axes = frame(s_.q);
         const std::size_t n = members.size();
@@ -909,7 +909,7 @@ class Run {
         const double fastest = norm(p.linear) + b_.size * norm(p.angular);
         const auto fits = [&](const Solution& s) { return 0.5 * (b_.mass * dot(s.linear, s.linear) + dot(s.angular, b_.inertia * s.angular)) <= before * (1.0 + 1e-12); };
         const Solution* found = nullptr;
-        std::vector<Candidates> tried;  // keeps what `found` points to
+        std::vector<Candidates> tried;  // owner of the target of `found`
         tried.reserve(2);
         Problem both[2] = {p, p};
         int last = 0;
@@ -961,8 +961,8 @@ class Run {
         keep();
     }
 
-    // Adds all of a facet that lands nearly flat to what touches, and lays it flat for that: the corners that carry pass the motion on from
-    // one to the next in the last moment of such a landing, at first without loss, in an order that rounding decides.
+    // Adds all corners of a facet that lands nearly flat to the touching ones, and rotates it to flat: contact passes from corner to corner
+    // at the end of such a landing, at first without loss, in an order that depends on rounding.
     void flatten(Points& touching) {
         Points near;
         touch(near, kFlatWithin);
@@ -992,7 +992,7 @@ class Run {
         std::sort(touching.begin(), touching.end());
     }
 
-    // Changes that accumulate at one moment are over: what they close in on touches, and is at rest there.
+    // Ends an accumulation of changes at one time: the converging vertices are put in contact at rest.
     void gather() {
         const double reach = time_ > gathered_ + kCrowded / pace_ ? kGathered : 10.0 * kGathered;
         gathered_ = time_, changes_ = at_once_ = 0;

@@ -1,6 +1,6 @@
-// What synthetic motions take their time with: elementary functions and recurrences of sums and products alone, in the
-// order in which `portable.py` has them, so that a seed has the same bits on every processor, and without this module.
-// And response spectra, which are measures and need not.
+// Costly operations of synthetic motions: elementary functions and recurrences of sums and products only, in the
+// order of `portable.py`, so that a seed has the same bits on all processors, and without this module.
+// Also response spectra, which are measures without this requirement.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/complex.h>
@@ -55,7 +55,7 @@ static inline double exponential(double x) {
     const double r = (inside - k * kLog2High) - k * kLog2Low;
     double p = kTerms.inverse[13];
     for (int n = 12; n >= 0; --n) p = p * r + kTerms.inverse[n];
-    // the last bits of what was rounded are k: they become the exponent of a power of two
+    // the last bits of the rounded value are k: they become the exponent of a power of two
     const double power = from_bits((bits_of(rounded) + 1023) << 52);
     return x < -708.0 ? 0.0 : p * power;
 }
@@ -112,7 +112,7 @@ static void cosines_sines(Line<const double> x, Line<double> cosine, Line<double
     for (std::size_t i = 0; i < x.shape(0); ++i) cosine_sine(x.data()[i], cosine.data()[i], sine.data()[i]);
 }
 
-// Two states that a matrix moves on, and what is added to each after every step.
+// Two states advanced by a matrix, and their increments after every step.
 static void recurrence(double m00, double m01, double m10, double m11, Line<const double> first, Line<const double> second,
                        Line<double> z, Line<double> v) {
     check(first.shape(0) == second.shape(0) && z.shape(0) == first.shape(0) + 1 && v.shape(0) == z.shape(0));
@@ -126,7 +126,7 @@ static void recurrence(double m00, double m01, double m10, double m11, Line<cons
     }
 }
 
-// Four oscillators side by side: the turn of a step and of twice its angle, and what turns.
+// Four oscillators in parallel: the rotation of a step and of twice its angle, and the states.
 constexpr int kLanes = 4, kNeighbours = 10;
 struct Four {
     double c[kLanes] = {}, s[kLanes] = {}, q[kLanes] = {}, cc[kLanes] = {}, ss[kLanes] = {};

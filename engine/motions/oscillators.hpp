@@ -1,4 +1,4 @@
-// Linear oscillators under straight lines between samples: their states, and the peaks of what they feel. With the
+// Linear oscillators under straight lines between samples: their states and peak responses. With the
 // complex rate s the state z = u' - conj(s) u obeys z' = s z - a (Eq. 150).
 #pragma once
 
@@ -26,7 +26,7 @@ static inline Complex times(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-// What a stretch of time makes of a state, and of a ground that begins at one and rises by one per step (Eqs. 151, 152).
+// State after a time, and for a ground that starts at one and rises by one per step (Eqs. 151, 152).
 struct Stretch {
     Complex decay, level, rise;
     Stretch(Complex rate, double t, double step) {
@@ -110,7 +110,7 @@ ROCKING_WIDER void follow(const double* a, std::size_t n, Lanes& with, double* r
         for (int i = 0; i < kTogether; ++i) with.top[j][i] = top[j][i];
 }
 
-// Within a step a state changes by no more than the push of the ground, seen from either of its ends: how far it may come.
+// Within a step the change of a state is at most the push of the ground, from both ends: bound of the state.
 ROCKING_WIDER void reaches(const double* push, std::size_t steps, const double* shrink, const double* re, const double* im,
                            const double* needed, std::vector<std::uint8_t>& close) {
     double size[kTogether] = {};
@@ -125,7 +125,7 @@ ROCKING_WIDER void reaches(const double* push, std::size_t steps, const double* 
     }
 }
 
-// The first of some oscillators, and those beside it: what `follow` needs of them.
+// The first of a group of oscillators, and the next ones: data for `follow`.
 static Lanes lanes(const Complex* rates, std::size_t some, double step) {
     Lanes with;
     for (std::size_t i = 0; i < some; ++i) {
@@ -201,7 +201,7 @@ static void peaks_of(const double* a, std::size_t n, double step, const Complex*
     }
 }
 
-// How far a path has come in every direction so far, and an ellipse shaped like the path, as large as fits within.
+// Extent of a path in every direction so far, and an ellipse of similar shape, as large as fits within.
 struct Outline {
     const double *cosine, *sine;
     std::size_t count;
@@ -227,7 +227,7 @@ struct Outline {
     }
 };
 
-// The largest displacement in every direction, one row an oscillator, of which two components drive the two coordinates.
+// The largest displacement in every direction, one row per oscillator, under two components.
 static void directions_of(const double* a, const double* b, std::size_t n, double step, const Complex* rates, std::size_t count,
                           const double* cosine, const double* sine, std::size_t directions, const std::int64_t* parts,
                           std::int64_t points, double* found) {

@@ -1,4 +1,4 @@
-// A body in space, and all that is known beforehand about each edge and vertex on which it may stand.
+// A body in space, and precomputed data of each possible edge and vertex of contact.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +13,7 @@ enum Contact : int { kRest = 0, kEdge = 1, kVertex = 2, kRolling = 3 };
 
 constexpr int kMostVertices = 64, kKept = 117;
 
-// What stays on the ground: the face, an edge, a vertex, or a point of a rim.
+// Points in contact: the face, an edge, a vertex, or a point of a rim.
 struct Pivot {
     int contact = kRest, number = -1;
     std::uint64_t points = 0;
@@ -22,11 +22,11 @@ struct Pivot {
     Mat inertia, inverse;
     Four torque[3], gyro[6];              // to the angular acceleration: of the field; of the products of velocities
     int watched[2] = {-1, -1};            // vertices whose gaps may close first
-    Four gaps[3] = {}, ends[3] = {};      // what gives both gaps, height of the centre and cosine; and the ends of an edge
+    Four gaps[3] = {}, ends[3] = {};      // coefficients of both gaps, height of the centre and cosine; and of the ends of an edge
     double along = 0.0;                   // of the arm, along the edge
     Vec level, lever;                     // of an edge: part of the arm across it, and axis x arm
-    double skew = 0.0, beside = 0.0;      // about its middle: what gyroscopic moments shift between its ends, and the arm along
-    const double* kept = nullptr;         // moments for what KED keeps
+    double skew = 0.0, beside = 0.0;      // about its middle: transfer by gyroscopic moments between its ends, and the arm along
+    const double* kept = nullptr;         // moments after stage 2 of KED
 };
 
 struct Body {
@@ -121,13 +121,13 @@ inline void prepare(Body& body, const double* kept) {
     equations(body, body.face);
 }
 
-// Above zero where the centre of mass is beyond the contact, in the direction in which the body leans.
+// Positive if the centre of mass is beyond the contact, in the direction of tilt.
 inline double leaning_over(const Body& body, Vec up, Vec pivot) {
     const Vec arm = body.centre - pivot;
     return arm.z - dot(up, arm) * up.z;  // Eq. 87
 }
 
-// How much higher the centre of mass is than at rest.
+// Rise of the centre of mass above rest.
 inline double rise(const Body& body, Vec up, Vec pivot) {
     const Vec arm = body.centre - pivot;
     const double level2 = up.x * up.x + up.y * up.y, sunk = up.z > 0.0 ? level2 / (1.0 + up.z) : 1.0 - up.z;

@@ -13,7 +13,7 @@ constexpr double kLanding = 1e-3, kFlat = 1e-6;
 struct Choice {
     const Pivot* stance = nullptr;
     Vec velocity;
-    double push = 0.0;  // the least support: below zero the ground would have to pull
+    double push = 0.0;  // the smallest support: negative for a tensile force
 };
 
 // Calls `attempt` for the contact sets that can stay, the larger ones first, until it accepts one.
@@ -27,7 +27,7 @@ inline bool any_candidate(const Body& body, std::uint64_t touching, Attempt atte
     return false;
 }
 
-// The least of what must not be negative for the ground to give a force with a moment about the pivot.
+// The smallest support of a force with a moment about the pivot; negative for a tensile force.
 inline double least_support(const Body& body, const Pivot& stance, Vec force, Vec moment, Vec up) {
     const double normal = dot(force, up);
     const Vec arms = cross(up, moment);
@@ -51,7 +51,7 @@ inline double impulse_support(const Body& body, const State& s, const Pivot& sta
     return least_support(body, stance, push, body.inertia * (velocity - s.velocity) + cross(stance.arm, push), s.up);
 }
 
-// Least speed with which a touching point that does not stay leaves the ground.
+// Smallest opening speed of a touching point that does not stay in contact.
 inline double opening_speed(const Body& body, const Pivot& stance, Vec velocity, Vec up, std::uint64_t touching) {
     double least = kFar;
     for (int i = 0; i < body.count; ++i)
@@ -64,7 +64,7 @@ inline Vec plastic_after(const Body& body, const State& s, const Pivot& stance) 
     return stance.contact == kRest ? Vec{} : projected(body, s, stance);
 }
 
-// The largest set that takes the impact without pull and lets no point sink; where there is none, the least pull.
+// The largest contact set without tensile impulse or penetration; otherwise that with the smallest tension.
 inline Choice landed(const Body& body, const State& s, std::uint64_t touching, int law, double coefficient) {
     Choice found;
     const double scale = largest(s.velocity) * body.size;
@@ -123,7 +123,7 @@ inline Choice held(const Body& body, const State& s, std::uint64_t touching, con
     return found;
 }
 
-// What a body stands on once points that would fall back at once are taken to stay.
+// Contact if points that would close again at once stay closed.
 inline Choice settled(const Body& body, const State& s, const Choice& choice, std::uint64_t touching, double slow, bool weak) {
     if (body.round) {
         const bool flat = weak || choice.stance->contact == kRest;

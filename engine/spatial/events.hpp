@@ -1,4 +1,4 @@
-// What happens between steps: start, rest, uplift, impacts, and ends of edges that let go.
+// Events between steps: start, rest, uplift, impacts, and release of ends of edges.
 #pragma once
 #include "run.hpp"
 

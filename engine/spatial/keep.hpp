@@ -1,11 +1,11 @@
-// What a step leaves behind: peaks, falls, and whether the history has ended.
+// Record of a step: peaks, overturning, and end of the history.
 #pragma once
 #include "run.hpp"
 
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// What a step says about peaks and falls.
+// Peaks and passages of a step.
 template <int D>
 void Run<D>::keep(double start, double at, Vec before, Vec spin) {
     fastest_ = greater(fastest_, dot(velocity_, velocity_));

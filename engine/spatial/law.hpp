@@ -1,4 +1,4 @@
-// What an impact costs: one law a function. All of them give the angular velocity about the new pivot.
+// Restitution: one law per function. All of them return the angular velocity about the new pivot.
 #pragma once
 #include <limits>
 

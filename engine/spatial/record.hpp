@@ -1,4 +1,4 @@
-// What goes into a history and what comes out of it.
+// Inputs and results of a history.
 #pragma once
 #include <limits>
 

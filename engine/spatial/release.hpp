@@ -6,7 +6,7 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-// A step with what is read off its series: by power, gaps of two vertices, height of the centre, cosine of the tilt.
+// A step with quantities of its series: by power, gaps of two vertices, height of the centre, cosine of the tilt.
 struct Step {
     double length = 0.0;
     Series s;

@@ -1,4 +1,4 @@
-// How long a body rests: until the centre of pressure reaches the border of its base.
+// Duration of rest: until the centre of pressure reaches the border of the base.
 #pragma once
 #include "contact.hpp"
 #include "zeros.hpp"
@@ -42,7 +42,7 @@ public:
         }
     }
 
-    // The first fall of what must stay above zero, from a time within a stretch on; stretch -1 if there is none.
+    // The first zero of functions that are positive at rest, from a time within a stretch on; stretch -1 without one.
     Uplift next(std::int64_t stretch, double tau) const {
         for (; stretch < motion_.count; ++stretch, tau = 0.0) {
             if (tau == 0.0 && surely_held(stretch)) continue;
@@ -138,7 +138,7 @@ private:
     int order_, rows_;
 };
 
-// On what a body stands when it is lifted from rest; none where the ground would have to pull.
+// Contact of a body after uplift from rest; none for a tensile force.
 inline const Pivot* lifted(const Body& body, const State& s, const Uplift& uplift) {
     if (uplift.edges == 1) return &body.edge[uplift.first];
     if (uplift.edges == 2)

@@ -100,7 +100,7 @@ private:
     Mat inertia_[kMostOrder + 1], solve_;
 };
 
-// What is read off the series of a rolling step: height of the centre, Z . C + b sin(tilt), and cosine of the tilt.
+// Quantities of the series of a rolling step: height of the centre, Z . C + b sin(tilt), and cosine of the tilt.
 inline void read_rolling(const Body& body, Step& step) {
     double root[kMostOrder + 1];
     for (int k = 0; k <= step.s.order; ++k) {
@@ -113,7 +113,7 @@ inline void read_rolling(const Body& body, Step& step) {
     }
 }
 
-// Whether it leans so little that a loss of contact is a hop below its own gap: then it is held down, and `held` says so.
+// True if the tilt is so small that loss of contact is negligible: contact then persists, and `held` has its duration.
 inline bool nearly_flat(const Body& body, Vec up) {
     return std::sqrt(up.x * up.x + up.y * up.y) * body.centre.z < 0.01 * body.radius;
 }
@@ -132,7 +132,7 @@ inline double rim_event(const Body& body, const Pivot& stance, const Step& step,
         return first_zero(lean, order, false, 0.0);
     }
     steep[0] += landing ? 2.0 * kLanding : kStartRolling;
-    // lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
+    // after uplift from rest the tilt grows with the cube of time: lower powers are rounding
     const double pull = norm({step.field[0][0], step.field[0][1], step.field[0][2]});
     const double floor = 0.25 * kSlowOpening * pull * step.length * step.length / body.radius;
     return lesser(first_zero(lean, order, std::fabs(lean[0]) < kNothing, floor), first_zero(steep, order, false, 0.0));

@@ -86,7 +86,7 @@ private:
         at_once_ = time_ <= moment_ ? at_once_ + 1 : 0;
         moment_ = time_;
         if (at_once_ > kStuck || made_.events > set_.most_events) return stop(kFailed, kTooManyEvents);
-        // a base of many corners may have no step without an impact; whether it still can fall is asked here too
+        // a base with many vertices may have no step without impact: the outcome is checked here too
         if (!done_ && time_ >= horizon_ && stance_->contact != kRest) look_for_end();
     }
 
@@ -101,7 +101,7 @@ private:
         const double c = x_.x + y_.y, s = y_.x - x_.y, size = 1.0 / std::sqrt(c * c + s * s);
         x_ = {size * c, -size * s, 0.0}, y_ = {size * s, size * c, 0.0}, z_ = {0.0, 0.0, 1.0};
     }
-    // Turns by the least angle so that an axis of the body is horizontal.
+    // Turns by the smallest angle so that an axis of the body is horizontal.
     void level(Vec axis) {
         const double sine = dot(z_, axis), cosine = std::sqrt(1.0 - sine * sine);
         if (sine == 0.0) return;

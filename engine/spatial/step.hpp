@@ -1,4 +1,4 @@
-// A step of a history, and what is kept of it.
+// A step of a history, and its record.
 #pragma once
 #include "run.hpp"
 
@@ -66,7 +66,7 @@ void Run<D>::move() {
     locate();
 }
 
-// What happens first within the step.
+// The first event within the step.
 template <int D>
 void Run<D>::locate() {
     const double floor = 0.5 * kSlowOpening * norm({step_.field[0][0], step_.field[0][1], step_.field[0][2]}) * step_.length * step_.length;

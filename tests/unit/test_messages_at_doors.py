@@ -112,9 +112,9 @@ class Bare:
 @pytest.mark.parametrize(
     ("restitution", "says"),
     [
-        (Bare(), "got a Bare object, which has no method raw_coefficient; a model of your own is a subclass"),
-        (Bare, r"got the class Bare: create an object, Bare\(\)"),
-        (rk.restitution.models()["ked"], r"got the class Ked: create an object, Ked\(\)"),
+        (Bare(), "got a Bare object without method raw_coefficient; a model of your own must be a subclass"),
+        (Bare, r"got the class Bare; use an object, Bare\(\)"),
+        (rk.restitution.models()["ked"], r"got the class Ked; use an object, Ked\(\)"),
         (None, "got None"),
     ],
 )
@@ -127,7 +127,7 @@ def test_what_is_no_model_names_what_it_lacks(restitution: Any, says: str) -> No
 
 
 def test_a_law_has_no_single_coefficient() -> None:
-    with pytest.raises(InvalidValueError, match="SpeedRestitution object, a law that changes from impact to impact"):
+    with pytest.raises(InvalidValueError, match="SpeedRestitution object, a law that varies from impact to impact"):
         ANY.coefficient_of_restitution(BLOCK, rk.dynamics.SpeedRestitution([0.0, 1.0], [0.9, 0.5]))  # type: ignore[arg-type]
 
 
