@@ -351,7 +351,7 @@ REFUSED = {
         "SIZE PULSE --samples 9 --set minimum.samples=20": "--samples and --set minimum.samples say the same",
     },
     "models": {
-        "kde": "unknown restitution model 'kde'",
+        "kde": "no restitution model named 'kde'",
         "hausner": "did you mean 'housner'",
     },
     "record show": {
@@ -439,7 +439,7 @@ REFUSED = {
         "SIZE sinus:amplitude=1": "unknown pulse",
         "SIZE PULSE --units g": "a pulse takes no --units",
         "SIZE PULSE --restitution best": "unknown restitution model 'best'",
-        "SIZE PULSE --restitution 90": "a percentage?",
+        "SIZE PULSE --restitution 90": "not a percentage",
         "SIZE PULSE --restitution 1.1": "would create energy",
         "SIZE PULSE --restitution nan": "restitution must be finite",
         "SIZE PULSE --restitution ''": "--restitution must not be empty",
