@@ -157,7 +157,7 @@ def in_python(case, record):
     """Responses as a Python user computes them, in the order of the restitutions."""
     body, motion, restitution, more = CASES[case]
     settings = dict(more.get("settings", {}))
-    free, made = more.get("response", {}).get("free"), BODIES[body][1]()
+    free, made = more.get("response", {}).get("initial_rotation"), BODIES[body][1]()
     found = []
     for choice in RESTITUTIONS[restitution][1]:
         if free is not None:
@@ -237,7 +237,7 @@ def test_three_doors_agree_to_the_last_digit(run, case, inside, record, tmp_path
     code, out, err = run("simulate", unpacked(inside, document, tmp_path), "--json")
     assert code == 0, err
     printed = json.loads(out)
-    others, *_ = (printed.pop(key, None) for key in ("other_models", "units", "messages"))
+    others, *_ = (printed.pop(key, None) for key in ("other_models", "headline", "units", "messages"))
     first, *rest = answers.items()
     assert {key: value for key, value in first[1].items() if key != "series"} == printed
     assert list(others) == [label for label, _ in rest]

@@ -27,6 +27,7 @@ from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape, fall_of
 from rocking.reports.body_facts import outline_answer
 from rocking.reports.response_facts import ModelAgreement
+from rocking.restitution.headline import headline
 from rocking.spec.response import ResponseProblem
 
 router = APIRouter(prefix="/api", tags=["response"])
@@ -107,6 +108,7 @@ VerdictFacts: Any = shape(
     "Whether the choice of the model decides.",
     decides=bool,
     sentence=str,
+    headline=(str, "the restitution model of the first answer, with the reason"),
     doubts=(list[str], "about the computation"),
 )
 ResponseAnswered: Any = shape(
@@ -154,7 +156,10 @@ def responses_answer(
             else response_answer(label, one, problem, points, window)
             for label, one in answers.items()
         ],
-        "verdict": {"decides": verdict.models_differ, "sentence": verdict.verdict, "doubts": list(verdict.doubts)},
+        "verdict": {
+            "decides": verdict.models_differ, "sentence": verdict.verdict, "doubts": list(verdict.doubts),
+            "headline": headline(next(iter(answers))),
+        },
         "body": problem.body.answer(problem.settings.gravity) | outline_answer(problem.body) | {"name": name},
         "motion": motion_answer(problem.motion, problem.scale),
     })  # fmt: skip

@@ -90,7 +90,7 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
       ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${t(OLDER)}`} />`}
       ${!motion && response?.initial_rotation == null && html`<${NothingMoves} app=${app} />`}</div>
     ${found.value && html`<div class=${`verdict-part ${old}`}>
-      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[found.value.verdict.sentence, ...found.value.verdict.doubts].map((each) => inWords(each, answers))} />
+      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[found.value.verdict.sentence, ...found.value.verdict.doubts, found.value.verdict.headline].map((each) => inWords(each, answers))} />
       <${Cards} answers=${answers} lead=${lead} /></div>`}
     <div class="response" ...${found.value && aboutOf(found.value.body, found.value.motion, there.length === 1 ? [wordsOf(there[0].label)] : [])}>
       <div class="response-stage">
