@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 from rocking import spec
 from rocking.cli.completion import words_on_the_line
-from rocking.cli.spelling import Command
+from rocking.cli.help import Command, with_common
 from rocking.version import SOFTWARE
 
 ABOUT = "Predict rocking and overturning of bodies in earthquakes."
@@ -99,8 +99,7 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
         help=ABOUT,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
-        # plain text where the list alone is shown: frames around it would take twice the time to be imported
-        rich_markup_mode=None if arguments is not None and named[:1] in {"", "-"} else "rich",
+        rich_markup_mode=None,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
@@ -123,14 +122,15 @@ def _add(app: typer.Typer, name: str, summary: str, panel: str, second: str | No
         group = typer.Typer(name=name, no_args_is_help=True, pretty_exceptions_enable=False, add_completion=False)
         for one, about in RECORD.items():
             called = second is None or one == second
-            command = _command(f"{name} {one}") if called else _nothing
+            command = with_common(_command(f"{name} {one}")) if called else _nothing
             group.command(one, cls=Command if called else None, help=about)(command)
     elif name in {"measurements", "campaign"}:
         group = getattr(import_module(f"rocking.cli.{name}"), name)
         for registered in group.registered_commands:
             registered.cls = Command
+            registered.callback = with_common(registered.callback)
     else:
-        app.command(name, cls=Command, help=summary, rich_help_panel=panel)(_command(name))
+        app.command(name, cls=Command, help=summary, rich_help_panel=panel)(with_common(_command(name)))
         return
     app.add_typer(group, help=summary, rich_help_panel=panel)
 

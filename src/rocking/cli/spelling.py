@@ -4,7 +4,6 @@ from contextvars import ContextVar
 from typing import Any
 
 import typer
-from typer.core import TyperCommand
 
 from rocking.errors import RockingError
 from rocking.messages import Fact, Message, Option, Parameter, Spelling
@@ -18,12 +17,9 @@ _RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs",
 _KEYS = {"restitution.model": "restitution"}  # options by keys whose last part they do not have for a name
 
 
-class Command(TyperCommand):
-    """A command whose messages name its options as they are typed."""
-
-    def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # typer brings click with it
-        _RUNNING.set(context)
-        return super().invoke(context)
+def run_in(context: typer.Context) -> None:
+    """Let messages name options as the command of a context has them."""
+    _RUNNING.set(context)
 
 
 def spelled(message: Message | RockingError | str) -> str:

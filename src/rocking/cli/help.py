@@ -1,0 +1,138 @@
+"""Help of the commands in plain text, and the options that all commands have."""
+
+from collections.abc import Callable
+from contextvars import ContextVar
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand
+
+from rocking.cli.spelling import run_in
+
+OUTPUT = "Output"
+_PANELS = ("Arguments", "Options", "Ground motion", "Block dimensions", "Computation", OUTPUT)
+_RARE = {
+    "mass", "centre", "moment_of_inertia", "seed", "count", "threads", "quiet", "verbose", "name", "crossing",
+    "crossing_curves", "skip", "start_height", "start_velocity", "bounce", "normal_restitution", "identities",
+    "check_identities", "address", "executor", "damping", "least_barrier", "min_barrier", "bisections", "levels_rare",
+}  # fmt: skip
+"""Options that --help-all shows and --help does not."""
+_METAVARS = {
+    "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motion": "MOTION", "units": "UNITS", "which": "SET",
+    "synthetic": "FAMILY", "periods": "LIST", "data": "FOLDER", "host": "ADDRESS", "inputs": "FOLDER",
+    **dict.fromkeys(("count", "seed", "threads", "workers", "port", "samples", "bisections", "points"), "N"),
+}  # fmt: skip
+_WIDTH = 24  # of the column of names
+
+
+class Output:
+    """Messages on standard error that the user has chosen, for the command that runs."""
+
+    quiet: ContextVar[bool] = ContextVar("no progress and no notes", default=False)
+    verbose: ContextVar[bool] = ContextVar("version, time, and the traceback of an error", default=False)
+
+
+def _set(variable: ContextVar[bool]) -> Callable[[bool], None]:
+    def change(value: bool) -> None:
+        variable.set(value)
+
+    return change
+
+
+def _show_all(context: typer.Context, value: bool) -> None:
+    if value:
+        context.meta["rocking.help_all"] = True
+        typer.echo(context.get_help())
+        raise typer.Exit
+
+
+COMMON = {
+    "quiet": typer.Option(
+        "-q", "--quiet", expose_value=False, callback=_set(Output.quiet), rich_help_panel=OUTPUT,
+        help="Suppress progress and notes.",
+    ),
+    "verbose": typer.Option(
+        "-v", "--verbose", expose_value=False, callback=_set(Output.verbose), rich_help_panel=OUTPUT,
+        help="Show version and elapsed time; show the traceback of an error.",
+    ),
+    "help_all": typer.Option(
+        "--help-all", expose_value=False, is_eager=True, callback=_show_all, rich_help_panel=OUTPUT,
+        help="Show all options.",
+    ),
+}  # fmt: skip
+"""Options of every command, by their name."""
+
+
+def with_common(command: Callable[..., None]) -> Callable[..., None]:
+    """Return the command with the options that all commands have."""
+    own = signature(command).parameters.values()
+
+    @wraps(command)
+    def called(**values: Any) -> None:
+        command(**values)
+
+    annotations = {name: Annotated[bool, option] for name, option in COMMON.items()}
+    called.__signature__ = Signature([  # type: ignore[attr-defined]
+        *(parameter.replace(kind=Parameter.KEYWORD_ONLY) for parameter in own),
+        *(Parameter(n, Parameter.KEYWORD_ONLY, default=False, annotation=a) for n, a in annotations.items()),
+    ])  # fmt: skip
+    called.__annotations__ = {**command.__annotations__, **annotations}
+    return called
+
+
+class Command(TyperCommand):
+    """A command with help in plain text; messages name its options as they are typed."""
+
+    def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # typer brings click with it
+        run_in(context)
+        return super().invoke(context)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write usage, summary and options by panel; rare options with --help-all only."""
+        self.format_usage(ctx, formatter)
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(self.help or "")
+        is_complete = "rocking.help_all" in ctx.meta
+        shown = [one for one in self.get_params(ctx) if not getattr(one, "hidden", False)]
+        rare = [one for one in shown if one.param_type_name == "option" and one.name in _RARE]
+        panels: dict[str, list[tuple[str, str]]] = {}
+        for parameter in shown:
+            if is_complete or parameter not in rare:
+                panels.setdefault(_panel(parameter), []).append((_names(parameter), _text(parameter)))
+        for panel in sorted(panels, key=lambda name: _PANELS.index(name) if name in _PANELS else 1):
+            with formatter.section(panel):
+                formatter.write_dl([(f"{names:<{_WIDTH}}", text) for names, text in panels[panel]], col_max=_WIDTH)
+        if rare and not is_complete:
+            formatter.write_paragraph()
+            formatter.write_text(f"More options: {ctx.command_path} --help-all")
+        if self.epilog:
+            formatter.write_paragraph()
+            formatter.write_text(self.epilog)
+
+
+def _panel(parameter: Any) -> str:
+    if parameter.param_type_name == "argument":
+        return "Arguments"
+    if parameter.name == "help":
+        return OUTPUT
+    return getattr(parameter, "rich_help_panel", None) or "Options"
+
+
+def _names(parameter: Any) -> str:
+    if parameter.param_type_name == "argument":
+        return f"{parameter.name.upper()}{'' if parameter.nargs == 1 else '...'}"
+    names = ", ".join(sorted(parameter.opts, key=len))
+    if parameter.is_flag:
+        return names
+    return f"{names} {_METAVARS.get(parameter.name, 'VALUE')}"
+
+
+def _text(parameter: Any) -> str:
+    text = (parameter.help or "").replace("\\[", "[")
+    default = parameter.default
+    if parameter.param_type_name == "argument" or isinstance(default, bool) or default in (None, "", [], ()):
+        return text
+    return f"{text}  [default: {default}]"
