@@ -23,25 +23,23 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them reads every installed distribution
     from typer import BadParameter
 
-    from rocking.cli.application import application
+    from rocking.cli.application import SUBCOMMANDS, application
+    from rocking.cli.help import Output
     from rocking.cli.spelling import no_command, spelled
     from rocking.errors import RockingError, SlowEngineWarning
 
     click_exception: Any = BadParameter.__mro__[2]  # versions of typer differ in where they keep click
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     no_command()
+    Output.reset()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Notes()
-            if os.environ.get("ROCKING_MODELS"):
-                from rocking.restitution.from_file import register_own
-
-                register_own()
-            # without arguments the help is the answer
-            code = application(arguments)(
-                args=arguments or ["--help"], prog_name="rocking", standalone_mode=False, obj=main
-            )
+            _register_own_models()
+            # without a command the help is the answer
+            words = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
+            code = application(arguments)(args=words, prog_name="rocking", standalone_mode=False, obj=main)
     except RockingError as error:
         refusal = error.without_file(unnamed_file)
     except click_exception as error:
@@ -54,18 +52,33 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
-    except Exception as error:
-        from rocking.restitution.from_file import in_own_model
-
-        if not (sentence := in_own_model(error)):
-            raise
-        refusal = RockingError(sentence)
+    except Exception as error:  # noqa: BLE001 - raised again unless it is of an own model
+        refusal = _of_own_model(error)
     else:
+        Output.finish()
         sys.exit(code or 0)
+    Output.finish(refusal)
     sentence = spelled(refusal)
-    as_data = {"error": {**refusal.data(), "message": sentence}} if "--json" in arguments else None
-    print(json.dumps(as_data) if as_data else f"rocking: {sentence}", file=sys.stderr)
+    as_json = json.dumps({"error": {**refusal.data(), "message": sentence}}) if "--json" in arguments else ""
+    print(as_json or f"rocking: {sentence}", file=sys.stderr)
     sys.exit(2)
+
+
+def _of_own_model(error: Exception) -> "RockingError":
+    """Return an error of a user's own model; raise any other again."""
+    from rocking.errors import RockingError
+    from rocking.restitution.from_file import in_own_model
+
+    if not (sentence := in_own_model(error)):
+        raise error
+    return RockingError(sentence)
+
+
+def _register_own_models() -> None:
+    if os.environ.get("ROCKING_MODELS"):
+        from rocking.restitution.from_file import register_own
+
+        register_own()
 
 
 def _help_of(error: Any) -> str:
@@ -105,6 +118,8 @@ class _Notes:
         self.sentences: set[str] = set()
 
     def __call__(self, message: Warning | str, *where: object, **more: object) -> None:
-        if str(message) not in self.sentences:
+        from rocking.cli.help import Output
+
+        if str(message) not in self.sentences and not Output.quiet.get():
             self.sentences.add(str(message))
             print(f"rocking: note: {message}", file=sys.stderr)

@@ -55,6 +55,7 @@ RECORD = {
     "convert": "Write a record in another format; apply processing steps.",
     "formats": "List the record formats.",
 }
+SUBCOMMANDS = ("record", "measurements", "campaign")
 _MODULES = {"assess": "predict", "models": "catalogues", "record formats": "catalogues"}
 
 
@@ -124,7 +125,7 @@ def _add(app: typer.Typer, name: str, summary: str, panel: str, second: str | No
             called = second is None or one == second
             command = with_common(_command(f"{name} {one}")) if called else _nothing
             group.command(one, cls=Command if called else None, help=about)(command)
-    elif name in {"measurements", "campaign"}:
+    elif name in SUBCOMMANDS:
         group = getattr(import_module(f"rocking.cli.{name}"), name)
         for registered in group.registered_commands:
             registered.cls = Command

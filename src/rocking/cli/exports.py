@@ -103,7 +103,14 @@ def _possible(kinds: dict[str, Export]) -> str:
 
 def described(kinds: dict[str, Export]) -> str:
     """Return the kinds of files, for the help of `--output`."""
-    return f"Write a file, again for more; its ending says what: {_possible(kinds)}."
+    endings = dict.fromkeys(ending for export in kinds.values() for ending in export.endings)
+    seen: set[str] = set()
+    named = []
+    for name, export in kinds.items():
+        named += [f"{name}=FILE"] if seen & set(export.endings) else []
+        seen |= set(export.endings)
+    also = f"; or {', '.join(named)}" if named else ""
+    return f"File, by extension: {', '.join(endings)}{also}; repeatable."
 
 
 def _or(endings: Sequence[str]) -> str:

@@ -1,30 +1,35 @@
 """Help of the commands in plain text, and the options that all commands have."""
 
+import sys
+import time
+import traceback
 from collections.abc import Callable
 from contextvars import ContextVar
 from functools import wraps
 from inspect import Parameter, Signature, signature
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import typer
 from typer.core import TyperCommand
 
 from rocking.cli.spelling import run_in
 
-OUTPUT = "Output"
-_PANELS = ("Arguments", "Options", "Ground motion", "Block dimensions", "Computation", OUTPUT)
+SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
+_PANELS = ("Arguments", "Options", SHAKING, SIZE, HOW, OUTPUT)
 _RARE = {
     "mass", "centre", "moment_of_inertia", "seed", "count", "threads", "quiet", "verbose", "name", "crossing",
-    "crossing_curves", "skip", "start_height", "start_velocity", "bounce", "normal_restitution", "identities",
-    "check_identities", "address", "executor", "damping", "least_barrier", "min_barrier", "bisections", "levels_rare",
+    "crossing_curves", "help_all", "start_height", "start_velocity", "bounce", "normal_restitution", "identities",
+    "check_identities", "address", "executor", "damping", "least_barrier", "min_barrier", "bisections", "samples",
+    "points",
 }  # fmt: skip
 """Options that --help-all shows and --help does not."""
 _METAVARS = {
-    "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motion": "MOTION", "units": "UNITS", "which": "SET",
+    "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motions": "MOTION", "motion": "MOTION",
+    "units": "UNITS",
     "synthetic": "FAMILY", "periods": "LIST", "data": "FOLDER", "host": "ADDRESS", "inputs": "FOLDER",
     **dict.fromkeys(("count", "seed", "threads", "workers", "port", "samples", "bisections", "points"), "N"),
 }  # fmt: skip
-_WIDTH = 24  # of the column of names
+_WIDTH = 20  # of the column of names
 
 
 class Output:
@@ -32,6 +37,26 @@ class Output:
 
     quiet: ContextVar[bool] = ContextVar("no progress and no notes", default=False)
     verbose: ContextVar[bool] = ContextVar("version, time, and the traceback of an error", default=False)
+    began: ClassVar[float] = 0.0  # [s]
+
+    @classmethod
+    def reset(cls) -> None:
+        """Set the defaults at the beginning of a command."""
+        cls.quiet.set(False)
+        cls.verbose.set(False)
+        cls.began = time.monotonic()
+
+    @classmethod
+    def finish(cls, error: BaseException | None = None) -> None:
+        """Write the version and the elapsed time, or the traceback of an error, if they are wanted."""
+        if not cls.verbose.get():
+            return
+        if error is None:
+            from rocking.version import SOFTWARE
+
+            print(f"{SOFTWARE}, {time.monotonic() - cls.began:.1f} s", file=sys.stderr)
+        else:
+            traceback.print_exception(error)
 
 
 def _set(variable: ContextVar[bool]) -> Callable[[bool], None]:
@@ -68,6 +93,8 @@ COMMON = {
 def with_common(command: Callable[..., None]) -> Callable[..., None]:
     """Return the command with the options that all commands have."""
     own = signature(command).parameters.values()
+    if COMMON.keys() <= signature(command).parameters.keys():  # a group is used again
+        return command
 
     @wraps(command)
     def called(**values: Any) -> None:
@@ -102,12 +129,14 @@ class Command(TyperCommand):
         for parameter in shown:
             if is_complete or parameter not in rare:
                 panels.setdefault(_panel(parameter), []).append((_names(parameter), _text(parameter)))
+        if not is_complete and (sizes := panels.get(SIZE)):
+            panels[SIZE] = [("In place of a file", " ".join(names.partition(" ")[0] for names, _ in sizes))]
         for panel in sorted(panels, key=lambda name: _PANELS.index(name) if name in _PANELS else 1):
             with formatter.section(panel):
                 formatter.write_dl([(f"{names:<{_WIDTH}}", text) for names, text in panels[panel]], col_max=_WIDTH)
         if rare and not is_complete:
             formatter.write_paragraph()
-            formatter.write_text(f"More options: {ctx.command_path} --help-all")
+            formatter.write_text(f"All options and their units: {ctx.command_path} --help-all")
         if self.epilog:
             formatter.write_paragraph()
             formatter.write_text(self.epilog)

@@ -10,6 +10,7 @@ from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats.schema import BLOCK_KEYS, BlockTable
 from rocking.cli import completion
+from rocking.cli.help import HOW, OUTPUT, SHAKING, SIZE
 from rocking.conventions import DEFAULT_RESTITUTION, UNITS
 from rocking.spec.documents.prediction import PredictTable
 from rocking.spec.fields import Values, kinds_of, meaning_and_unit
@@ -21,11 +22,10 @@ if TYPE_CHECKING:
 
 Options = dict[str, tuple[Any, Any]]  # annotation and default of options by name
 NONE: Mapping[str, Any] = {}
-SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
 
 
-ROW = ": FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C"
-"""What the help of a key of numbers goes on with."""
+ROW = ": FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C"
+"""End of the help of a key with a list of numbers."""
 
 
 def key(table: type[Any], name: str, more: str = "", **options: Any) -> Any:
@@ -88,65 +88,57 @@ def _type_of(field: "FieldInfo") -> Any:
 Density = Annotated[float | None, typer.Option(help=r"Density of a block or a mesh \[kg/m3].", rich_help_panel=SIZE)]
 Units = Annotated[
     str | None,
-    typer.Option(
-        help="Units: of lengths m, cm, mm, ft, in; of a record m/s2, cm/s2, mm/s2, gal, g, g/10, mg; or mm,g."
-    ),
+    typer.Option(help="Length unit, record unit or both: mm; gal; mm,g."),
 ]
 SIZES = {**keys(BlockTable, *BLOCK_KEYS, panel=SIZE), "density": (Density, None), "units": (Units, None)}
 """The sizes of a block, in place of a body file."""
 SEVERAL_SIZES = keys(BlockTable, panel=SIZE, kind=str, width=": A,B,C", height=": A,B,C")
 
 
-RecordUnits = Annotated[
-    str | None, typer.Option("--units", help="Unit of the record: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")
-]
+RecordUnits = Annotated[str | None, typer.Option("--units", help="Record unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")]
 Set = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         autocompletion=completion.keys,
-        help="A key of the question's file, again for more: settings.gravity=9.81, settings.linear=true, "
-        "motion.time_step=0.01, body.up=y; the manual lists them all.",
+        help="Input-file key, such as settings.gravity=9.81; repeatable.",
         rich_help_panel=HOW,
     ),
 ]
 Friction = Annotated[float | None, key(StudySettingsTable, "friction", rich_help_panel=HOW)]
-Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=HOW)]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=OUTPUT)]
+Threads = Annotated[int | None, typer.Option(help="Number of threads.", rich_help_panel=HOW)]
+AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.", rich_help_panel=OUTPUT)]
 
-Details = Annotated[
-    bool, typer.Option("--details", help="Print all models, tables and values.", rich_help_panel=OUTPUT)
-]
+Details = Annotated[bool, typer.Option("--details", help="All models, tables and values.", rich_help_panel=OUTPUT)]
 
-_BODIES = "TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB"
-BodyFile = Annotated[str | None, typer.Argument(help=f"Body file: {_BODIES}; left out with --width.")]
+BodyFile = Annotated[str | None, typer.Argument(help="Body file: TOML, WKT, GeoJSON, DXF, STL, OBJ, PLY, GLB.")]
 Record = Annotated[
     str | None,
     typer.Argument(
-        help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8.",
+        help="Record file, FILE#COMPONENT or pulse, such as sine:amplitude=3,period=0.8.",
         autocompletion=completion.pulses,
     ),
 ]
 Motion = Annotated[
     list[str] | None,
     typer.Option(
-        help="The same, as an option; along an axis x=FILE, y=FILE and z=FILE, which is up.",
+        help="Record or pulse; components: x=FILE, y=FILE, z=FILE.",
         autocompletion=completion.pulses,
     ),
 ]
 Motions = Annotated[
     list[str] | None,
-    typer.Option("--motion", help="The same, as an option; again for more.", autocompletion=completion.pulses),
+    typer.Option("--motion", help="Record or pulse; repeatable.", autocompletion=completion.pulses),
 ]
 SeveralRecords = Annotated[
     list[str] | None,
-    typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=3,period=0.8."),
+    typer.Argument(help="Record files, FILE#COMPONENT or pulses, such as sine:amplitude=3,period=0.8."),
 ]
 SeveralMotions = Annotated[
     list[str] | None,
     typer.Option(
         "--motion",
-        help="The same, as an option; again for more; or x=FILE, y=FILE and z=FILE of one, again for the next.",
+        help="Record or pulse; repeatable; components: x=FILE, y=FILE, z=FILE.",
         autocompletion=completion.pulses,
     ),
 ]
@@ -164,26 +156,26 @@ Restitutions = Annotated[
         autocompletion=completion.models,
     ),
 ]
-MeasuredRestitution = Annotated[
-    str | None, typer.Option(help="Model or coefficient; what measurements say of the body if not given.")
+MeasuredRestitution = Annotated[str | None, typer.Option(help="Model or coefficient.  [default: calibrated, sampled]")]
+FrictionOfRange = Annotated[
+    float | None, typer.Option(help=r"Coefficient of friction \[-].  [default: 0.3 to 0.8, uniform]")
 ]
-FrictionOfRange = Annotated[float | None, typer.Option(help=r"Coefficient of friction; 0.3 to 0.8 if not given \[-].")]
 Family = Annotated[
     str | None,
     typer.Option(
-        help="Family of motions in their place: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like.",
+        help="Synthetic motions: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like.",
         rich_help_panel=SHAKING,
     ),
 ]
 Seed = Annotated[
-    int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=SHAKING)
+    int | None, typer.Option(help="Random seed of the synthetic motions.  [default: 1]", rich_help_panel=SHAKING)
 ]
 ScaledToPeak = Annotated[str | None, key(PredictTable, "pga", rich_help_panel=SHAKING)]
 
 
 def count(usual: int, panel: str = SHAKING) -> Any:
     """Return the option of how many synthetic motions there are."""
-    return typer.Option(help=f"How many synthetic motions, {usual} if not given.", rich_help_panel=panel)
+    return typer.Option(help=f"Number of synthetic motions.  [default: {usual}]", rich_help_panel=panel)
 
 
 def output(kinds: dict[str, Any] | str) -> Any:

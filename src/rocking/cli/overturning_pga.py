@@ -9,6 +9,7 @@ from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
 from rocking.cli.compared import model_facts, show_models, with_models
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
+from rocking.cli.help import HOW
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver, sentence
 from rocking.conventions import g, percent
@@ -49,7 +50,7 @@ EXPORTS = {"picture": DRAWN, "csv": Export((".csv",), _write_csv)}
 
 @options.takes(
     options.keys(MinimumTable, min_pga=": 0.1g, 1m/s2", max_pga=": 5g"),
-    options.keys(MinimumTable, "samples", "bisections", panel=options.HOW),
+    options.keys(MinimumTable, "samples", "bisections", panel=HOW),
     options.SIZES,
 )
 def overturning_pga(

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from rocking.cli.help import Output
 from rocking.cli.spelling import spelled
 from rocking.messages import Message
 
@@ -179,7 +180,7 @@ def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator
 
     A terminal has a bar, a file or a pipe a line every `SECONDS`.
     """
-    if quiet:
+    if quiet or Output.quiet.get():
         yield lambda done, now="": None
         return
     if not sys.stderr.isatty():

@@ -1,7 +1,6 @@
 """Errors and hints in the words of the command line: its own options, and --set for keys without one."""
 
 from contextvars import ContextVar
-from typing import Any
 
 import typer
 
