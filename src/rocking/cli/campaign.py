@@ -8,40 +8,39 @@ import typer
 from rocking.cli import options
 
 _CODES = (
-    "Exit codes: 0 done; 2 bad input, or nothing to export yet; 3 interrupted, what is finished is safe; "
-    "4 the disk is full or cannot be written; 5 another process runs this campaign; "
-    "6 something is damaged, or verify found it missing."
+    "Exit codes: 0 done; 2 invalid input, or no result to export; 3 interrupted, finished results are kept; "
+    "4 disk full or read-only; 5 the campaign runs in another process; 6 damaged or missing results."
 )
 
 campaign = typer.Typer(
     name="campaign",
-    help="Compute very many histories that a job file (TOML) describes; stop it, kill it, and resume it.",
+    help="Compute a large study from a job file (TOML); stop and resume it.",
     epilog=_CODES,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     add_completion=False,
 )
 
-JobFile = Annotated[Path, typer.Argument(help="Job file (TOML); files in it are relative to it.")]
+JobFile = Annotated[Path, typer.Argument(help="Job file (TOML); its files are relative to its folder.")]
 Folder = Annotated[Path, typer.Argument(help="Folder of the campaign.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.")]
 Workers = Annotated[
     int | None,
-    typer.Option(min=1, max=4096, help="Processes, or threads of the serial executor; all cores if not given."),
+    typer.Option(min=1, max=4096, help="Number of processes, or of threads with executor serial. [default: all cores]"),
 ]
-Executor = Annotated[str, typer.Option(help="Who computes: serial (this process), processes, or dask.")]
-Address = Annotated[str | None, typer.Option(help="Address of a Dask scheduler that is there: tcp://host:8786.")]
-Inputs = Annotated[Path | None, typer.Option(help="Where the files of the job are now, if they were moved.")]
+Executor = Annotated[str, typer.Option(help="Executor: serial, processes or dask.")]
+Address = Annotated[str | None, typer.Option(help="Address of a running Dask scheduler: tcp://host:8786.")]
+Inputs = Annotated[Path | None, typer.Option(help="Folder of the input files, if they were moved.")]
 
 
 @campaign.command(epilog=_CODES)
 def check(
     job: JobFile,
     output: Annotated[Path | None, options.output("Folder of the campaign, to check the free disk space.")] = None,
-    workers: Annotated[int, typer.Option(min=1, max=4096, help="Cores that would compute.")] = 1,
+    workers: Annotated[int, typer.Option(min=1, max=4096, help="Number of cores.")] = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Read a job and all its files, and say what it will take, from a trial of two seconds."""
+    """Check a job file and its input files; estimate time and disk space."""
     from rocking.cli import campaign_output
 
     with campaign_output.codes():
@@ -57,7 +56,7 @@ def run(
     address: Address = None,
     as_json: AsJson = False,
 ) -> None:
-    """Begin a campaign and compute it; the job is copied into its folder."""
+    """Start a campaign in a new folder, with a copy of the job file."""
     from rocking.campaigns.jobs import Job, JobFolder
     from rocking.cli import campaign_output
 
@@ -75,7 +74,7 @@ def resume(
     inputs: Inputs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Go on with a campaign where it stopped; files that have changed since are refused."""
+    """Resume a campaign; changed input files are refused."""
     from rocking.campaigns.jobs import JobFolder
     from rocking.cli import campaign_output
 
@@ -86,7 +85,7 @@ def resume(
 
 @campaign.command(epilog=_CODES)
 def status(folder: Folder, as_json: AsJson = False) -> None:
-    """Say how far a campaign is, also while another process runs it; what it calls safe was read and is whole."""
+    """Show the progress of a campaign, also while it runs."""
     from rocking.cli import campaign_output
 
     with campaign_output.codes(folder):
@@ -95,7 +94,7 @@ def status(folder: Folder, as_json: AsJson = False) -> None:
 
 @campaign.command(epilog=_CODES)
 def verify(folder: Folder, as_json: AsJson = False) -> None:
-    """Read a campaign as a whole: every result is there once, and every bit is as it was written; resume mends it."""
+    """Verify every result of a campaign; resume repairs it."""
     from rocking.cli import campaign_output
 
     with campaign_output.codes(folder):
@@ -108,26 +107,24 @@ def export(
     output: Annotated[
         list[str],
         options.output(
-            "File, again for more: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; .png, .svg or .pdf for a "
-            "picture; of an inventory .html, .pdf, .xlsx, .csv, .json, or a folder for all. It holds what suits the "
-            "kind; WHAT=FILE says which: histories; picture; of fragility campaigns fragility, fragility-points, "
-            "fema-p58 (.csv); of refined maps refined, boundary; of minimum accelerations crossings, minima; of "
-            "inventories report; of clouds ims; of several restitutions flips, differences."
+            "File: .nc, .parquet, .csv, .mat, .xlsx, .xml (NRML), .png, .svg, .pdf; or CONTENT=FILE with histories, "
+            "picture, fragility, fragility-points, fema-p58, refined, boundary, crossings, minima, report, ims, flips "
+            "or differences; inventories: also .html, .json or a folder; repeatable."
         ),
     ],
     restitution: Annotated[
-        str | None, typer.Option(help="Which restitution's fragility or measures, where the job has several.")
+        str | None, typer.Option(help="Restitution model of the fragility or the intensity measures.")
     ] = None,
     crossing_curves: Annotated[
         str | None,
         typer.Option(
-            help="Fragility curves that cross: keep-uplift, common-dispersion or refuse; that of the job if not given."
+            help="Fragility curves that cross: keep-uplift, common-dispersion or refuse. [default: as in the job]"
         ),
     ] = None,
     inputs: Inputs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Write the results of a finished campaign into files, with where they come from."""
+    """Export the results of a finished campaign, with their provenance."""
     from rocking.cli import campaign_output
     from rocking.cli.campaign_export import write
 

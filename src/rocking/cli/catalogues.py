@@ -10,15 +10,13 @@ from rocking.answers import Answer
 from rocking.cli import completion
 from rocking.cli.page import Page, deliver
 
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.")]
 
 
 def models(
     name: Annotated[
         str | None,
-        typer.Argument(
-            help="One model, or my_file.py:MyModel; all if left out.", autocompletion=completion.every_model
-        ),
+        typer.Argument(help="Model or FILE.py:MODEL. [default: all models]", autocompletion=completion.every_model),
     ] = None,
     as_json: AsJson = False,
 ) -> None:

@@ -63,22 +63,15 @@ def code_checks(
     synthetic: options.Family = None,
     count: Annotated[int | None, options.count(COUNT)] = None,
     seed: options.Seed = None,
-    im: Annotated[
-        str, typer.Option(help="Intensity that the motions are brought to, as of rocking fragility.")
-    ] = "pga/(g tan alpha)",
+    im: Annotated[str, typer.Option(help="Intensity measure, see rocking fragility.")] = "pga/(g tan alpha)",
     levels: Annotated[
         str | None,
-        typer.Option(
-            help="FIRST:LAST:COUNT, with :log for equal ratios, or A,B,C; records as they are if not given, synthetic "
-            "motions at 2, the limit of the Italian linear check."
-        ),
+        typer.Option(help="Intensity levels: FIRST:LAST:COUNT or A,B,C. [default: as recorded; synthetic motions: 2]"),
     ] = None,
     restitution: options.Restitution = None,
     slenderness: Annotated[
         str | None,
-        typer.Option(
-            help="Height over width, in place of widths, for every height: 4,5.", rich_help_panel=options.SIZE
-        ),
+        typer.Option(help="Height over width, in place of --width: 4,5.", rich_help_panel=options.SIZE),
     ] = None,
     sets: options.Set = None,
     friction: options.Friction = None,

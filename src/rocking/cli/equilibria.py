@@ -36,7 +36,7 @@ def equilibria(
     body: options.BodyFile = None,
     density: options.Density = None,
     units: options.Units = None,
-    min_barrier: Annotated[float | None, typer.Option(help="Ignore poses below this energy barrier [m].")] = None,
+    min_barrier: Annotated[float | None, typer.Option(help=r"Lowest energy barrier of a pose \[m].")] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,

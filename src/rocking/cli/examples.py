@@ -21,11 +21,11 @@ def examples(
     context: typer.Context,
     name: Annotated[
         str | None,
-        typer.Argument(help="One example; all are listed if left out.", autocompletion=completion.examples),
+        typer.Argument(help="Name of an example. [default: list of all examples]", autocompletion=completion.examples),
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="List the files and commands; run nothing.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Write over files of the same names.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print as JSON what there is, and run nothing.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Dry run: list files and commands.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite existing files.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="List as JSON; run nothing.")] = False,
 ) -> None:
     """Run `rocking examples`."""
     known = catalogue()

@@ -110,7 +110,7 @@ def described(kinds: dict[str, Export]) -> str:
         named += [f"{name}=FILE"] if seen & set(export.endings) else []
         seen |= set(export.endings)
     also = f"; or {', '.join(named)}" if named else ""
-    return f"File, by extension: {', '.join(endings)}{also}; repeatable."
+    return f"File: {', '.join(endings)}{also}; repeatable."
 
 
 def _or(endings: Sequence[str]) -> str:

@@ -62,7 +62,7 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
         "levels",
         "limit_states",
         "scale",
-        levels=f"{options.ROW}; with units, 0.05g:1g:20",
+        levels=": FIRST:LAST:COUNT or A,B,C",
         limit_states=": 0.2,0.5 or 0.5,overturning",
     ),
     before="restitution",
@@ -73,7 +73,7 @@ def fragility(
     body: options.BodyFile = None,
     record: Annotated[
         list[str] | None,
-        typer.Argument(help="Record files, file#COMPONENT, or pulses such as sine:amplitude=1,period=0.5."),
+        typer.Argument(help="Record files, folders, FILE#COMPONENT or pulses."),
     ] = None,
     motion: options.SeveralMotions = None,
     synthetic: options.Family = None,
@@ -82,8 +82,7 @@ def fragility(
     analysis: Annotated[
         str,
         typer.Option(
-            help="stripes: every motion at every level; incremental: and every level at which one begins or ceases to "
-            "overturn; cloud: motions as they are."
+            help="stripes, incremental or cloud."
         ),
     ] = "stripes",
     restitution: options.Restitutions = None,
@@ -92,13 +91,12 @@ def fragility(
     threads: options.Threads = None,
     name: Annotated[
         str | None,
-        typer.Option(help="Name of the body in the files; its kind if not given.", rich_help_panel=options.OUTPUT),
+        typer.Option(help="Name of the body in the files. [default: its kind]", rich_help_panel=options.OUTPUT),
     ] = None,
     crossing_curves: Annotated[
         str,
         typer.Option(
-            help="Curves that cross: keep-uplift, one dispersion for all states but rocking; common-dispersion, one for"
-            " all states, always; refuse, each state alone, and no files for FEMA P-58, PELICUN and OpenQuake.",
+            help="Curves that cross: keep-uplift, common-dispersion or refuse.",
             rich_help_panel=options.OUTPUT,
         ),
     ] = ExportTable.model_fields["crossing_curves"].default,

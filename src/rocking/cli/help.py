@@ -164,4 +164,4 @@ def _text(parameter: Any) -> str:
     default = parameter.default
     if parameter.param_type_name == "argument" or isinstance(default, bool) or default in (None, "", [], ()):
         return text
-    return f"{text}  [default: {default}]"
+    return f"{text} [default: {default}]"

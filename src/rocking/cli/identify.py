@@ -44,17 +44,17 @@ EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF, "excel": Export((".xlsx",),
 def identify(
     context: typer.Context,
     body: Annotated[
-        str | None, typer.Argument(help="Body file, or a question's file; left out with --width, or if unknown.")
+        str | None, typer.Argument(help="Body file or input file; omit with --width, or if unknown.")
     ] = None,
     record: Annotated[
         str | None,
-        typer.Argument(help="What was measured: sound (.wav, .flac), video (.mp4), table (.csv, .xlsx), or a folder."),
+        typer.Argument(help="Measurement: sound (.wav, .flac), video (.mp4), table (.csv, .xlsx) or folder."),
     ] = None,
     motion: Annotated[
-        list[str] | None, typer.Option(help="Record of the ground under it, or a pulse, if it did not rock freely.")
+        list[str] | None, typer.Option(help="Ground motion during the measurement: record or pulse.")
     ] = None,
     sets: options.Set = None,
-    workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Processes, for a folder.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Number of processes for a folder.")] = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,
 ) -> None:

@@ -33,28 +33,27 @@ _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 )
 def inventory(
     context: typer.Context,
-    objects: Annotated[
-        Path, typer.Argument(help="List as .xlsx, .ods or CSV: name, width, depth, height and more, with units.")
-    ],
+    objects: Annotated[Path, typer.Argument(help="Object list: .xlsx, .ods or CSV, with name, width, depth, height.")],
     motion: Annotated[
         list[str] | None,
-        typer.Option(help="Record file, again for more; as recorded without a level.", rich_help_panel=_SHAKING),
+        typer.Option(help="Record file; repeatable.", rich_help_panel=_SHAKING),
     ] = None,
     synthetic: Annotated[
         str | None,
         typer.Option(
-            help="Family of motions: firm-ground (default), soft-ground, kanai-tajimi, point-source, pulse-like.",
+            help="Synthetic motions: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like. "
+            "[default: firm-ground]",
             rich_help_panel=_SHAKING,
         ),
     ] = None,
     count: Annotated[int | None, options.count(200, _SHAKING)] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
+        int | None, typer.Option(help="Random seed of the synthetic motions. [default: 1]", rich_help_panel=_SHAKING)
     ] = None,
     restitution: Annotated[
         str | None,
         typer.Option(
-            help="Model as in rocking models, or a coefficient; calibrated if not given, in three dimensions ked.",
+            help="Model or coefficient. [default: calibrated]",
             autocompletion=completion.models,
         ),
     ] = None,
@@ -63,7 +62,7 @@ def inventory(
     sets: options.Set = None,
     output: Annotated[
         list[str] | None,
-        options.output("Folder for the report in all forms, or a file: .html, .pdf, .xlsx, .csv, .json; repeatable."),
+        options.output("Folder for all reports, or file: .html, .pdf, .xlsx, .csv, .json; repeatable."),
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:

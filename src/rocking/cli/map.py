@@ -38,10 +38,7 @@ _CHANGES = {
 _FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
 _LAST = 3  # overturning after more impacts than that is printed together; JSON parts it
 
-_AXIS = (
-    ": NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one, "
-    "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16"
-)
+_AXIS = ": NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as pga=0.1g:1g:50"
 
 
 @options.takes(options.SIZES)

@@ -16,15 +16,13 @@ if TYPE_CHECKING:
 
 Selection = Annotated[
     list[str] | None,
-    typer.Argument(
-        help="Which measurements: published, own (what was added), table1, S, M, L, or files (.toml, .csv)."
-    ),
+    typer.Argument(help="Measurements: published, own, table1, S, M, L, or files (.toml, .csv)."),
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.")]
 
 measurements = typer.Typer(
     name="measurements",
-    help="Add measured coefficients of restitution, list them, and see what all of them say of the models.",
+    help="Add and list measured coefficients; calibrate the models.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     add_completion=False,
@@ -33,10 +31,10 @@ measurements = typer.Typer(
 
 @measurements.command()
 def add(
-    file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV, see the manual.")],
+    file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV.")],
     as_json: AsJson = False,
 ) -> None:
-    """Check a file of measurements and add a copy of it to your own evidence; the package is never changed."""
+    """Check a file of measurements; add a copy to the own measurements."""
     from rocking.evidence import store
 
     deliver(AddedAnswer(*store.add(file)), as_json=as_json)
@@ -44,7 +42,7 @@ def add(
 
 @measurements.command(name="list")
 def list_(as_json: AsJson = False) -> None:
-    """Print the published measurements and your own: who measured what, and how many."""
+    """List the published and own measurements."""
     from rocking.evidence import store
     from rocking.evidence.measurements import GROUPS, datasets
 
@@ -54,7 +52,7 @@ def list_(as_json: AsJson = False) -> None:
 
 @measurements.command()
 def calibrate(which: Selection = None, as_json: AsJson = False) -> None:
-    """Print how all models fare on measurements, and the calibration for a body on an interface that is new."""
+    """Calibrate the models; compare them with measurements."""
     from rocking.evidence import league, store
     from rocking.evidence.hierarchy import calibrate_hierarchy, left_out_groups
 

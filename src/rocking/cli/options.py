@@ -101,7 +101,7 @@ Set = Annotated[
     typer.Option(
         "--set",
         autocompletion=completion.keys,
-        help="Input-file key, such as settings.gravity=9.81; repeatable.",
+        help="Input-file key: settings.gravity=9.81; repeatable.",
         rich_help_panel=HOW,
     ),
 ]
@@ -111,18 +111,18 @@ AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.", rich_hel
 
 Details = Annotated[bool, typer.Option("--details", help="All models, tables and values.", rich_help_panel=OUTPUT)]
 
-BodyFile = Annotated[str | None, typer.Argument(help="Body file: TOML, WKT, GeoJSON, DXF, STL, OBJ, PLY, GLB.")]
+BodyFile = Annotated[str | None, typer.Argument(help="Body: TOML, WKT, GeoJSON, DXF, STL, OBJ, PLY or GLB.")]
 Record = Annotated[
     str | None,
     typer.Argument(
-        help="Record file, FILE#COMPONENT or pulse, such as sine:amplitude=3,period=0.8.",
+        help="Record file, FILE#COMPONENT or pulse: sine:amplitude=3,period=0.8.",
         autocompletion=completion.pulses,
     ),
 ]
 Motion = Annotated[
     list[str] | None,
     typer.Option(
-        help="Record or pulse; components: x=FILE, y=FILE, z=FILE.",
+        help="Record or pulse; components x=FILE, y=FILE, z=FILE.",
         autocompletion=completion.pulses,
     ),
 ]
@@ -132,34 +132,32 @@ Motions = Annotated[
 ]
 SeveralRecords = Annotated[
     list[str] | None,
-    typer.Argument(help="Record files, FILE#COMPONENT or pulses, such as sine:amplitude=3,period=0.8."),
+    typer.Argument(help="Record files, folders, FILE#COMPONENT or pulses."),
 ]
 SeveralMotions = Annotated[
     list[str] | None,
     typer.Option(
         "--motion",
-        help="Record or pulse; repeatable; components: x=FILE, y=FILE, z=FILE.",
+        help="Record or pulse; or x=FILE y=FILE z=FILE; repeatable.",
         autocompletion=completion.pulses,
     ),
 ]
 Restitution = Annotated[
     str | None,
     typer.Option(
-        help=rf"Model as in rocking models, my_file.py:MyModel, or a coefficient \[default: {DEFAULT_RESTITUTION}].",
+        help=f"Model, FILE.py:MODEL or coefficient. [default: {DEFAULT_RESTITUTION}]",
         autocompletion=completion.models,
     ),
 ]
 Restitutions = Annotated[
     list[str] | None,
     typer.Option(
-        help=rf"Model as in rocking models, or a coefficient; again for more \[default: {DEFAULT_RESTITUTION}].",
+        help=f"Model or coefficient; repeatable. [default: {DEFAULT_RESTITUTION}]",
         autocompletion=completion.models,
     ),
 ]
-MeasuredRestitution = Annotated[str | None, typer.Option(help="Model or coefficient.  [default: calibrated, sampled]")]
-FrictionOfRange = Annotated[
-    float | None, typer.Option(help=r"Coefficient of friction \[-].  [default: 0.3 to 0.8, uniform]")
-]
+MeasuredRestitution = Annotated[str | None, typer.Option(help="Model or coefficient. [default: calibrated, sampled]")]
+FrictionOfRange = Annotated[float | None, typer.Option(help=r"Coefficient of friction \[-]. [default: 0.3 to 0.8]")]
 Family = Annotated[
     str | None,
     typer.Option(
@@ -168,14 +166,14 @@ Family = Annotated[
     ),
 ]
 Seed = Annotated[
-    int | None, typer.Option(help="Random seed of the synthetic motions.  [default: 1]", rich_help_panel=SHAKING)
+    int | None, typer.Option(help="Random seed of the synthetic motions. [default: 1]", rich_help_panel=SHAKING)
 ]
 ScaledToPeak = Annotated[str | None, key(PredictTable, "pga", rich_help_panel=SHAKING)]
 
 
 def count(usual: int, panel: str = SHAKING) -> Any:
     """Return the option of how many synthetic motions there are."""
-    return typer.Option(help=f"Number of synthetic motions.  [default: {usual}]", rich_help_panel=panel)
+    return typer.Option(help=f"Number of synthetic motions. [default: {usual}]", rich_help_panel=panel)
 
 
 def output(kinds: dict[str, Any] | str) -> Any:

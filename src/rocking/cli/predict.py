@@ -157,7 +157,7 @@ def assess(
     seed: options.Seed = None,
     pga: options.ScaledToPeak = None,
     restitution: Annotated[
-        list[str] | None, typer.Option(help="Model or coefficient, again for more; all models if none.")
+        list[str] | None, typer.Option(help="Model or coefficient; repeatable. [default: all models]")
     ] = None,
     friction: options.FrictionOfRange = None,
     sets: options.Set = None,

@@ -57,19 +57,17 @@ def record_batch(
     context: typer.Context,
     record: Annotated[
         list[str],
-        typer.Argument(
-            help=r"Folder, pattern in quotes, or list of records in a .csv file; several files; a TOML with \[motions]."
-        ),
+        typer.Argument(help=r"Folder, quoted pattern, record files, list of records (.csv) or TOML with \[motions]."),
     ],
     units: options.RecordUnits = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectra.")] = 0.05,
     periods: Annotated[
         str | None,
-        typer.Option(help=r"Periods of the spectra, with commas between \[s]; 30 from 0.02 to 10 if not given."),
+        typer.Option(help=r"Periods of the spectra, separated by commas \[s]. [default: 30 from 0.02 to 10]"),
     ] = None,
     sets: options.Set = None,
     workers: Annotated[
-        int | None, typer.Option(help=r"Number of processes \[default: number of processors, at most 8].")
+        int | None, typer.Option(help="Number of processes. [default: number of processors, at most 8]")
     ] = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,

@@ -60,9 +60,7 @@ def record_convert(
     context: typer.Context,
     record: Annotated[
         list[str],
-        typer.Argument(
-            help=r"Record file, file#COMPONENT; several of them: x=FILE y=FILE z=FILE; or a TOML with \[motion]."
-        ),
+        typer.Argument(help=r"Record file, FILE#COMPONENT, x=FILE y=FILE z=FILE, or TOML with \[motion]."),
     ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
@@ -70,8 +68,8 @@ def record_convert(
     output: Annotated[
         list[str] | None,
         options.output(
-            "File; the extension selects the format, or NAME=FILE with a name of rocking record formats; .png, .svg "
-            "and .pdf: picture before and after; .json: processing steps; repeatable."
+            "File; the extension selects the format; or NAME=FILE, see rocking record formats; .png, .svg, .pdf: "
+            "picture; .json: processing steps; repeatable."
         ),
     ] = None,
     as_json: options.AsJson = False,

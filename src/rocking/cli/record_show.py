@@ -57,16 +57,13 @@ def record_show(
     context: typer.Context,
     record: Annotated[
         list[str],
-        typer.Argument(
-            help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8; with its vertical part "
-            "x=FILE z=FILE."
-        ),
+        typer.Argument(help="Record file, FILE#COMPONENT or pulse: sine:amplitude=3,period=0.8; or x=FILE z=FILE."),
     ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[
-        str, typer.Option(help=r"Periods of the spectrum, with commas between \[s].")
+        str, typer.Option(help=r"Periods of the spectrum, separated by commas \[s].")
     ] = "0.1,0.2,0.5,1,2,3",
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,

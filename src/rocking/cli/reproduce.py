@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def reproduce(
     which: Selection = None,
     output: Annotated[Path | None, options.output("Folder for report, tables and figures.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print every number as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Result as JSON.")] = False,
 ) -> None:
     """Run `rocking reproduce`."""
     from rocking.evidence.store import selected

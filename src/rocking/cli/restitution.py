@@ -55,20 +55,18 @@ EXPORTS = {
 def restitution(
     context: typer.Context,
     body: options.BodyFile = None,
-    onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
+    onto: Annotated[str, typer.Option(help="Landing foot: right, left or both.")] = "both",
     restitution: Annotated[
         list[str] | None,
         typer.Option(
-            help="Model, again for more: ked, 0.98*ked, shifted-impulse:k=0.6, file.py:MyModel; or ked-3d.",
+            help="Model, such as 0.98*ked or FILE.py:MODEL; repeatable. [default: all models]",
             autocompletion=completion.every_model,
         ),
     ] = None,
     check_identities: Annotated[
-        bool, typer.Option("--check-identities", help="Also try the identities of mechanics on every model.")
+        bool, typer.Option("--check-identities", help="Check of each model against the identities of mechanics.")
     ] = False,
-    recommend: Annotated[
-        bool, typer.Option("--recommend", help="Also say which model to use for this body, and how sure that is.")
-    ] = False,
+    recommend: Annotated[bool, typer.Option("--recommend", help="Recommended model and its evidence.")] = False,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
     as_json: options.AsJson = False,

@@ -13,14 +13,12 @@ if TYPE_CHECKING:
 
 
 def serve(
-    port: Annotated[int | None, typer.Option(help="Port; 8765 or the next free one, if not given.")] = None,
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    allow_remote: Annotated[
-        bool, typer.Option("--allow-remote", help="Allow an address that other machines reach.")
-    ] = False,
-    data: Annotated[Path | None, typer.Option(help="Folder for records and studies.")] = None,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the link, open nothing.")] = False,
-    workers: Annotated[int | None, typer.Option(help="Processes for a study.", min=1, max=1024)] = None,
+    port: Annotated[int | None, typer.Option(help="Port. [default: 8765 or the next free port]")] = None,
+    host: Annotated[str, typer.Option(help="Address of the server.")] = "127.0.0.1",
+    allow_remote: Annotated[bool, typer.Option("--allow-remote", help="Access from other machines.")] = False,
+    data: Annotated[Path | None, typer.Option(help="Folder of records and studies.")] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="No browser window; link only.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Number of processes of a study.", min=1, max=1024)] = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking serve`."""

@@ -83,8 +83,8 @@ def simulate(
     record: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Record file, file#COMPONENT, or a pulse such as sine:amplitude=3,period=0.8; of several, a folder, a "
-            "pattern or LIST.csv a row each.",
+            help="Record file, FILE#COMPONENT or pulse: sine:amplitude=3,period=0.8. Several records: one row per "
+            "record.",
             autocompletion=completion.pulses,
         ),
     ] = None,

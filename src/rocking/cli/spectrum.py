@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @options.takes(
     options.keys(
         SpectrumTable,
-        periods=": FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C",
+        periods=": FIRST:LAST:COUNT, FIRST:LAST:COUNT:linear or A,B,C",
         defaults={"periods": "1:10:100"},
     ),
     before="restitution",
@@ -35,9 +35,7 @@ def spectrum(
     context: typer.Context,
     motions: options.SeveralRecords = None,
     motion: options.Motions = None,
-    slenderness: Annotated[
-        str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
-    ] = "4,6,8",
+    slenderness: Annotated[str, typer.Option(help="Slenderness h/b: 4,6,8 or 4:8:5; or angle: 10deg,15deg.")] = "4,6,8",
     restitution: options.Restitution = None,
     units: options.RecordUnits = None,
     sets: options.Set = None,

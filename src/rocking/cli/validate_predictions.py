@@ -31,8 +31,8 @@ def validate_predictions(
     folder: Annotated[
         Path,
         typer.Argument(
-            help="Folder with a body file, records, and a .csv table of outcomes: motion (or x, y, z), scale, "
-            "overturned, and if known rocked, slid; one row a trial."
+            help="Folder with a body file, records and a .csv table of outcomes: motion (or x, y, z), scale, "
+            "overturned, rocked, slid; one row per trial."
         ),
     ],
     restitution: options.MeasuredRestitution = None,

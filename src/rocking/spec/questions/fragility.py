@@ -63,8 +63,7 @@ class FragilityTable(JobTable):
     im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = key("levels of the measure [its unit]")
     limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
-        "limit states: rotations over the slenderness angle [-], with rocking and overturning; where one of these two "
-        "names is given, the given states alone",
+        "limit states: rotation / slenderness angle [-]; rocking and overturning are added unless one of them is given",
         [0.5],
     )
     tolerance: float | None = key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
