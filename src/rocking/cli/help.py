@@ -17,17 +17,16 @@ from rocking.cli.spelling import run_in
 SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
 _PANELS = ("Arguments", "Options", SHAKING, SIZE, HOW, OUTPUT)
 _RARE = {
-    "mass", "centre", "moment_of_inertia", "seed", "count", "threads", "quiet", "verbose", "name", "crossing",
-    "crossing_curves", "help_all", "start_height", "start_velocity", "bounce", "normal_restitution", "identities",
-    "check_identities", "address", "executor", "damping", "least_barrier", "min_barrier", "bisections", "samples",
-    "points",
+    "mass", "centre", "moment_of_inertia", "seed", "count", "threads", "quiet", "verbose", "name", "crossing_curves",
+    "help_all", "start_height", "start_velocity", "normal_restitution", "check_identities", "address", "executor",
+    "damping", "min_barrier", "bisections", "samples",
 }  # fmt: skip
 """Options that --help-all shows and --help does not."""
 _METAVARS = {
     "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motions": "MOTION", "motion": "MOTION",
     "units": "UNITS",
     "synthetic": "FAMILY", "periods": "LIST", "data": "FOLDER", "host": "ADDRESS", "inputs": "FOLDER",
-    **dict.fromkeys(("count", "seed", "threads", "workers", "port", "samples", "bisections", "points"), "N"),
+    **dict.fromkeys(("count", "seed", "threads", "workers", "port", "samples", "bisections"), "N"),
 }  # fmt: skip
 _WIDTH = 20  # of the column of names
 
@@ -98,7 +97,7 @@ def with_common(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def called(**values: Any) -> None:
-        command(**values)
+        command(**{name: value for name, value in values.items() if name not in COMMON})
 
     annotations = {name: Annotated[bool, option] for name, option in COMMON.items()}
     called.__signature__ = Signature([  # type: ignore[attr-defined]

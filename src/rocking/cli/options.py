@@ -152,7 +152,7 @@ Restitution = Annotated[
 Restitutions = Annotated[
     list[str] | None,
     typer.Option(
-        help=f"Model or coefficient; repeatable. [default: {DEFAULT_RESTITUTION}]",
+        help=f"Model or coefficient; repeatable [default: {DEFAULT_RESTITUTION}]",
         autocompletion=completion.models,
     ),
 ]

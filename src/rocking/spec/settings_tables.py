@@ -30,6 +30,6 @@ class SettingsTable(JobTable):
 class StudySettingsTable(SettingsTable):
     """How to integrate: what is left out has its usual value. Friction is of studies; one history has its own table."""
 
-    friction: float | None = key("coefficient of friction, with which bodies slide, hop and fly [-]", None, ge=0.0)
+    friction: float | None = key("coefficient of friction; enables sliding [-]", None, ge=0.0)
     normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
     normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)

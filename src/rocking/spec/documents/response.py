@@ -18,7 +18,7 @@ class ResponseTable(JobTable):
     initial_rotation: float | None = key(
         "no motion: initial rotation over the slenderness angle, of a solid towards x; negative to the left, or -x [-]"
     )
-    friction: float | None = key("coefficient of friction, which lets the body slide, hop and fly [-]", None, gt=0.0)
+    friction: float | None = key("coefficient of friction; enables sliding [-]", None, gt=0.0)
     normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
     normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
     start_height: float | None = key(
