@@ -139,7 +139,7 @@ def files(paths: Iterable[Path]) -> list[Path]:
     """Return the files under paths that are checked."""
     endings = {".py", ".js", ".hpp", ".cpp", ".md", ".pot"}
     every = (file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else [path]))
-    return [file for file in every if file.suffix in endings and not {"vendor", "build", "changes"} & {*file.parts}]
+    return [file for file in every if file.suffix in endings and not {"vendor", "build", "changes", "keys", "gallery"} & {*file.parts}]
 
 
 def everything() -> list[Path]:
