@@ -1,8 +1,8 @@
-"""A cloud of motions as a campaign
-================================
+"""Cloud analysis as a campaign
+============================
 
-What do motions as they are, not scaled to anything, say about a cabinet? A campaign keeps every history, fits the
-rotations over a measure, and ranks the measures. For researchers with many records.
+A cloud analysis uses motions as recorded, without scaling. The campaign stores each simulation, fits the peak rotations
+over an intensity measure, and ranks the measures. For researchers with many records.
 """
 
 import csv

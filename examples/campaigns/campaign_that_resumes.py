@@ -1,8 +1,8 @@
-"""A campaign that is stopped and resumed
-======================================
+"""Interrupt and resume a campaign
+===============================
 
-What if the power fails in the middle of a long study? Nothing is lost: finished pieces are safe, and the resumed
-campaign gives the same bytes as one that nobody disturbed. For operators of large studies.
+A long study is interrupted and resumed. Finished chunks are safe, and the final files are the same bytes as without
+the interruption. For operators of large studies.
 """
 
 import hashlib

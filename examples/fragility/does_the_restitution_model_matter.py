@@ -1,8 +1,8 @@
-"""Does the restitution model matter?
-==================================
+"""Effect of the restitution model
+===============================
 
-How many verdicts would another model turn round, and how far does a fragility curve move? One call for a map, one
-for fragilities, with intervals. For everyone who has to defend the choice of a model.
+How many outcomes change with another model, and how far does a fragility curve move? One function for a map and one
+for fragility curves, with intervals. For engineers who justify a restitution model.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""How likely is it to overturn?
-=============================
+"""Fragility curve by stripes
+==========================
 
-How likely does a slender cabinet overturn at a given peak acceleration, and how well do sixty motions tell? A
-fragility by stripes: every motion at eleven levels. For engineers who need curves for a risk analysis.
+Overturning probability of a slender cabinet as a function of the PGA, from sixty motions at eleven levels, with
+confidence intervals. For engineers who need curves for a risk analysis.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""How likely is it that it overturns?
-===================================
+"""Overturning probability with uncertain inputs
+=============================================
 
-Nobody knows the friction under a cabinet, nor how its edges are worn, nor what an impact costs. How likely does it
-overturn all the same, and which of these should be measured first? For engineers and conservators.
+The friction, the wear of the edges and the energy loss of a cabinet are uncertain. What is its overturning
+probability, and which input should be measured first? For engineers and conservators.
 """
 
 import rocking as rk

@@ -1,8 +1,8 @@
-"""Stronger motions that spare what weaker ones fell
-=================================================
+"""Incremental analysis with two definitions
+=========================================
 
-What does an incremental analysis mean when a stronger motion may leave standing what a weaker one overturns?
-Fragility has two definitions then, and they differ. For researchers who compare studies.
+A stronger motion does not always overturn a body that a weaker motion overturns. Therefore an incremental analysis has
+two definitions of fragility, which differ. For researchers who compare studies.
 """
 
 import math

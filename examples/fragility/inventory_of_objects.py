@@ -1,8 +1,8 @@
-"""Which objects of a collection fall over?
-========================================
+"""Assessment of a collection
+==========================
 
-Where should a museum begin? A list of objects in centimetres and kilograms, an earthquake of 0.3 g, and out comes a
-list in plain words, the worst first. For conservators and facility managers: nothing has to be known about rocking.
+A list of objects in centimetres and kilograms and an earthquake of 0.3 g give a list of ratings, the highest risk
+first. For conservators and facility managers. Knowledge of rocking is not necessary.
 """
 
 from pathlib import Path

@@ -1,11 +1,10 @@
-"""Were the predictions right?
-===========================
+"""Comparison of predictions with outcomes
+=======================================
 
-A body was shaken 180 times, and it is known whether it overturned. Were the probabilities that were given beforehand
-right as often as they say, and were they better than a curve in PGA and PGV? For whoever has trials of a shaking table,
-or photographs from after an earthquake.
+The outcomes of 180 trials of one body are known. Were the predicted probabilities calibrated, and were they better than
+a curve in PGA and PGV? For users with shaking-table tests or observations after an earthquake.
 
-The trials here are invented: they are simulations whose friction, feet and restitution the prediction is not told.
+The trials of this example are simulations with friction, feet and restitution that the prediction does not use.
 """
 
 # %%

@@ -1,9 +1,9 @@
-"""Which intensity measure?
-========================
+"""Comparison of intensity measures
+================================
 
-Over which measure should I draw a fragility: peak acceleration, velocity, Arias intensity? The one over which the
-response scatters least, and which leaves nothing out. It depends on the size of the body. For researchers, and
-engineers who choose records.
+Which intensity measure is suitable for a fragility curve: PGA, PGV, Arias intensity? A good measure has a small scatter
+of the response and is sufficient. The result depends on the size of the body. For researchers and engineers who
+select records.
 """
 
 import math

@@ -1,8 +1,8 @@
-"""A statue that leans
-===================
+"""Asymmetric statue
+=================
 
-What changes where a body is not symmetric? It has two slendernesses, two accelerations that lift it, and two
-coefficients of restitution. For conservators and engineers whose objects are no rectangles.
+A body without symmetry has two slenderness angles, two uplift accelerations, and two coefficients of restitution. For
+conservators and engineers with bodies that are not rectangles.
 """
 
 import rocking as rk

@@ -1,9 +1,8 @@
-"""The coefficient of restitution from a sound
-===========================================
+"""Coefficient of restitution from a sound
+=======================================
 
-A block is tilted, let go, and recorded by a phone: what does its sound say of the coefficient of restitution, and how
-surely? For whoever can measure a body instead of choosing a model. Here the block rocks on a contact bed, which knows
-the answer.
+A block is tilted, released and recorded with a phone. The sound gives the coefficient of restitution with an interval.
+In this example the block rocks on a contact bed with a known coefficient. For users who can test a body.
 """
 
 from pathlib import Path

@@ -1,8 +1,8 @@
-"""What an impact costs a concrete block
-=====================================
+"""Coefficient of restitution of a concrete block
+==============================================
 
-How much of its speed does a block keep when it comes down on its other edge? Every model of restitution gives its
-own answer. For engineers who need one coefficient, and want to see first how far the answers lie apart.
+Each restitution model gives another coefficient for the impact of a block. For engineers who need one coefficient and
+the range of the models.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""Where the energy goes in an impact
-==================================
+"""Energy loss in the three stages of KED
+======================================
 
-Where in a body is energy lost when it comes down? The model of Mao et al. (2024) takes an impact apart into three
-stages. For readers of the paper, and for whoever wants to see why the shape of a body matters.
+The model of Mao et al. (2024) has three stages. The pictures show the distribution of the kinetic energy in the body
+after each stage. For readers of the paper.
 """
 
 import rocking as rk

@@ -1,9 +1,8 @@
-"""An impact that takes time
-=========================
+"""Impact on a contact bed
+=======================
 
-What decides the coefficient of restitution, if nobody postulates it? Here a block comes down on damped springs, and
-`r` emerges: from where it touches, how fast it lands, and how even its base is. For researchers who wonder why
-measured coefficients scatter.
+A block lands on damped springs, and the coefficient of restitution is a result: it depends on the contact points, the
+speed, and the unevenness of the base. For researchers who study the scatter of measured coefficients.
 """
 
 import numpy as np

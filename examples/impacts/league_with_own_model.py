@@ -1,8 +1,8 @@
-"""A model of your own among all the others
-========================================
+"""Comparison of an own model with all models
+==========================================
 
-Is my model any better? Every model, and yours, is compared with the 39 published measurements, and two of them are
-told apart only where the data can. For researchers, before they publish a new model.
+All models and an own model are compared with the 39 published measurements. The result states the differences that the
+data distinguish. For researchers with a new model.
 """
 
 from dataclasses import dataclass

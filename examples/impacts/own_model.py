@@ -1,8 +1,8 @@
-"""A restitution model of your own
-===============================
+"""Own restitution model
+=====================
 
-How do I bring a model that the package does not have? As one class with one method. For researchers: here the base
-is a fan of `n` equal facets, and the body comes down on one after the other.
+A restitution model is a class with one method. In this example the base has `n` equal facets, and the body lands on one
+after the other. For researchers.
 """
 
 from dataclasses import dataclass

@@ -1,9 +1,8 @@
-"""A coefficient with its interval
-===============================
+"""Calibrated coefficient with its interval
+========================================
 
-Which coefficient should I take, and how sure is it? The default is calibrated with the published measurements and
-comes with a 95 % interval; where the measurements end, it says so. For engineers who have to give a number and
-stand by it.
+The default model is calibrated with the published measurements and has a 95 % interval. A warning states the limits of
+the measurements. For engineers who need a coefficient and its uncertainty.
 """
 
 import rocking as rk

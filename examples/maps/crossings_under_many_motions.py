@@ -1,9 +1,8 @@
-"""Every crossing under twelve motions
-===================================
+"""All overturning intervals under twelve motions
+==============================================
 
-At which strengths of which motions does a cabinet fall? Motion by motion, every acceleration at which the verdict
-changes: the least that overturns is where a search from below would stop, and it is seldom the last. For
-researchers who build fragilities from such searches.
+For each motion, all PGA intervals with overturning of a cabinet. The minimum overturning PGA is seldom the only limit.
+For researchers who derive fragility curves from such searches.
 """
 
 from tempfile import TemporaryDirectory

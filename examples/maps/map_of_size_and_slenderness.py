@@ -1,8 +1,8 @@
-"""Which blocks does a pulse overturn?
-===================================
+"""Map of size and slenderness
+===========================
 
-Is it the slender ones or the small ones that fall? One pulse, and blocks of every size and slenderness, each with
-its own coefficient of restitution. For conservators with many objects, and engineers with one earthquake.
+One pulse and blocks of many sizes and slenderness ratios, each with its own coefficient of restitution. For
+conservators with many objects and engineers with one earthquake.
 """
 
 import numpy as np

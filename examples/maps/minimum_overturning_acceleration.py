@@ -1,8 +1,8 @@
-"""The least acceleration that overturns
-=====================================
+"""Minimum overturning acceleration
+================================
 
-Below which acceleration is a block safe? There is a least amplitude that overturns it, but beyond that it may stand
-again, before it falls for good. For engineers who look for one number, and should know the others.
+A block has a minimum overturning acceleration. Above this value there can be intervals without overturning. For
+engineers who use the minimum and need the other limits.
 """
 
 import math

@@ -1,9 +1,8 @@
-"""An overturning map
-==================
+"""Overturning map of a pulse
+==========================
 
-Which pulses overturn a block? Over frequency and amplitude there are two ways to fall, and between them a region
-where a stronger pulse leaves standing what a weaker one overturns. For researchers, and for whoever believes that
-stronger is worse.
+A map over frequency and amplitude has two overturning modes. Between them is a region in which a stronger pulse does
+not overturn the block. For researchers.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""A rocking spectrum
-==================
+"""Rocking spectrum
+================
 
-How far does a block rock, by its size? What a response spectrum is for oscillators, a rocking spectrum is for
-blocks; here of two hundred motions, with their scatter. For engineers who compare sites or records.
+A rocking spectrum is the peak rotation of blocks as a function of their size. This example uses two hundred motions and
+shows their scatter. For engineers who compare sites or records.
 """
 
 import numpy as np

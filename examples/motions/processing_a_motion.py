@@ -1,8 +1,8 @@
-"""Processing a record
-===================
+"""Processing of a record
+======================
 
-How do I bring two raw components into the shape that I need, so that somebody else can follow it later? Every step
-is noted in the provenance of the motion. For engineers who prepare records for an analysis.
+Two raw components are corrected step by step. The provenance of the motion contains each step. For engineers who
+prepare records for an analysis.
 """
 
 import numpy as np

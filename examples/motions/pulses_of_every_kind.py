@@ -1,8 +1,8 @@
-"""Pulses of every kind
-====================
+"""Pulses
+======
 
-Which pulses are there, and what does each do to the same block? For everyone who wants a motion that is given by a
-formula: acceleration, velocity and displacement are exact, and so are the instants at which anything happens.
+All pulses and their effect on the same block. Acceleration, velocity, displacement and the times of all events are
+exact. For users who need a motion with a formula.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 """From a record file to a response
 ================================
 
-How do I get from the file of a record to what it does to my object, and to a table for Excel or MATLAB? For
-engineers with records from a database: fourteen formats are recognised by their content.
+A record file gives a response and a table for Excel or MATLAB. The program recognises fourteen formats by content.
+For engineers with records from a database.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 """Synthetic motions
 =================
 
-Where do I get ground motions without a database? Three stochastic models make them by seed: the same seed gives the
-same motion on every computer. For teachers, developers, and studies that need more motions than were ever recorded.
+Three stochastic models create ground motions from a random seed. The same seed gives the same motion on each computer.
+For teachers, developers, and studies with many motions.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""Sets of records that nobody had to record
-=========================================
+"""Sets of synthetic motions
+=========================
 
-How do I get thirty, or a million, motions of one kind? A family and a seed are enough, and each motion is made when
-it is asked for. For fragility studies without a database.
+A family and a seed define a set of any size. Each motion is created at its first use. For fragility studies without a
+database.
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
-"""Beyond the slenderness angle
-============================
+"""Rotation beyond the slenderness angle
+=====================================
 
-Has a block overturned when its rotation passes alpha? Not always: this one leans out to one and a half times alpha,
-and the ground brings it back. For everyone who counts overturning by a threshold.
+A rotation above alpha is not always overturning. This block reaches one and a half times alpha, and the ground motion
+returns it. For users who define overturning by a threshold.
 """
 
 import rocking as rk

@@ -1,8 +1,8 @@
-"""Let go, and how it comes to rest
-================================
+"""Free rocking
+============
 
-How long does a block rock when it is tilted and let go, and can the coefficient be found again from what is seen?
-For experimenters: free rocking is the test by which `r` is measured.
+A tilted block is released. The example computes the duration of rocking and identifies the coefficient from the
+response. For experimenters: free rocking is the test for the coefficient of restitution.
 """
 
 import math

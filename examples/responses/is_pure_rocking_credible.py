@@ -1,8 +1,8 @@
-"""Is pure rocking credible?
-=========================
+"""Check of pure rocking
+=====================
 
-When should I not believe a rocking model? It leaves out sliding and flight, and it says where they would have come.
-For engineers who have to judge whether the answer applies.
+A rocking model excludes sliding and flight, and the response contains a check of this assumption. For engineers who
+decide whether a result is valid.
 """
 
 import warnings

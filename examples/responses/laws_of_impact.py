@@ -1,8 +1,8 @@
-"""Other laws of impact
-====================
+"""Impact laws
+===========
 
-What if the coefficient is not one number? It may differ between the two sides, depend on the speed of the impact,
-or be drawn anew for each. For researchers who measured such things, and wonder what they change.
+The coefficient of restitution can differ between the sides, depend on the speed, or be random. For researchers who
+measured such effects.
 """
 
 import numpy as np

@@ -1,8 +1,7 @@
-"""Thousands of histories in one call
-==================================
+"""Thousands of simulations in one call
+====================================
 
-How do I vary size, amplitude and model together? `rk.simulate_many` takes lists and returns one labelled dataset.
-For researchers who would otherwise write loops.
+`rk.simulate_many` varies size, amplitude and model together and returns one labelled dataset. For researchers.
 """
 
 import numpy as np

@@ -1,9 +1,8 @@
 """One cabinet, one pulse, three models
 ====================================
 
-Does it matter which model of the impact I take? The same cabinet under the same pulse stands with one model and
-falls with two others. For everyone who meets rocking for the first time: nothing but the coefficient of restitution
-differs here.
+The same cabinet under the same pulse does not overturn with one model and overturns with two others. Only the
+coefficient of restitution differs. For new users.
 """
 
 import rocking as rk

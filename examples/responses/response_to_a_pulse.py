@@ -1,8 +1,8 @@
-"""The response to a pulse, in full
-================================
+"""Complete response to a pulse
+============================
 
-What does a response tell beyond whether the cabinet stands? Rotation and velocity at every instant, energy, forces,
-and how far its model can be trusted. For engineers who have to explain a result.
+A response contains rotation and velocity at each time, energy, forces, and the accuracy of the model. For engineers who
+explain a result.
 """
 
 import numpy as np

@@ -1,8 +1,7 @@
-"""Results that reopen elsewhere
-=============================
+"""Results in other programs
+=========================
 
-How do I take a response to Excel, MATLAB or xarray without losing units and origin? Everything is written with what
-it is, in which unit, and how it was computed. For everyone who does not work in Python alone.
+A response is exported to Excel, MATLAB and xarray with units and provenance. For users of several programs.
 """
 
 import numpy as np

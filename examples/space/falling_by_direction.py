@@ -1,8 +1,8 @@
-"""Which way does it fall?
-=======================
+"""Direction of overturning
+========================
 
-Does it matter from which side an earthquake comes, and where will the bust lie? One record with two components,
-turned to every azimuth, at a hundred scales. For conservators who plan a room, and researchers of motions in space.
+One record with two components is rotated to each azimuth at one hundred scale factors. The example shows the directions
+of overturning of a bust. For conservators and researchers.
 """
 
 import numpy as np

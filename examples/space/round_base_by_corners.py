@@ -1,8 +1,8 @@
-"""A round base, and how many corners stand for it
-===============================================
+"""Round base as a polygon
+=======================
 
-May I model a round foot as a polygon? With enough corners: what is missing to the rolling rim is halved with every
-doubling of their number. For researchers who model columns and drums.
+A round base is modelled as a polygon. The error relative to the rolling rim is inversely proportional to the number of
+corners. For researchers who model columns and drums.
 """
 
 import numpy as np

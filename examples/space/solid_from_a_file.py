@@ -1,8 +1,8 @@
-"""From a scan to a response in space
-==================================
+"""From a scan to a 3D response
+============================
 
-How do I get from a scan to an answer? A mesh in millimetres, with faces that look the wrong way, is repaired in the
-open and stood on a plinth by a text file. For conservators and heritage engineers with scans.
+A mesh in millimetres with wrong face orientations is repaired, and a text file adds a plinth. For conservators and
+heritage engineers with scans.
 """
 
 from pathlib import Path

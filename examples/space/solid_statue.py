@@ -1,8 +1,7 @@
-"""A bust in three dimensions
-==========================
+"""Bust in three dimensions
+========================
 
-What changes when a body is not a slice but a solid? It rocks over every edge and over corners, and each costs
-something else. For engineers and conservators with real objects.
+A 3D body rocks over each edge and over corners, and each has another energy loss. For engineers and conservators.
 """
 
 import numpy as np

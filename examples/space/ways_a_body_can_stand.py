@@ -1,8 +1,8 @@
-"""In how many ways can a body stand?
-==================================
+"""Stable poses of a body
+======================
 
-In which poses does a bust stand by itself, and how far must its centre of mass rise to leave the one that it is in,
-towards every side? For conservators and engineers with objects whose base is small or not quite known.
+The stable poses of a bust and the rise of the centre of mass to leave its pose in each direction. For conservators and
+engineers with small or uncertain bases.
 """
 
 import numpy as np
