@@ -135,11 +135,15 @@ def hits(path: Path) -> Iterator[Hit]:
         yield from (Hit(relpath(path, ROOT), line, "names: vague", name) for line, name in names(path) if name in VAGUE)
 
 
+_UNCHECKED = {"vendor", "build", "changes", "keys", "gallery"}
+"""Folders of other authors, of builds, of lists of changes, and of generated pages."""
+
+
 def files(paths: Iterable[Path]) -> list[Path]:
     """Return the files under paths that are checked."""
     endings = {".py", ".js", ".hpp", ".cpp", ".md", ".pot"}
     every = (file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else [path]))
-    return [file for file in every if file.suffix in endings and not {"vendor", "build", "changes", "keys", "gallery"} & {*file.parts}]
+    return [file for file in every if file.suffix in endings and not _UNCHECKED & {*file.parts}]
 
 
 def everything() -> list[Path]:

@@ -12,7 +12,7 @@ from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_com
 from rocking.plots import cloud_picture, write
 
 # %%
-# The job, as a file would hold it: `rocking campaign run cabinet.toml --output CAMPAIGN` runs the same.
+# The job is the same as in a job file: `rocking campaign run cabinet.toml --output CAMPAIGN` runs it.
 
 job = Job.of_text("""
 [campaign]
@@ -46,7 +46,7 @@ with TemporaryDirectory() as home:
     table = export(campaign, "cabinet_measures.csv", "ims")
 
 # %%
-# The regression, and what becomes of the cabinet at the median: the parts of the probability add up to one.
+# The regression, and the outcomes of the cabinet at the median. The probabilities add up to one.
 
 line, fit = found.regression, found.fits["overturned"]
 print(f"{line.count} rocked and stayed standing, {int((found.responses.overturned == 1.0).sum())} overturned")
@@ -58,7 +58,7 @@ assert abs(float(parts["overturned"]) - 0.5) < 1e-9
 write(cloud_picture(found), "campaign_of_a_cloud.png")
 
 # %%
-# Which measure says most: the one with the least scatter. The file says the same.
+# The best measure has the smallest scatter. The exported file contains the same values.
 
 for score in ranked.scores:
     print(f"  {score.im:20s} efficiency {score.efficiency:.2f}")

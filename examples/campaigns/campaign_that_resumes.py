@@ -16,7 +16,7 @@ from rocking.campaigns.jobs import Job, JobFolder, export, forecast
 from rocking.plots import overturning_map_picture, write
 
 # %%
-# A job is a file; before it runs, it can be asked how much it is.
+# A job is a file. The program estimates its size before the run.
 
 job = Job.read(rk.examples.path("overturning-map"))
 print(f"{job.document.campaign.name}: {dict(job.study.dims)}")
@@ -25,8 +25,8 @@ print(f"{ahead.histories} histories, {ahead.chunks} chunk(s), {ahead.disk / 1e6:
 
 
 # %%
-# The same in nine pieces, stopped after the second as Ctrl-C would; then resumed, and run once more without a
-# break.
+# The same job in nine chunks is interrupted after the second chunk, as by Ctrl-C. Then it is resumed, and also run
+# without an interruption.
 
 
 def stop(progress):
@@ -55,7 +55,7 @@ with TemporaryDirectory() as home:
     export(folder, "map.nc")
 
 # %%
-# What is exported is a map like any other.
+# The exported result is a usual map.
 
 with xarray.open_dataset("map.nc", engine="h5netcdf") as found:
     write(overturning_map_picture(found.assign_attrs(restitution="ked")), "campaign_that_resumes.png")

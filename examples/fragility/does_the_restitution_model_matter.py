@@ -13,15 +13,15 @@ from rocking.plots import difference_map_picture, sensitivity_picture, write
 from rocking.studies import SyntheticSet, fragility_sensitivity, map_sensitivity
 
 # %%
-# A stocky block: there the models are far apart.
+# The models differ most for a squat block.
 
 block = rk.Block(width=0.5, height=1.0)
 for name in ("housner", "ked"):
     print(f"{name:8s} r = {rk.coefficient_of_restitution(block, name):.3f}")
 
 # %%
-# A map of 14,400 pulses with both models, and their difference: where the verdict flips, and where the block stands
-# with both, by how much further it rocks.
+# A map of 14,400 pulses with both models, and their difference: cells with different outcomes, and the difference of
+# the peak rotation where the block overturns with neither model.
 
 axes = ("frequency_ratio", np.linspace(0.5, 8.0, 120)), ("amplitude_ratio", np.linspace(1.0, 12.0, 120))
 maps = map_sensitivity(block, rk.pulses.sine(1.0, 1.0), *axes, ["housner", "ked"])
@@ -34,8 +34,7 @@ assert float(change.median()) > 0.0  # KED loses less, so that the block rocks f
 write(difference_map_picture(maps), "does_the_restitution_model_matter.png")
 
 # %%
-# Sixty motions at twelve levels: ratios of medians. The same motions serve all models, so that the intervals are
-# those of pairs.
+# Sixty motions at twelve levels give ratios of medians. All models use the same motions, so the intervals are paired.
 
 motions = list(SyntheticSet("point-source", count=60, seed=1))
 levels = np.linspace(0.3, 3.0, 12) * conventions.g
@@ -52,6 +51,6 @@ print(found.verdict)
 assert found.flips_between("housner", "housner").count == 0
 
 # %%
-# Each choice has its curve.
+# One curve per model.
 
 write(sensitivity_picture(found), "curves_by_model.png")

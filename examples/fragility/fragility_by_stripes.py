@@ -14,8 +14,8 @@ from rocking.studies import SyntheticSet, fragility_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
 
 # %%
-# Sixty synthetic motions, each scaled to all levels; three states of damage. Rocking itself is no matter of
-# probability: it starts at `g b / h`.
+# Sixty synthetic motions are scaled to all levels. There are three limit states. Rocking is not statistical: it
+# begins at `g b / h`.
 
 cabinet = rk.Block(width=0.3, height=1.5)
 motions = SyntheticSet("point-source", count=60, seed=1)
@@ -27,7 +27,8 @@ assert found.uplift.contradictions == 0
 assert abs(found.subject.uplift_threshold / (0.2 * conventions.g) - 1.0) < 1e-12
 
 # %%
-# Medians with their intervals. One motion serves at every level: whole motions are drawn anew, not single outcomes.
+# Medians with their intervals. Each motion is used at each level, so the bootstrap samples motions, not single
+# outcomes.
 
 medians = []
 for state, fit in found.fits.items():
@@ -41,13 +42,13 @@ for state, fit in found.fits.items():
 assert medians == sorted(medians)  # the worse the state, the stronger the motion that it takes
 
 # %%
-# Shares that were counted, curves with their bands, and below them what becomes of the cabinet at each level.
+# Counted fractions, curves with their bands, and below them the probabilities of the limit states at each level.
 
 write(fragility_picture(found), "fragility_by_stripes.png")
 
 # %%
-# For OpenQuake and FEMA P-58. Curves of unlike dispersion cross somewhere; where states follow one another one
-# dispersion for all is fitted.
+# Files for OpenQuake and FEMA P-58. Curves with different dispersions cross. Therefore one dispersion is fitted to
+# all nested limit states.
 
 model = model_of(found, "cabinet")
 to_nrml(model, "cabinet_for_openquake.xml", crossing_curves="common-dispersion")

@@ -10,8 +10,8 @@ from rocking.plots import prediction_picture, write
 from rocking.studies import SyntheticSet
 
 # %%
-# A cabinet of 40 x 160 cm under six motions of 4 m/s2. What is not said is drawn: 64 cabinets that may be this one
-# stand under every motion.
+# A cabinet of 40 x 160 cm under six motions of 4 m/s2. Inputs without a given value are sampled: 64 cabinets under
+# each motion.
 
 cabinet = rk.Block(width=0.4, height=1.6)
 motions = SyntheticSet("firm-ground", count=6, seed=1, pga=4.0)
@@ -20,14 +20,15 @@ for sentence in found.sentences:
     print(sentence)
 
 # %%
-# What was assumed is said, and can be replaced by what is known.
+# The result states the assumptions. Known values replace them.
 
 for line in found.assumed:
     print(line)
 
 # %%
-# Which motion comes decides most, by itself; everything else decides together. Under some motions a difference of one
-# part in a million changes the end: those responses cannot be predicted, their probability can.
+# The motion has the largest first-order contribution. The other inputs act together. Under some motions a difference
+# of one part in a million changes the outcome. These responses are unpredictable, but their probability is
+# predictable.
 
 shares = {name: share.total for name, share in found.shares.items()}
 assert max(shares, key=shares.get) == "case"

@@ -15,8 +15,8 @@ from rocking.plots import incremental_dynamic_analysis_picture, write
 from rocking.studies import SyntheticSet, fragility_analysis
 
 # %%
-# First where it is known in closed form: a full sine of three times the frequency parameter, `r = 0.9`,
-# slender-linear equations.
+# First a case with a closed form: a full sine of three times the frequency parameter, `r = 0.9`, slender-linear
+# equations.
 
 block = rk.Block(width=0.4, height=1.6)
 sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
@@ -47,6 +47,6 @@ passed = np.searchsorted(np.sort(found.first_crossings), found.levels, side="rig
 assert (passed >= found.fractions - 1e-12).all()  # what stands again has crossed before
 
 # %%
-# Blue: levels at which the cabinet stands although a weaker one overturned it. Right: the two definitions.
+# Blue: levels without overturning above a level with overturning. Right: the two definitions.
 
 write(incremental_dynamic_analysis_picture(found), "incremental_analysis_with_resurrection.png")

@@ -15,8 +15,8 @@ from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.table import advice, model_note, sentence
 
 # %%
-# The list is a table with a row for each object; Excel's files are read as well. The earthquake is given by its
-# peak acceleration, and stands for two hundred synthetic motions.
+# The list is a table with one row per object. Excel files are read too. The earthquake has a peak acceleration and
+# two hundred synthetic motions.
 
 inventory = read_inventory(rk.examples.path("objects"))
 hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=200, seed=1)
@@ -24,13 +24,12 @@ assessment = assess(inventory, hazard)
 print(f"{len(assessment.verdicts)} objects at {hazard.words()}")
 
 # %%
-# Share of the motions that overturn each object, with a light; right, what it endures without moving, beside the
-# 0.3 g.
+# Overturning fraction of each object with its rating. Right: the PGA at uplift, compared with 0.3 g.
 
 write(inventory_picture(assessment), "inventory_of_objects.png")
 
 # %%
-# Each object in words. A row that cannot be understood is named, not guessed.
+# One sentence per object. An unreadable row is listed and not guessed.
 
 for rank, verdict in enumerate(assessment.verdicts, start=1):
     print(f"{rank:2}. [{verdict.light.word.upper():5}] {verdict.item.name}: {sentence(verdict, assessment)}")
@@ -43,7 +42,7 @@ assert severities == sorted(severities, reverse=True)
 assert [row.name for row in assessment.not_assessed] == ["framed mirror on a stand"]
 
 # %%
-# The same as a folder to hand on: a page, a PDF, a workbook, and tables.
+# The same result as a folder: a web page, a PDF, a workbook, and tables.
 
 written, left_out = write_inventory(assessment, Path("inventory"))
 print("wrote", ", ".join(path.name for path in written), *left_out)

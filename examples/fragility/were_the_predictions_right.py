@@ -8,8 +8,8 @@ The trials of this example are simulations with friction, feet and restitution t
 """
 
 # %%
-# Each trial has a motion of its own. What happened is found with one hidden friction, chipped feet and one coefficient
-# for each trial.
+# Each trial has its own motion. The outcomes are computed with one hidden friction, chipped feet, and one coefficient
+# per trial.
 
 import numpy as np
 
@@ -37,8 +37,8 @@ fell = np.array([tried(motion) for motion in motions])
 print(f"{fell.sum():.0f} of {fell.size} overturned")
 
 # %%
-# The prediction knows the ranges alone. `score` puts it beside a logistic curve in PGA and PGV, and beside the share
-# that overturned at all; either is fitted to the outcomes under all other motions, the prediction to none.
+# The prediction uses ranges only. `score` compares it with a logistic curve in PGA and PGV and with the base rate.
+# Both are fitted to the outcomes under all other motions. The prediction is not fitted.
 
 known = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": (0.85, 0.93), "centre": 1.0}
 foreseen = rk.predict(body, motions, **known, count=32, shares=False)
@@ -48,14 +48,14 @@ found = score(said, fell, range(180), pga=pga, pgv=pgv, count=foreseen.count)
 print(found)
 
 # %%
-# Points on the dashed line are right as often as they say. To the right of zero the prediction is better; a bar across
-# zero means that these trials do not tell.
+# Points on the dashed line are calibrated. The prediction is better to the right of zero. A bar across zero is not
+# distinguishable.
 
 write(reliability_picture(found), "were_the_predictions_right.png")
 assert found.finding == "better"
 
 # %%
-# Fewer trials tell less: the first twenty alone do not tell it from the curve.
+# With the first twenty trials only, the prediction and the curve are not distinguishable.
 
 few = slice(20)
 first = score(said[few], fell[few], range(20), pga=pga[few], pgv=pgv[few], count=foreseen.count)
@@ -63,7 +63,8 @@ print(first)
 assert first.finding == "not resolved"
 
 # %%
-# A negative control: the same probabilities beside the outcomes of other trials. Nothing is foreseen, and it is said.
+# Negative control: the same probabilities with the outcomes of other trials. The verdict states that the prediction
+# is not better.
 
 shuffled = score(said, random.permutation(fell), range(180), pga=pga, pgv=pgv, count=foreseen.count)
 print(shuffled.verdict)

@@ -17,8 +17,8 @@ from rocking.plots import measures_picture, write
 from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
 # %%
-# Far earthquakes, each brought to a peak from 1.1 to 2.5 times what lifts the body: all of them rock it. Magnitude
-# and distance stay with them.
+# Distant earthquakes, each scaled to a peak from 1.1 to 2.5 times the uplift acceleration. All of them cause rocking.
+# Magnitude and distance are metadata.
 
 made = list(SyntheticSet("point-source", count=150, seed=1))
 levels = np.random.default_rng(1).uniform(1.1, 2.5, len(made)) * 0.2 * conventions.g
@@ -30,8 +30,8 @@ metadata = {
 measures = ["pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(1.0)", "arias", "cav"]
 
 # %%
-# The same cabinet, small and large. Efficiency is the scatter about the line: the less, the better. A small p-value
-# says that magnitude or distance know something that the measure does not.
+# The same cabinet in two sizes. Efficiency is the scatter about the line; a small scatter is better. A small p-value
+# means that magnitude or distance contain additional information.
 
 ranked = {}
 for height in (0.5, 4.0):
@@ -45,8 +45,8 @@ for height in (0.5, 4.0):
         print(f"  {score.im:20s} efficiency {score.efficiency:.2f}, {p_values}")
 
 # %%
-# The peak decides over a small body; over a large one how much shaking there is says more. For one body the
-# dimensionless velocity is the velocity times a constant.
+# The PGA is the best measure for a small body. For a large body measures of the total motion are better. For one body
+# the dimensionless velocity is proportional to the velocity.
 
 assert (ranked[0.5].best, ranked[4.0].best) == ("pga", "arias")
 scores = {score.im: score.efficiency for score in ranked[4.0].scores}

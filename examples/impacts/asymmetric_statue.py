@@ -10,8 +10,8 @@ from rocking import conventions
 from rocking.plots import body_picture, write
 
 # %%
-# A section is made of regions: an outline [m], `y` upwards from the ground, and a density [kg/m3]. The feet are
-# where it touches the ground; here they are set in from the edges of the pedestal.
+# A section consists of regions: an outline [m], `y` upwards from the ground, and a density [kg/m3]. The feet are the
+# points of contact. Here they are inside the edges of the pedestal.
 
 pedestal = rk.Region(rk.bodies.shapes.rectangle(0.8, 0.6), density=2700.0)
 figure = rk.Region([(0.15, 0.6), (0.60, 0.6), (0.72, 1.9), (0.45, 2.3), (0.28, 1.9)], density=2400.0)
@@ -19,7 +19,7 @@ statue = rk.Section([pedestal, figure], feet=(0.05, 0.75), depth=0.6)
 write(body_picture(statue), "asymmetric_statue.png")
 
 # %%
-# About each foot it has its own slenderness, frequency parameter and acceleration that lifts it.
+# Each foot has its own slenderness, frequency parameter and uplift acceleration.
 
 for foot in ("left", "right"):
     side = statue.side(foot)
@@ -29,8 +29,8 @@ for foot in ("left", "right"):
     )
 
 # %%
-# Coming down on the right foot costs another share of the speed than coming down on the left. Energy bounds their
-# product only: it cannot exceed one.
+# The energy losses on the right and the left foot differ. The energy limits the product of both coefficients: it is
+# at most one.
 
 there = rk.coefficient_of_restitution(statue, "housner", onto="right")
 back = rk.coefficient_of_restitution(statue, "housner", onto="left")
@@ -39,8 +39,8 @@ assert there != back
 assert there * back <= 1.0
 
 # %%
-# Which identities a model keeps for this body is a question of its own. The model of Mao et al. (2024) breaks two
-# of them: it looks at more than mass, centre and inertia.
+# The identities of a model depend on the body. The model of Mao et al. (2024) violates two of them for this body,
+# because it depends on more than mass, centre of mass and inertia.
 
 for check in rk.restitution.identity_report(statue, rk.restitution.Ked()):
     print(check.sentence)

@@ -16,8 +16,8 @@ from rocking.identification import identify, read_measurement
 from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
 
 # %%
-# A block of 10 cm by 40 cm whose base is slightly hollow, so that it stands on its edges: two contact points. Let go
-# from half of its slenderness angle it touches the ground at these times.
+# A block of 10 cm by 40 cm with a slightly hollow base has two contact points. Released from half of its slenderness
+# angle, it has these contact times.
 
 block = rk.Block(width=0.1, height=0.4, density=2400.0)
 law = KelvinVoigt(block.mass * (2.0 * np.pi * 1500.0) ** 2, damping_ratio=1.0)
@@ -26,8 +26,8 @@ own = float(np.exp(np.log(rocked.coefficients[1:]).mean()))
 print("touches [s]", rocked.touches[:5].round(3), "... r of the bed", round(own, 4))
 
 # %%
-# Its sound: at every touch modes of the block ring, the louder the faster it lands; a room answers, there is noise, and
-# the mains hum at 50 Hz.
+# Its sound: each contact excites modes of the block, with an amplitude that increases with the landing speed. There
+# are reverberation, noise, and mains hum at 50 Hz.
 
 RATE = 44_100
 random = np.random.default_rng(3)
@@ -44,8 +44,8 @@ sound += 0.01 * random.normal(size=time.size) + 0.02 * np.sin(2.0 * np.pi * 50.0
 wavfile.write("block.wav", RATE, (32000.0 * sound / np.abs(sound).max()).astype(np.int16))
 
 # %%
-# What a phone would have recorded is read, and identified. The body is known within 1 % of its sizes, the floor is
-# level within 0.3 degrees, and so nearly all of the width of "landing left" and "landing right" is the floor's.
+# The recording is read and evaluated. The uncertainty of the body size is 1 %, and of the level of the floor 0.3
+# degrees. The tilt of the floor causes nearly the complete interval of the left and right values.
 
 found = identify(read_measurement("block.wav"), block)
 print(found)
@@ -54,8 +54,8 @@ assert len(found.impacts) == rocked.touches.size - 2
 found.plot("coefficient_from_a_sound.png")
 
 # %%
-# Housner's model, which puts the impulse at the edge, is closest here: no wonder, with two points. What the next
-# impacts take is a law for simulations, with the scatter and with what the measurement leaves open.
+# Housner's model is closest, because its impulse is at the edge. The law for simulations contains the scatter and the
+# uncertainty of the measurement.
 
 print("closest model", found.models[0].model, round(found.models[0].coefficient, 4))
 assert found.models[0].model == "housner"

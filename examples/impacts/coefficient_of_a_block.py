@@ -12,15 +12,15 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.plots.style import model_styles
 
 # %%
-# A block is given by its full sizes [m] and its density [kg/m3]. How slender it is, `h/b`, decides what an impact
-# costs; the frequency parameter `p` says how quickly it rocks.
+# A block has full sizes [m] and a density [kg/m3]. The slenderness ratio `h/b` determines the energy loss, and the
+# frequency parameter `p` the rate of rocking.
 
 block = rk.Block(width=1.0, height=4.0, depth=1.0, density=2400.0)
 print(f"h/b = {block.slenderness_ratio:g}, p = {block.frequency_parameter:.4f} rad/s")
 
 # %%
-# The coefficient `r` is the angular velocity after the impact over that before it. Each value implies where along
-# the base the impulse acts, from `k = 0` at its middle to `k = 1` at the new edge, and how much energy is lost.
+# The coefficient `r` is the angular velocity after the impact / before the impact. Each value implies a position of
+# the impulse, from `k = 0` at the centre of the base to `k = 1` at the new edge, and an energy loss.
 
 for name in ("housner", "ked", "horizontal-momentum", "shifted-impulse", "distributed-impulse", "plastic-winkler"):
     r = rk.coefficient_of_restitution(block, name)
@@ -32,7 +32,8 @@ assert abs(rk.coefficient_of_restitution(block, "ked") - 0.94736684) < 5e-9
 assert abs(rk.coefficient_of_restitution(block, "housner") - 31.0 / 34.0) < 1e-12
 
 # %%
-# For other blocks, from squat to slender: near `h/b = 2` the classical model loses far more than all the others.
+# Other blocks, from squat to slender. Near `h/b = 2` the classical model has a much larger energy loss than the other
+# models.
 
 ratio = np.linspace(1.5, 8.0, 200)
 with journal_style():

@@ -9,15 +9,15 @@ import rocking as rk
 from rocking.plots import energy_stages_picture, write
 
 # %%
-# A tapered pedestal with a hollow: an outline [m], a density [kg/m3], a hole.
+# A tapered pedestal with a hole: an outline [m], a density [kg/m3], a hole.
 
 outline = rk.bodies.shapes.trapezoid(base=1.0, top=0.5, height=2.5)
 hollow = [(0.4, 0.4), (0.6, 0.4), (0.6, 1.6), (0.4, 1.6)]
 pedestal = rk.Section.from_points(outline, density=2700.0, holes=[hollow])
 
 # %%
-# First the velocities towards the ground vanish, then the parts of the rest that do not fit a rotation about the
-# new foot; what is left is that rotation.
+# First the vertical velocities are lost, then the components along the lines to the new foot. The remaining energy
+# becomes rotation about the new foot.
 
 balance = rk.restitution.energy_balance(pedestal, onto="right", angular_velocity=0.5)
 for stage, share in balance.shares.items():

@@ -12,8 +12,8 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.studies.impact_laboratory import Laboratory, bed_speed_law, study
 
 # %%
-# Where it touches: with two contact points, at its edges, the classical value emerges; the more points, the less is
-# lost.
+# Contact points: with two points, at the edges, the result is the classical value. More points reduce the energy
+# loss.
 
 by_points = study("points", [2, 3, 5, 11, 41])
 print("r by contact points   ", by_points.coefficient.round(3).values)
@@ -21,14 +21,14 @@ assert abs(by_points.coefficient.values[0] - 0.7) < 2e-3
 assert np.all(np.diff(by_points.coefficient.values[:5]) > 0.0)
 
 # %%
-# How fast it lands, let go from ever larger rotations (in parts of alpha): that matters little.
+# Landing speed, from increasing initial rotations (relative to alpha). The effect is small.
 
 by_speed = study("release", [0.1, 0.3, 0.6], Laboratory(slenderness=3.0))
 print("r by landing velocity ", by_speed.coefficient.round(3).values)
 
 # %%
-# How even the base is: under a base of 0.2 m a hollow of a tenth of a millimetre is felt, and one of a millimetre
-# comes near to two points.
+# Unevenness of the base: for a base of 0.2 m a hollow of 0.1 mm has an effect, and a hollow of 1 mm is close to two
+# points.
 
 hollow = study("amplitude", [0.0, 1e-4, 1e-3], shape="concave")
 print("r by hollow of a base ", hollow.coefficient.round(3).values)
@@ -45,8 +45,7 @@ with journal_style():
 write(figure, "impact_laboratory.png")
 
 # %%
-# What emerges is also a model among the others, and a law that depends on the velocity for `rk.simulate` and
-# `rk.free_rocking`.
+# The result is also a restitution model, and a velocity-dependent law for `rk.simulate` and `rk.free_rocking`.
 
 block = rk.Block(width=0.2, height=0.4)
 bed = rk.restitution.model("contact-bed", points=41)

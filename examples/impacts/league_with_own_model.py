@@ -11,7 +11,7 @@ import rocking as rk
 from rocking.plots import journal_style, new_figure, write
 
 # %%
-# A fit with one parameter, as a class of its own.
+# A model with one fitted parameter, as a class.
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,9 @@ class SineFit(rk.restitution.RestitutionModel):
 
 
 # %%
-# The table of the league: the error in `r` and in the logarithm of the loss, and the 95 % interval of how far each
-# model lies ahead of KED. An interval that includes zero decides nothing. Models with `(...)` have parameters
-# fitted to these data.
+# The comparison: the error of `r`, the error of the logarithm of the energy loss, and the 95 % interval of the
+# difference from KED. An interval with zero is not distinguishable. Models with `(...)` have parameters fitted to
+# these data.
 
 rows = rk.evidence.league([SineFit()])
 for row in rows:
@@ -59,6 +59,6 @@ with journal_style():
 write(figure, "league_with_own_model.png")
 
 # %%
-# What the comparison says in words, and what it cannot say.
+# The comparison in sentences, with its limits.
 
 print(*rk.evidence.verdict(rows), sep="\n")

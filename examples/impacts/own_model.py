@@ -15,8 +15,8 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.plots.style import look
 
 # %%
-# The class says what it is, where it comes from and for which bodies it holds; its method returns the coefficient
-# for a body that comes down on a foot. Parameters are fields of a dataclass.
+# The class contains title, reference and domain. Its method returns the coefficient of a body for a landing on a
+# foot. Parameters are fields of a dataclass.
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Facets(rk.restitution.RestitutionModel):
 
 
 # %%
-# It serves wherever the name of a model does: here, in `rk.simulate`, in maps and in fragilities.
+# The object replaces a model name: here, in `rk.simulate`, in maps and in fragility curves.
 
 block = rk.Block(width=1.0, height=2.0)
 for n in (1, 2, 3, 4):
@@ -54,7 +54,7 @@ assert abs(rk.coefficient_of_restitution(block, Facets(1)) - rk.coefficient_of_r
 assert abs(rk.coefficient_of_restitution(block, Facets(2)) - 17.0 / 20.0) < 1e-14
 
 # %%
-# One facet is Housner's impact. The more facets, the less is lost: a base that is ever rounder rolls.
+# One facet is Housner's impact. The energy loss decreases with the number of facets: the limit is a rolling base.
 
 ratio = np.linspace(1.5, 6.0, 40)
 with journal_style():

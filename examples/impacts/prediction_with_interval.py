@@ -10,7 +10,7 @@ from rocking.evidence._coefficient_table import outside_evidence
 from rocking.plots import coefficient_picture, write
 
 # %%
-# A body from a file: a marble figure on a pedestal of brick.
+# A body from a file: a marble figure on a brick pedestal.
 
 statue = rk.examples.body("statue")
 prediction = rk.evidence.calibrate().predict(statue)
@@ -18,15 +18,16 @@ print(f"r = {prediction.coefficient:.3f}, 95 % interval {prediction.low:.3f} to 
 assert prediction.low < prediction.coefficient < prediction.high
 
 # %%
-# Nobody has measured a block that is wider than high: its interval is an extrapolation.
+# No block wider than high was measured. Its interval is an extrapolation.
 
 flat = rk.Block(width=2.0, height=1.0)
 print(outside_evidence(flat))
 assert "extrapolation" in outside_evidence(flat)
 
 # %%
-# All models for both feet, each with the interval that its errors at the measurements give it, and where this body
-# lies among them. The command `rocking restitution statue.toml --output statue.png` draws the same.
+# All models for both feet, each with the interval from its errors at the measurements, and the slenderness of this
+# body in the range of the measurements. `rocking restitution statue.toml --output statue.png` writes the same
+# picture.
 
 tables = {foot: rk.evidence.coefficient_table(statue, onto=foot) for foot in ("left", "right")}
 write(coefficient_picture(statue, tables), "prediction_with_interval.png")

@@ -14,7 +14,7 @@ from rocking.plots import transitions_of_many_picture, write
 from rocking.studies import SyntheticSet, minimum_overturning_acceleration
 
 # %%
-# The study as a job: what a file would hold.
+# The study as a job, as in a job file.
 
 COUNT = 12
 job = Job.of_text(f"""
@@ -43,14 +43,14 @@ with TemporaryDirectory() as home:
 found = {"housner": crossings[0::2], "ked": crossings[1::2]}
 
 # %%
-# One of them is what the search by itself finds.
+# One of the results, computed by the search function alone.
 
 motions, block = SyntheticSet("pulse-like", COUNT, seed=2), rk.Block(width=0.4, height=1.6)
 alone = minimum_overturning_acceleration(block, motions[7], "ked", samples=120, bisections=2)
 assert alone.acceleration.tolist() == found["ked"][7].acceleration.tolist()
 
 # %%
-# Under most motions the cabinet stands again somewhere above the least.
+# Under most motions there are intervals without overturning above the minimum.
 
 for label, each in found.items():
     again = sum(any(high > 1.01 * low for low, high in one.safe_intervals[1:]) for one in each)

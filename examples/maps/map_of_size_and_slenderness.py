@@ -13,7 +13,7 @@ from rocking.plots import overturning_map_picture, write
 from rocking.studies import boundary, map_sensitivity
 
 # %%
-# A sine of 0.5 g and 0.8 s. A block is lifted where that exceeds `g b / h`: here from `h/b = 2` on.
+# A sine of 0.5 g and 0.8 s. Uplift requires a ground acceleration above `g b / h`: here `h/b` of at least 2.
 
 block = rk.Block(width=0.5, height=2.0)
 pulse = rk.pulses.sine(amplitude=0.5 * conventions.g, period=0.8)
@@ -29,13 +29,13 @@ assert bool((lifted == (found["slenderness_ratio"] > 2.0)).all())
 assert float(found["semi_diagonal"].max()) > largest
 
 # %%
-# What the choice between two models changes here.
+# The effect of the choice between two models.
 
 print(compared.verdict)
 assert compared.flips_between("ked", "housner").count > 0
 
 # %%
-# Large blocks stand, however slender they are: size protects.
+# Large blocks do not overturn, independent of their slenderness.
 
 lines = boundary(block, pulse, *axes, restitution="ked", by="mode", tolerance=1e-4)
 write(overturning_map_picture(found, lines), "map_of_size_and_slenderness.png")

@@ -13,7 +13,7 @@ from rocking.plots import transitions_picture, write
 from rocking.studies import minimum_overturning_acceleration
 
 # %%
-# Every amplitude of one sine pulse at which the verdict changes.
+# All amplitudes of one sine pulse at which the outcome changes.
 
 block = rk.Block(width=0.5, height=2.0)
 pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
@@ -26,12 +26,12 @@ assert len(found) == 3  # after one impact, safe again, without impact
 assert found.modes[:, 1].tolist() == [1, -1, 0]
 
 # %%
-# The peak rotation over the amplitude; where it overturns, by how many impacts.
+# The peak rotation over the amplitude, and the number of impacts before overturning.
 
 write(transitions_picture(found, block, pulse, 0.85), "minimum_overturning_acceleration.png")
 
 # %%
-# A rectangular pulse and the slender-linear equations have a closed form: `g alpha / (1 - exp(-p T))`.
+# For a rectangular pulse and the slender-linear equations the minimum has a closed form: `g alpha / (1 - exp(-p T))`.
 
 duration = 0.5
 one = minimum_overturning_acceleration(block, rk.pulses.rectangular(1.0, duration), 0.85, linear=True)

@@ -12,8 +12,7 @@ from rocking.plots import overturning_map_picture, write
 from rocking.studies import boundary, overturning_map, safe_beyond_overturning
 
 # %%
-# 160 x 160 sine pulses, as ratios: frequency over the frequency parameter `p` of the block, amplitude over what
-# just lifts it.
+# 160 x 160 sine pulses, as ratios: frequency / frequency parameter `p` of the block, amplitude / uplift acceleration.
 
 block = rk.Block(width=0.5, height=2.0)
 pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
@@ -30,7 +29,7 @@ assert beyond.any()
 assert (found["mode"].sel(amplitude_ratio=1.0) == -2).all()
 
 # %%
-# The boundary is found by bisection and comes as polylines: a step across it changes the verdict.
+# Bisection gives the boundary as polylines. The outcome changes at the boundary.
 
 lines = boundary(block, pulse, *axes, restitution=0.85, tolerance=1e-5)
 longest = max(lines, key=lambda line: len(line.points))
@@ -43,7 +42,7 @@ around = [
 assert {bool((one["mode"] >= 0).any()) for one in around} == {True, False}
 
 # %%
-# Brown without an impact, orange after one; blue lines say how far the block rocks where it stands, in parts of
-# alpha.
+# Brown: overturning without an impact. Orange: overturning after one impact. Blue lines: peak rotation / alpha
+# without overturning.
 
 write(overturning_map_picture(found, lines), "overturning_map_of_a_pulse.png")

@@ -12,7 +12,7 @@ from rocking.plots import refined_map_picture, write
 from rocking.studies import boundary, overturning_map, refined_map
 
 # %%
-# Three levels, each twice as fine as the one before, and only where neighbours differ.
+# Three levels, each with half of the spacing, only between different neighbours.
 
 block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
 axes = ("frequency_ratio", np.linspace(0.5, 8.0, 61)), ("amplitude_ratio", np.linspace(1.0, 10.0, 61))
@@ -26,7 +26,7 @@ print(f"{base} points of the map, {total - base} along its boundaries; as fine e
 assert total < 0.2 * whole
 
 # %%
-# A point of the refined map is what the map itself would say there.
+# A point of the refined map equals the result of the usual map.
 
 place = int(np.flatnonzero(~points.base)[100])
 alone = overturning_map(
@@ -35,7 +35,7 @@ alone = overturning_map(
 assert int(alone["mode"].item()) == int(points.modes[place])
 
 # %%
-# A vertex of a polyline lies between two ways to end, closer than 1e-4.
+# A vertex of a polyline is between two modes, with an error below 1e-4.
 
 print(f"{len(lines)} polylines, {sum(len(line.points) for line in lines)} vertices")
 longest = max(lines, key=lambda line: len(line.points))
@@ -47,7 +47,7 @@ sides = [
 assert sides[0] != sides[1]
 
 # %%
-# Left the map, right the points that were computed in its frame.
+# Left: the map. Right: the computed points in the marked region.
 
 picture = refined_map_picture(
     points, lines, window=((1.6, 3.2), (1.8, 4.2)), words="sine pulse scaled; restitution 0.9"

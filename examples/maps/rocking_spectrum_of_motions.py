@@ -13,7 +13,7 @@ from rocking.plots import rocking_spectrum_picture, write
 from rocking.studies import SyntheticSet, rocking_spectrum
 
 # %%
-# Two hundred synthetic motions of 0.3 g, three slendernesses, sixty sizes. Size is told by the period `2 pi / p`.
+# Two hundred synthetic motions of 0.3 g, three slenderness ratios, sixty sizes. The size is the period `2 pi / p`.
 
 motions = SyntheticSet("point-source", count=200, seed=1, pga=0.3 * conventions.g)
 angles, periods = np.arctan([1 / 4, 1 / 6, 1 / 8]), np.geomspace(0.8, 16.0, 60)
@@ -31,14 +31,14 @@ assert float(share.isel(slenderness_angle=2, period=0)) > 0.9
 assert (found["mode"] != -2).all()
 
 # %%
-# Each point is a response that can be computed by itself.
+# Each point is one response.
 
 one = found.isel(motion=3, slenderness_angle=1, period=20)
 block = rk.Block.from_angle(angles[1], float(one["semi_diagonal"]))
 assert rk.simulate(block, motions[3], "ked").peak_rotation == abs(float(one["peak_rotation"]))
 
 # %%
-# Medians, and bands from 16 % to 84 % of the motions. The strip below says how many of them overturn the block; a
-# curve ends where half of them do.
+# Medians, and bands from 16 % to 84 % of the motions. The strip below is the overturning fraction. A curve ends at a
+# fraction of one half.
 
 write(rocking_spectrum_picture(found), "rocking_spectrum_of_motions.png")

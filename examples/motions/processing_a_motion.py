@@ -23,7 +23,7 @@ from rocking.motions import (
 from rocking.plots import ground_motion_picture, write
 
 # %%
-# Two horizontal components, turned by 30 degrees. RotD50 and RotD100 are the median and the largest peak over all
+# Two horizontal components, rotated by 30 degrees. RotD50 and RotD100 are the median and the largest peak over all
 # directions.
 
 east = rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(density=0.01), seed=3)
@@ -33,7 +33,8 @@ print(f"RotD50 {rotd_pga(east, north, 50.0):.3f}, RotD100 {rotd_pga(east, north,
 assert rotd_pga(east, north, 100.0) >= max(along.peak, across.peak) * (1.0 - 1e-3)  # angles in whole degrees
 
 # %%
-# Baseline, filter, the significant part with some rest around it, a finer step, and a peak velocity of 0.5 m/s.
+# Baseline correction, filter, the significant segment with zero padding, a finer time step, and a peak velocity of
+# 0.5 m/s.
 
 clean = bandpassed(demeaned(along), 0.1, 10.0)
 shorter = padded(trimmed_to_significant(clean), before=0.5, after=2.0)
@@ -44,14 +45,14 @@ for line in target.provenance:
 assert abs(intensity_measures(target)["pgv"].value - 0.5) < 1e-12
 
 # %%
-# It can be scaled to any measure, such as the spectral acceleration at a period.
+# A motion can be scaled to any measure, such as the spectral acceleration at a period.
 
 stiff = scaled_to(finer, "sa(0.5)", 6.0)
 print(f"Sa(0.5 s) = {spectral_acceleration(stiff, 0.5):.3f} m/s2")
 assert abs(spectral_acceleration(stiff, 0.5) - 6.0) < 1e-9
 
 # %%
-# One look shows what cutting did: the motion no longer ends at rest, and its displacement drifts. A body that rocks
-# feels the acceleration alone; displacements are read from `clean`, which does come to rest.
+# The picture shows the effect of the cut: the motion does not end at rest, and its displacement drifts. A rocking
+# body depends on the acceleration only. Use the displacements of `clean`, which ends at rest.
 
 write(ground_motion_picture(target), "processing_a_motion.png")

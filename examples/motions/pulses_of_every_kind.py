@@ -11,8 +11,8 @@ import rocking as rk
 from rocking.plots import journal_style, new_figure, write
 
 # %%
-# All of them have the same peak [m/s2] and last about as long; the last one is given by its velocity, as near-fault
-# pulses are.
+# All pulses have the same peak [m/s2] and a similar duration. The last pulse is defined by its velocity, as
+# near-fault pulses are.
 
 block = rk.Block(width=0.5, height=2.0)
 pulses = [
@@ -32,7 +32,7 @@ for pulse, response in zip(pulses, outcomes, strict=True):
     print(f"{pulse.name:45s} {response.outcome.value}, {len(response.impacts)} impact(s)")
 
 # %%
-# The formulas can be asked at any time.
+# The formulas can be evaluated at any time.
 
 middle = pulses[2]
 print(f"displacement after a sine of 1 s: {middle.displacement(1.0):.12f} m")
@@ -40,8 +40,8 @@ assert middle.velocity(1.0) == 0.0 or abs(middle.velocity(1.0)) < 1e-15
 assert abs(middle.displacement(1.0) - 4.0 / (2.0 * np.pi)) < 1e-12  # a_p T^2 / (2 pi)
 
 # %%
-# Two pulses with the same peak and period are not the same to a block: what overturns is how far the ground carries
-# it while it is lifted.
+# Two pulses with the same peak and period have different effects on a block. The displacement of the ground during
+# uplift is decisive.
 
 with journal_style():
     figure, axes = new_figure(7.0, 5.6, rows=4, columns=3)

@@ -14,20 +14,20 @@ from rocking.motions.formats import write_motion
 from rocking.plots import ground_motion_picture, write
 
 # %%
-# No real record comes with the package, so that a synthetic motion is written in PEER's format first.
+# The package contains no real record. Therefore a synthetic motion is first written in the PEER format.
 
 made = rk.synthetic.point_source_motion(rk.synthetic.PointSource(magnitude=6.5, distance=15e3), seed=4)
 write_motion(made, "synthetic.AT2", format="peer", units="g")
 
 # %%
-# Reading takes nothing but the name: the format is recognised, and the unit is what the file states.
+# The reader needs the file name only. It recognises the format, and the unit is in the file.
 
 motion = rk.read_motion("synthetic.AT2")
 print(motion.name, f"{motion.duration:.2f} s at {motion.time_step} s, {motion.metadata['unit']}")
 assert np.allclose(motion.acceleration, made.acceleration, rtol=1e-6, atol=1e-7 * motion.peak)  # 7 digits in the file
 
 # %%
-# How strong it is, by the usual measures, and what it holds at which period.
+# The intensity measures and the response spectrum.
 
 for measure in intensity_measures(motion).values():
     print(f"  {measure.name:30s} {measure.value:9.4g} {measure.unit}")
@@ -36,8 +36,8 @@ print(f"  largest Sa {spectrum.pseudo_acceleration.max():.3g} m/s2")
 write(ground_motion_picture(motion), "record_from_a_file.png")
 
 # %%
-# Scaled to a peak of 0.4 g, it shakes a stele from a body file. The table has a row a sample, with units in its
-# head.
+# Scaled to a peak of 0.4 g, the motion acts on a stele from a body file. The table has one row per sample, with units
+# in its header.
 
 stele = rk.examples.body("stele")
 response = rk.simulate(stele, scaled_to(motion, "pga", 0.4 * conventions.g), restitution="ked")
@@ -46,6 +46,6 @@ table = response.to_csv("response.csv")
 assert len(table.read_text(encoding="utf-8").splitlines()) > response.time.size
 
 # %%
-# The response: ground, rotation, velocity, energy, and the friction that it takes.
+# The response: ground motion, rotation, velocity, energy, and friction demand.
 
 response.plot("response_of_the_stele.png")

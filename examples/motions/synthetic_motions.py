@@ -13,7 +13,7 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.plots.style import COLORS, look
 
 # %%
-# One model is told intensity and duration, one magnitude and distance, one the soil.
+# One model has intensity and duration as input, one magnitude and distance, and one the soil.
 
 modulation = rk.synthetic.modulation_from_intensity(arias_intensity=1.0, significant_duration=12.0, middle=8.0)
 motions = [
@@ -26,7 +26,7 @@ for motion in motions:
     print(f"{motion.name:40s} PGA {measures['pga'].value:.3g} m/s2, Arias {measures['arias'].value:.3g} m/s")
 
 # %%
-# The seed decides: the same one gives the same motion, another one another.
+# The seed determines the motion.
 
 again = rk.synthetic.nonstationary_motion(modulation, rk.synthetic.NonstationaryFilter(), seed=1)
 assert (again.acceleration == motions[0].acceleration).all()
@@ -36,7 +36,7 @@ assert not (again.acceleration == other.acceleration).all()
 assert 6.0 < significant_duration(motions[0]) < 24.0
 
 # %%
-# The motions, and their spectra.
+# The motions and their spectra.
 
 periods = np.geomspace(0.05, 4.0, 50)
 with journal_style():

@@ -12,7 +12,7 @@ from rocking.plots import record_set_picture, write
 from rocking.studies import SyntheticSet
 
 # %%
-# Families differ in how much velocity comes with an acceleration, which is what rocking feels.
+# Families differ in the ratio of velocity and acceleration, which is important for rocking.
 
 sets = {name: SyntheticSet(name, count=30, seed=1) for name in ("firm-ground", "soft-ground", "pulse-like")}
 for name, motions in sets.items():
@@ -21,8 +21,8 @@ for name, motions in sets.items():
     print(f"median PGV/PGA {np.median(ratio):.3f} s")
 
 # %%
-# A motion depends on family, seed and number alone: a larger set begins with those of a smaller one. Scaling
-# happens as they are made.
+# A motion depends on family, seed and index only. A larger set begins with the motions of a smaller set. Each motion
+# is scaled at its creation.
 
 longer = SyntheticSet("soft-ground", count=1_000_000, seed=1)
 assert (longer[29].acceleration == sets["soft-ground"][29].acceleration).all()
@@ -30,6 +30,6 @@ assert not np.array_equal(SyntheticSet("soft-ground", 30, seed=2)[29].accelerati
 assert all(abs(motion.peak - 3.0) < 1e-9 for motion in SyntheticSet("firm-ground", 5, seed=1, pga=3.0))
 
 # %%
-# Left a point a motion; right the median spectra, and where the middle 68 % of the motions are.
+# Left: one point per motion. Right: the median spectra, and the range of the middle 68 % of the motions.
 
 write(record_set_picture(sets, np.geomspace(0.05, 4.0, 30)), "synthetic_record_sets.png")

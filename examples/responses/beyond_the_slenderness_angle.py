@@ -9,8 +9,8 @@ import rocking as rk
 from rocking.plots import animate_comparison
 
 # %%
-# Between an amplitude that overturns and one that does not lies the least that does; bisection finds it to nine
-# digits.
+# Bisection finds the minimum overturning amplitude between an amplitude with and an amplitude without overturning, to
+# nine digits.
 
 block = rk.Block(width=0.5, height=1.5)
 overturned, standing = 12.0, 10.6  # m/s2
@@ -21,8 +21,8 @@ while overturned - standing > 1e-9:
     overturned, standing = (middle, standing) if falls else (overturned, middle)
 
 # %%
-# Two amplitudes that differ by at most a billionth of a m/s2: one overturns, the other comes back from 1.56
-# alpha, without a single impact.
+# Two amplitudes differ by at most 1e-9 m/s2. The body overturns with one of them. With the other one it returns from
+# 1.56 alpha without an impact.
 
 response, fallen = (rk.simulate(block, rk.pulses.sine(amplitude, 0.75), 0.85) for amplitude in (standing, overturned))
 print(f"{standing:.6f} m/s2: {response.summary}")
@@ -31,8 +31,7 @@ assert response.peak_rotation / block.slenderness_angle > 1.0
 response.plot("beyond_the_slenderness_angle.png")
 
 # %%
-# A little below and a little above it, side by side as a film; and the one that comes back as a web page of one
-# file, in which one can stop, slow down and drag.
+# Both responses as an animation; and the second one as an interactive web page.
 
 both = {
     f"{amplitude:.2f} m/s2": rk.simulate(block, rk.pulses.sine(amplitude, 0.75), 0.85)

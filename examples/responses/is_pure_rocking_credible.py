@@ -14,8 +14,8 @@ from rocking.errors import PureRockingWarning
 from rocking.plots import regime_map_picture, write
 
 # %%
-# Rocking takes friction, a squat body more than a slender one. With a coefficient of friction of 0.4 the squat one
-# slides, and `rk.simulate(..., friction=0.4)` follows it.
+# Rocking has a friction demand, which is larger for a squat body. With a friction coefficient of 0.4 the squat body
+# slides, and `rk.simulate(..., friction=0.4)` simulates this.
 
 squat, slender = rk.Block(width=1.0, height=1.6), rk.Block(width=0.4, height=1.6)
 for body, amplitude in ((squat, 9.0), (slender, 4.0)):
@@ -28,13 +28,13 @@ for body, amplitude in ((squat, 9.0), (slender, 4.0)):
     assert bool(contact.warnings(friction=0.4)) is (body is squat)
 
 # %%
-# What a squat body at rest starts to do under a sudden acceleration, by friction: complementarity (cells) against
-# the closed forms of Shenton (lines).
+# The regime of a squat body at rest under a sudden acceleration, as a function of friction: complementarity problem
+# (cells) and the closed forms of Shenton (lines).
 
 write(regime_map_picture(squat), "is_pure_rocking_credible.png")
 
 # %%
-# Strong vertical motion may lift a body off the ground, which pure rocking cannot do. The answer says so.
+# A strong vertical motion can cause flight, which pure rocking excludes. The result contains this message.
 
 time = np.arange(0.0, 4.0, 0.005)
 envelope = np.sin(np.pi * time / 4.0) ** 2
@@ -53,6 +53,6 @@ for share in (0.0, 0.5, 1.3):
 assert lifts_off
 
 # %%
-# That last response; at the bottom, where the ground would have to pull.
+# The last response. Below: the contact force becomes tensile.
 
 response.plot("response_with_vertical_motion.png")

@@ -19,7 +19,7 @@ shaking = rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(density=0.01
 shaking = rk.motions.bandpassed(rk.motions.scaled_to(shaking, "pga", 5.0), 0.2, 8.0)
 
 # %%
-# By side: its left foot loses more than its right.
+# Dependence on the side: the left foot has a larger energy loss.
 
 by_side = rk.simulate(block, shaking, restitution={"left": 0.80, "right": 0.95})
 print("by side:    ", by_side.summary)
@@ -27,7 +27,7 @@ onto = by_side.impacts["onto"]
 assert set(by_side.impacts["coefficient"][onto == "left"]) == {0.80}
 
 # %%
-# By speed: the harder the impact, the more it costs.
+# Dependence on the speed: a faster impact has a larger energy loss.
 
 harder = rk.dynamics.SpeedRestitution(at=[0.0, 0.2, 1.0], factors=[1.0, 0.97, 0.90], times="housner")
 by_speed = rk.simulate(block, shaking, restitution=harder)
@@ -36,8 +36,8 @@ fast = np.abs(by_speed.impacts["velocity_before"])
 assert (np.diff(by_speed.impacts["coefficient"][np.argsort(fast)]) <= 0.0).all()
 
 # %%
-# By chance: a hundred histories, of which each draws its coefficients from the same distribution. The same seed and
-# stream give the same draws.
+# Random coefficients: one hundred simulations with samples of the same distribution. The same seed and stream give
+# the same samples.
 
 drawn = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=11)
 drawn_responses = [rk.simulate(block, shaking, restitution=drawn, stream=stream) for stream in range(100)]
@@ -48,8 +48,7 @@ again = rk.simulate(block, shaking, restitution=drawn, stream=5)
 assert (again.rotation == drawn_responses[5].rotation).all()
 
 # %%
-# Above, all draws; below, the two other laws. A scatter of three percent at each impact is enough to make one
-# motion a matter of chance.
+# Above: all samples. Below: the two other laws. With a scatter of 3 % per impact the outcome of one motion is random.
 
 with journal_style():
     figure, (above, below) = new_figure(6.0, 3.8, rows=2, sharex=True)

@@ -10,7 +10,8 @@ import rocking as rk
 from rocking.plots import journal_style, new_figure, write
 
 # %%
-# Forty blocks of one slenderness, from 0.5 m to 8 m high, under one pulse at sixty scales, with two models.
+# Forty blocks of one slenderness ratio, from 0.5 m to 8 m high, under one pulse at sixty scale factors, with two
+# models.
 
 blocks = [rk.Block(width=0.25 * size, height=size) for size in np.geomspace(0.5, 8.0, 40)]
 pulse = rk.pulses.sine(amplitude=1.0, period=0.8)
@@ -19,7 +20,7 @@ print(dict(result.sizes))
 assert (result.status == 0).all()
 
 # %%
-# The dataset is an ordinary one of xarray: select, compare, count.
+# The dataset is an xarray dataset: select, compare, count.
 
 overturned = (result.outcome == rk.Outcome.OVERTURNED.code).isel(motion=0)
 share = overturned.mean(("body", "scale"))
@@ -30,14 +31,14 @@ print(f"the choice between them decides {int(flips.sum())} cases")
 assert float(share.sel(restitution="ked")) >= float(share.sel(restitution="housner"))
 
 # %%
-# Each of them is what it would be alone, to the last bit.
+# Each result equals the result of a single simulation, in all bits.
 
 one = rk.simulate(blocks[7], pulse, "ked", scale=float(result.scale[30]))
 batch = result.isel(body=7, motion=0, scale=30).sel(restitution="ked")
 assert float(abs(batch.peak_rotation)) == one.peak_rotation
 
 # %%
-# Large blocks take more; along the border the model decides.
+# Large blocks overturn at larger amplitudes. Near the boundary the outcome depends on the model.
 
 with journal_style():
     figure, (axes,) = new_figure(5.0, 3.2)

@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.plots import animate_comparison
 
 # %%
-# A cabinet of 0.6 m x 2 m, and one full sine of acceleration: 7.6 m/s2 for half a second.
+# A cabinet of 0.6 m x 2 m, and one full sine: 7.6 m/s2 for 0.5 s.
 
 cabinet = rk.Block(width=0.6, height=2.0, depth=0.5, density=300.0)
 pulse = rk.pulses.sine(amplitude=7.6, period=0.5)
@@ -23,8 +23,8 @@ for name, model in models.items():
 assert [response.outcome.name for response in responses.values()] == ["ROCKED", "OVERTURNED", "OVERTURNED"]
 
 # %%
-# Until their first impact all three are the same. There Housner's model takes a little more of the speed than the
-# others do: enough to stand.
+# Until the first impact all three responses are equal. Housner's model then has a larger energy loss, and the cabinet
+# does not overturn.
 
 title = "The same cabinet, the same pulse, three models of the impact"
 animate_comparison(responses, "rocking.gif", title=title, speed=0.8, until=4.0)

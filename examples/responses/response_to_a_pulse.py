@@ -12,7 +12,7 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.plots.style import model_styles
 
 # %%
-# A cabinet under one full sine, with three models of the impact.
+# A cabinet under one full sine, with three restitution models.
 
 cabinet = rk.Block(width=0.6, height=2.0, depth=0.5, density=300.0)
 pulse = rk.pulses.sine(amplitude=7.6, period=0.5)
@@ -28,14 +28,14 @@ assert responses["housner"].outcome is rk.Outcome.ROCKED
 assert responses["ked"].outcome is rk.Outcome.OVERTURNED
 
 # %%
-# Everything about the one that stands, in one picture: the ground, rotation, velocity, energy, and the friction
-# that it takes not to slide.
+# The complete response without overturning in one picture: ground motion, rotation, velocity, energy, and friction
+# demand.
 
 print(responses["housner"].summary)
 responses["housner"].plot("response_to_a_pulse.png")
 
 # %%
-# A response can be asked at any time, not only at its samples; so the three are drawn together.
+# A response can be evaluated at any time. Therefore the three responses are plotted together.
 
 with journal_style():
     figure, (axes,) = new_figure(6.0, 2.8)

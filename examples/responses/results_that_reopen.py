@@ -19,14 +19,14 @@ column = rk.Block(width=0.8, height=4.0, density=2500.0)
 response = rk.simulate(column, rk.pulses.ricker(3.0, period=1.2), restitution="horizontal-momentum")
 
 # %%
-# CSV, for spreadsheets and pandas: comments in the head say where it comes from, each column says its unit.
+# CSV for spreadsheets and pandas: comments in the header contain the provenance, and each column contains its unit.
 
 table = pd.read_csv(response.to_csv("column.csv"), comment="#")
 print(*table.columns, sep="\n")
 assert len(table) == response.time.size
 
 # %%
-# MATLAB, and netCDF for xarray: all digits come back.
+# MATLAB, and netCDF for xarray: all digits are preserved.
 
 matlab = loadmat(response.to_mat("column.mat"), simplify_cells=True)["rocking"]
 with xr.open_dataset(response.to_netcdf("column.nc"), engine="h5netcdf") as reopened:
@@ -35,7 +35,7 @@ with xr.open_dataset(response.to_netcdf("column.nc"), engine="h5netcdf") as reop
 assert (np.ravel(matlab["rotation"]) == response.rotation).all()
 
 # %%
-# Drawn from the table that was read back.
+# Plotted from the file.
 
 with journal_style():
     figure, axes = new_figure(6.0, 3.2, rows=2, sharex=True)

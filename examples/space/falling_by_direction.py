@@ -21,7 +21,7 @@ head = Part(ellipsoid(0.20, 0.18, 0.28, cut_below=0.02), 2700.0).moved(0.03, 0.0
 statue = Solid([pedestal, socle, chest, head])
 
 # %%
-# Two horizontal components of one shaking, the second seven tenths as strong, turned in steps of five degrees.
+# Two horizontal components of one motion, the second with a factor of 0.7, rotated in steps of five degrees.
 
 modulation = rk.synthetic.modulation_from_intensity(arias_intensity=1.5, significant_duration=8.0, middle=5.0)
 strong, weak = (
@@ -37,7 +37,7 @@ turned = [
 ]
 
 # %%
-# Thousands of histories in space, with two models.
+# Thousands of 3D simulations with two models.
 
 scales = np.linspace(0.6, 4.0, 52)
 results = rk.simulate_many(statue, turned, ["housner", "ked"], scale=scales)
@@ -56,14 +56,14 @@ assert (share.max(axis=0) > 1.15 * share.min(axis=0)).all()
 assert differs.mean() > 0.05
 
 # %%
-# It falls over its long sides, along y, far more often than over its short ones.
+# The bust overturns over its long sides, along y, more often than over its short sides.
 
 along_y = np.abs(np.sin(results["direction"].values[results["overturned"].values == 1.0])) > np.sqrt(0.5)
 print(f"{along_y.mean():.1%} of the falls are over the long sides of the base")
 assert along_y.mean() > 0.6
 
 # %%
-# How often by the direction of the shaking, which way it falls, and where the two models disagree.
+# Overturning fraction by the direction of the motion, direction of overturning, and differences between the models.
 
 base = [(0.21, 0.17), (-0.21, 0.17), (-0.21, -0.17), (0.21, -0.17)]
 write(falling_picture(results, azimuths, base), "falling_by_direction.png")

@@ -14,7 +14,7 @@ from rocking.plots import journal_style, new_figure, write
 from rocking.restitution.space import edge_coefficient
 
 # %%
-# A round statue with something at its side, tilted and turning when the shaking begins.
+# A round statue with an eccentric mass, with an initial tilt and rotation.
 
 profile = [(0.30, 0.0), (0.30, 0.15), (0.18, 0.25), (0.15, 1.2), (0.22, 1.5), (0.10, 1.75)]
 parts = [Part(revolution(profile), 2600.0), Part(box(0.25, 0.2, 0.3), 2600.0).moved(0.35, 0.05, 1.1)]
@@ -32,7 +32,7 @@ def on_corners(count: int) -> Solid:
 
 
 # %%
-# On its rim it rolls, without an impact. On corners it comes down again and again, and each landing costs a little.
+# On its rim the statue rolls without an impact. On corners it has repeated impacts with a small energy loss.
 
 drum = Solid(parts, base=RoundBase(np.zeros(2), 0.3))
 rim = rk.simulate(drum, shaking, start=start, duration=1.2)
@@ -55,8 +55,8 @@ for law in ("housner-3d", "ked-3d"):
     assert lacking[law][-1, 1:].max() < 0.04
 
 # %%
-# One landing lacks a share that falls with the square of the number of corners; a whole turn, one that falls with
-# the number.
+# The error of one landing decreases with the square of the number of corners. The error of a complete rotation
+# decreases with the number.
 
 with journal_style():
     figure, axes = new_figure(7.0, 2.4, columns=3)

@@ -16,7 +16,7 @@ from rocking.plots import solid_picture, write
 from rocking.restitution.space import edge_coefficient, spatial_models
 
 # %%
-# What a scanner would hand over: triangles in millimetres, some of them with their inside out.
+# A scan file: triangles in millimetres, some with the wrong orientation.
 
 profile = np.array([(0.07, 0.0), (0.06, 0.05), (0.16, 0.30), (0.12, 0.50), (0.14, 0.60)])
 vase = revolution(profile)
@@ -35,7 +35,7 @@ def stl(corners):
 Path("vase.stl").write_text(stl(triangles), encoding="utf-8")
 
 # %%
-# The body as a file: a plinth, and the vase on it, turned by 30 degrees and a centimetre off the middle.
+# The body file: a plinth, and the vase on it, rotated by 30 degrees and 1 cm off the centre.
 
 TOML = """
 units = "cm"
@@ -60,7 +60,7 @@ assert any("turned round" in sentence for sentence in found.repairs)
 write(solid_picture(found), "solid_from_a_file.png")
 
 # %%
-# Its mass against that of the profile from which the triangles were made.
+# Its mass compared with the mass of the profile of the triangles.
 
 alone = read_body("vase.stl", units="mm", density=1900.0)
 exact = 1900.0 * vase.moments().mass
@@ -77,7 +77,7 @@ for name in spatial_models():
     assert all(0.0 < r < 1.0 for r in over)
 
 # %%
-# Under two components of motion.
+# The response under two components.
 
 x, y = rk.pulses.sine(amplitude=3.5, period=0.5), rk.pulses.ricker(amplitude=3.0, period=0.6)
 response = rk.simulate(found, {"x": x, "y": y}, "housner")

@@ -12,7 +12,7 @@ from rocking.plots import energy_picture, write
 from rocking.restitution.space import edge_coefficient, impact_in_space, spatial_models, unit_energies
 
 # %%
-# A marble bust of three parts on a pedestal: shapes in metres with densities, moved to where they stand.
+# A marble bust of three parts on a pedestal: shapes in metres with densities and positions.
 
 pedestal = Part(box(0.60, 0.50, 1.00), 2400.0)
 socle = Part(revolution([(0.15, 0.0), (0.10, 0.06), (0.08, 0.12), (0.10, 0.16)]), 2700.0).moved(0.0, 0.0, 1.00)
@@ -24,7 +24,7 @@ print(f"{statue!r}: centre {statue.centre.round(4)} m")
 print(f"principal moments about the centre: {np.linalg.eigvalsh(statue.inertia).round(2)} kg m2")
 
 # %%
-# The coefficient from edge to edge, under every model in space, and from one corner over the diagonal to the other.
+# The coefficient from edge to edge with each 3D model, and from one corner to the opposite corner.
 
 for name in spatial_models():
     over = [edge_coefficient(statue, name, start=i) for i in range(4)]
@@ -34,7 +34,7 @@ for name in spatial_models():
     assert corner.energy_after < corner.energy_before
 
 # %%
-# The bust in a mirror has the same coefficients, on the edges that the mirror shows.
+# The mirrored bust has the same coefficients on the mirrored edges.
 
 here, there = (
     sorted(edge_coefficient(body, "ked-3d", start=i) for i in range(4)) for body in (statue, statue.mirrored())
@@ -42,7 +42,7 @@ here, there = (
 assert np.allclose(here, there, rtol=1e-12, atol=0.0)
 
 # %%
-# Where the energy of an impact is lost: unit by unit, in an upright slice, and over the height.
+# The energy loss of an impact: by unit, in a vertical slice, and over the height.
 
 edges = statue.base.edges
 result = impact_in_space(statue, -edges[3].direction, pivot=edges[3], onto=statue.base.opposite(3), model="ked-3d")
@@ -54,8 +54,7 @@ assert abs(energies.lost.sum() / exact - 1.0) < 0.02  # units of a twelfth of ea
 write(energy_picture(result), "solid_statue.png")
 
 # %%
-# The bust under two components at right angles: the path of its top, its tilt and where it leans, and on what it
-# stands.
+# The bust under two perpendicular components: the path of its top, its tilt and direction, and its contact.
 
 shaking = {"x": rk.pulses.sine(amplitude=5.4, period=0.7), "y": rk.pulses.cosine(amplitude=5.0, period=0.9)}
 response = rk.simulate(statue, shaking, restitution="ked")

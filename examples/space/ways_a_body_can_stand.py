@@ -12,8 +12,8 @@ from rocking.bodies.equilibria import base_tolerances
 from rocking.plots import equilibria_picture, write
 
 # %%
-# A bust on its pedestal. Stable poses are facets of its convex hull, saddles are edges, summits corners; their numbers
-# obey stable - saddles + summits = 2.
+# A bust on its pedestal. Stable poses are facets of its convex hull, saddles are edges, summits are corners. Their
+# numbers satisfy stable - saddles + summits = 2.
 
 bust = rk.examples.body("bust")
 found = bust.equilibria()
@@ -21,7 +21,7 @@ print(f"{len(found.stable)} stable poses, {len(found.saddles)} saddles, {len(fou
 assert len(found.stable) - len(found.saddles) + len(found.summits) == 2
 
 # %%
-# The pose that it is in, and the lowest ways out of it: rise of the centre, and the energy that this takes.
+# The current pose and its lowest passes: rise of the centre of mass, and the energy.
 
 standing = found.settling([0.0, 0.0, -1.0])
 for way in found.neighbours(standing):
@@ -29,7 +29,7 @@ for way in found.neighbours(standing):
     assert way.rise >= standing.barrier
 
 # %%
-# Tilted straight on towards a side its centre rises more than by the lowest way into the pose where it then lands.
+# In a straight tilt to one side the centre of mass rises more than on the lowest path into the same pose.
 
 azimuths = np.deg2rad(np.arange(0.0, 360.0, 45.0))
 straight = found.barrier(standing, azimuths)
@@ -39,19 +39,19 @@ print("lifts at [m/s2]:", standing.uplift_acceleration(azimuths).round(2))
 assert (straight >= lowest - 1e-12).all()
 
 # %%
-# What would change if points that are almost on the ground touched it, which is often the largest uncertainty.
+# The effect of points close to the ground, which is often the largest uncertainty.
 
 for row in base_tolerances(found, standing):
     print(f"within {1e3 * row.tolerance:3.1f} mm: {row.points} points, lifts at {row.uplift_acceleration:.2f} m/s2")
     assert row.edge_distance >= standing.edge_distances.min() - 1e-12
 
 # %%
-# The landscape of the height of the centre around this pose, the support polygon, and the bust on it.
+# The height of the centre of mass around this pose, the support polygon, and the bust on it.
 
 write(equilibria_picture(bust, standing, found=found), "ways_a_body_can_stand.png")
 
 # %%
-# Laid down in its lowest pose it is a body like any other, to be shaken.
+# In its lowest pose the bust is a usual body for a simulation.
 
 lying = bust.settled(found.stable[0])
 print(f"lying: centre {lying.centre[2]:.3f} m high instead of {bust.centre[2]:.3f} m")
