@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,6 +38,7 @@ from rocking.campaigns.status import CampaignStatus, Summary
 from rocking.errors import InvalidValueError, located
 from rocking.spec.questions import question_of
 from rocking.spec.reading import InputFiles, refuse_changes
+from rocking.spec.schema import SCHEMA
 
 if TYPE_CHECKING:
     from rocking.spec.question import StudyQuestion
@@ -81,6 +83,7 @@ class JobFolder:
             "job_folder": str(job.folder),
             "job_sha256": _sha256(job.text.encode()),
             "files": job.inputs,
+            "schema": SCHEMA,
         }
         with disk.guarded(path, lambda: "nothing was written"):
             if path.exists() and not path.is_dir():
@@ -278,12 +281,20 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
                 "{file} has changed since the campaign began", file=path / JOB,
                 hint="restore it, or begin a new campaign in another folder",
             )  # fmt: skip
-        return text.decode(), content | {name: str(content[name]) for name in ("job_folder", "job_file")}
+        names = {name: str(content[name]) for name in ("job_folder", "job_file")}
+        return _of_schema(content.get("schema", 1), text.decode()), content | names
     except (ValueError, KeyError, TypeError, AssertionError) as error:
         raise CampaignDamagedError(
             "{file} is missing or damaged ({reason})", file=path / INPUTS, reason=str(error),
             hint=f"begin a new campaign of {path / JOB} in another folder",
         ) from error  # fmt: skip
+
+
+def _of_schema(number: int, text: str) -> str:
+    """Return a kept job that states its restitution: the default of schema 1 was ked."""
+    tables = tomllib.loads(text) if number < 2 else {"restitution": {}}
+    is_stated = "restitution" in tables or tables.get("campaign", {}).get("kind") == "inventory"
+    return text if is_stated else f'{text}\n[restitution]\nmodel = "ked"\n'
 
 
 def _sha256(data: bytes) -> str:

@@ -139,6 +139,22 @@ def test_changed_copy_is_refused(job, tmp_path):
     assert JobFolder.open(tmp_path / "c").campaign.plan == folder.campaign.plan
 
 
+def test_kept_jobs_of_schema_1_have_the_default_of_their_time(tmp_path):
+    """A kept job of schema 1 without restitution was computed with ked; one of today with the default of today."""
+    bare = text_of_job("histories", BODY, PULSE, "[histories]\nscales = [1.0, 2.0]\n")
+    folder = JobFolder.create(tmp_path / "c", Job.of_text(f'{bare}[restitution]\nmodel = "ked"\n'))
+    plan = folder.campaign.plan
+    (tmp_path / "c" / "job.toml").write_text(bare)
+    noted = tmp_path / "c" / "inputs.json"
+    content = json.loads(noted.read_text())
+    content["job_sha256"] = hashlib.sha256(bare.encode()).hexdigest()
+    noted.write_text(json.dumps({name: value for name, value in content.items() if name != "schema"}))
+    assert JobFolder.open(tmp_path / "c").campaign.plan == plan
+    noted.write_text(json.dumps(content))
+    with pytest.raises(CampaignMismatchError, match="of other histories"):
+        _ = JobFolder.open(tmp_path / "c").campaign
+
+
 def test_forecast(job, tmp_path):
     """A forecast counts right, finds a rate, and writes nothing."""
     found = forecast(Job.read(job), workers=2, folder=tmp_path / "none" / "c")
