@@ -32,8 +32,8 @@ for foot in ("left", "right"):
 # The energy losses on the right and the left foot differ. The energy limits the product of both coefficients: it is
 # at most one.
 
-there = rk.coefficient_of_restitution(statue, "housner", onto="right")
-back = rk.coefficient_of_restitution(statue, "housner", onto="left")
+there = rk.coefficient_of_restitution(statue, "housner", foot="right")
+back = rk.coefficient_of_restitution(statue, "housner", foot="left")
 print(f"Housner: onto the right foot {there:.6f}, onto the left {back:.6f}, product {there * back:.6f}")
 assert there != back
 assert there * back <= 1.0

@@ -19,7 +19,7 @@ pedestal = rk.Section.from_points(outline, density=2700.0, holes=[hollow])
 # First the vertical velocities are lost, then the components along the lines to the new foot. The remaining energy
 # becomes rotation about the new foot.
 
-balance = rk.restitution.energy_balance(pedestal, onto="right", angular_velocity=0.5)
+balance = rk.restitution.energy_balance(pedestal, foot="right", angular_velocity=0.5)
 for stage, share in balance.shares.items():
     print(f"{stage:8s} {balance.totals[stage]:9.2f} J  {share:7.2%}")
 

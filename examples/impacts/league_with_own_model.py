@@ -24,9 +24,9 @@ class SineFit(rk.restitution.RestitutionModel):
     title = "1 - c sin(alpha)^2"
     reference = "a one-parameter fit"
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         """Return the fit for the body's slenderness."""
-        return 1.0 - self.c / (1.0 + body.side(onto).slenderness_ratio ** 2)
+        return 1.0 - self.c / (1.0 + body.side(foot).slenderness_ratio ** 2)
 
 
 # %%

@@ -31,9 +31,9 @@ class Facets(rk.restitution.RestitutionModel):
     domain = "symmetric bodies"
     inertia_only = True
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         """Multiply (I_h + m x_i x_j) / (I_h + m x_j^2) over successive edges."""
-        side = body.side(onto)
+        side = body.side(foot)
         gyration = side.moment_of_inertia / side.mass - side.half_width**2
         edges = [side.half_width * (2.0 * i / self.n - 1.0) for i in range(self.n + 1)]
         r = 1.0

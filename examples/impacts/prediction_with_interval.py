@@ -29,5 +29,5 @@ assert "extrapolation" in outside_evidence(flat)
 # body in the range of the measurements. `rocking restitution statue.toml --output statue.png` writes the same
 # picture.
 
-tables = {foot: rk.evidence.coefficient_table(statue, onto=foot) for foot in ("left", "right")}
+tables = {foot: rk.evidence.coefficient_table(statue, foot=foot) for foot in ("left", "right")}
 write(coefficient_picture(statue, tables), "prediction_with_interval.png")

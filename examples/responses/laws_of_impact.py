@@ -23,8 +23,8 @@ shaking = rk.motions.bandpassed(rk.motions.scaled_to(shaking, "pga", 5.0), 0.2, 
 
 by_side = rk.simulate(block, shaking, restitution={"left": 0.80, "right": 0.95})
 print("by side:    ", by_side.summary)
-onto = by_side.impacts["onto"]
-assert set(by_side.impacts["coefficient"][onto == "left"]) == {0.80}
+foot = by_side.impacts["foot"]
+assert set(by_side.impacts["coefficient"][foot == "left"]) == {0.80}
 
 # %%
 # Dependence on the speed: a faster impact has a larger energy loss.

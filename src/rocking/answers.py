@@ -16,8 +16,8 @@ from rocking.quantities import QUANTITIES, Quantity, quantity
 class AnswerRows:
     """A table of an answer.
 
-    >>> AnswerRows({"time": [0.1, 0.2], "onto": ["left", "right"]}).records[0]
-    {'time': 0.1, 'onto': 'left'}
+    >>> AnswerRows({"time": [0.1, 0.2], "foot": ["left", "right"]}).records[0]
+    {'time': 0.1, 'foot': 'left'}
     """
 
     columns: Mapping[str, Sequence[Any]]  # columns of one length by the names of their quantities

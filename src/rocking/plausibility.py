@@ -214,21 +214,21 @@ def of_coefficient(value: float) -> tuple[str, ...]:
     )
 
 
-def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
+def of_truncation(cut: float, foot: str, most: float) -> tuple[str, ...]:
     """Return the doubt about a distribution of the coefficient of which so much would create energy and is cut off."""
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
             "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], and "
             "{share} of the distribution that it is drawn from is outside: the impact would "
             "create energy; is it meant for another body, or given in percent?",
-            foot=onto,
+            foot=foot,
             most=most,
             share=percent(cut),
         )
     if cut <= MOST_CUT[0]:
         return ()
     return (
-        f"{percent(cut)} of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
+        f"{percent(cut)} of the distribution of the coefficient of restitution onto the {foot} foot lies outside "
         f"[0, {most:.4g}], where an impact would create energy, and is cut off; is it meant for another body?",
     )
 

@@ -471,7 +471,7 @@ _IMPACTS_AND_INTERVALS = (
     Quantity("velocity_before", "rad/s", "angular velocity before the impact", digits="+.6f"),
     Quantity("velocity_after", "rad/s", "angular velocity after the impact", digits="+.6f"),
     Quantity("coefficient", "1", "coefficient of restitution, a ratio of velocities", label="r", digits=".4f"),
-    Quantity("onto", "1", "foot landed on: 1 right, -1 left", _SIDES),
+    Quantity("foot", "1", "foot landed on: 1 right, -1 left", _SIDES),
     *(Quantity(f"normal_{foot}", "N s", f"vertical impulse on the {foot} foot") for foot in ("left", "right")),
     *(Quantity(f"tangential_{foot}", "N s", f"horizontal impulse on the {foot} foot") for foot in ("left", "right")),
     Quantity("energy_before", "J", "kinetic energy before the impact"),

@@ -173,7 +173,7 @@ def test_impacts_are_those_of_python(answered: Callable[..., Any]) -> None:
     found = response(GENTLE, "ked").impacts
     assert len(rows) == found.size + 1
     assert [float(row[1]) for row in rows[1:]] == found["time"].tolist()
-    assert [row[5] for row in rows[1:]] == found["onto"].tolist()
+    assert [row[5] for row in rows[1:]] == found["foot"].tolist()
 
 
 @pytest.mark.parametrize("name", ["Curves, CSV", "Animation, page"])

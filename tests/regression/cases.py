@@ -149,11 +149,11 @@ def _body(body: Any) -> Any:
 def _coefficients(body: Any) -> Any:
     made = {}
     for name in rk.restitution.models():
-        for onto in ("left", "right"):
+        for foot in ("left", "right"):
             try:
-                made[f"{name} {onto}"] = rk.coefficient_of_restitution(body, name, onto=onto)
+                made[f"{name} {foot}"] = rk.coefficient_of_restitution(body, name, foot=foot)
             except Exception as error:  # noqa: BLE001 - a refusal is an answer
-                made[f"{name} {onto}"] = error
+                made[f"{name} {foot}"] = error
     return made
 
 
@@ -161,9 +161,9 @@ def _solid() -> Any:
     edges, corners = SOLID.base.edges, SOLID.base.corners
     impacts = [
         rk.restitution.space.impact_in_space(
-            SOLID, -edges[0].direction, pivot=edges[0], onto=onto, model=model
+            SOLID, -edges[0].direction, pivot=edges[0], foot=foot, model=model
         ).velocity
-        for onto in (edges[2], corners[3])
+        for foot in (edges[2], corners[3])
         for model in ("housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point")
     ]
     names = ("housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point")
@@ -250,7 +250,7 @@ ASKED = {
     "cor": "restitution SIZE",
     "cor json": "restitution SIZE --json",
     "cor statue": "restitution statue.toml --json --output csv=o.csv --output picture=o.png",
-    "cor one side": "restitution statue.toml --onto left --restitution ked --restitution 0.98*ked --identities",
+    "cor one side": "restitution statue.toml --foot left --restitution ked --restitution 0.98*ked --check-identities",
     "cor solid": "restitution solid.toml --json",
     "cor solid page": "restitution solid.toml --restitution ked-3d",
     "cor refused": "restitution --width -1 --height 2",

@@ -127,11 +127,11 @@ def test_arrays_that_pass():
 @pytest.mark.parametrize("value", ["up", "", "Right", None, 1, ["left"], np.array(["left", "right"])], ids=repr)
 def test_feet_and_units(value):
     """A foot is "left" or "right", a unit one of the list; anything else is refused by name."""
-    with pytest.raises(InvalidValueError, match=r'^onto must be "left" or "right", got '):
-        checks.foot("onto", value)
+    with pytest.raises(InvalidValueError, match=r'^foot must be "left" or "right", got '):
+        checks.foot("foot", value)
     with pytest.raises(InvalidValueError, match="m, cm, mm, ft, in"):
         checks.length_unit(value)
-    assert checks.foot("onto", "left") == "left"
+    assert checks.foot("foot", "left") == "left"
     assert checks.length_unit("in") == 0.0254  # exact, international inch
 
 

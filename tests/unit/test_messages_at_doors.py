@@ -76,7 +76,7 @@ def test_a_coefficient_takes_what_a_simulation_takes(restitution: Any) -> None:
     """On both feet of an asymmetric body the coefficient is the one that the history uses."""
     response = rk.simulate(UNEVEN, PULSE, restitution)
     for foot in ("left", "right"):
-        found = rk.coefficient_of_restitution(UNEVEN, restitution, onto=foot)
+        found = rk.coefficient_of_restitution(UNEVEN, restitution, foot=foot)
         assert found == getattr(response.parameters, foot).coefficient
 
 
@@ -84,9 +84,9 @@ def test_a_coefficient_that_creates_energy_is_refused_by_both() -> None:
     """Onto the longer lever the bound is sqrt(I_O / I_O') < 1, onto the shorter one above 1."""
     inertia = {foot: UNEVEN.side(foot).moment_of_inertia for foot in ("left", "right")}
     most = float(np.sqrt(inertia["left"] / inertia["right"]))  # the centre is nearer to the left foot
-    assert rk.coefficient_of_restitution(UNEVEN, 0.999 * most, onto="right") == 0.999 * most
+    assert rk.coefficient_of_restitution(UNEVEN, 0.999 * most, foot="right") == 0.999 * most
     for call in (
-        lambda: rk.coefficient_of_restitution(UNEVEN, 1.001 * most, onto="right"),
+        lambda: rk.coefficient_of_restitution(UNEVEN, 1.001 * most, foot="right"),
         lambda: rk.simulate(UNEVEN, PULSE, 1.001 * most),
     ):
         with pytest.raises(InvalidValueError, match="the impact would create energy"):
@@ -99,7 +99,7 @@ class Without(RestitutionModel):
 
     name = "without"
 
-    def raw_coeficient(self, body: Any, onto: Any) -> float:
+    def raw_coeficient(self, body: Any, foot: Any) -> float:
         return 0.5
 
 
@@ -240,7 +240,7 @@ def test_a_block_on_feet_is_the_section(model: str) -> None:
     polygon = rk.Section.from_rectangle(0.8, 2.0, density=2000.0, depth=0.5, feet=(0.05, 0.7))
     parameters = {"r": 0.7} if model == "fixed" else {"k": 0.6} if model == "shifted-impulse" else {}
     for foot in ("left", "right"):
-        r, expected = (rk.coefficient_of_restitution(body, model, onto=foot, **parameters) for body in (FEET, polygon))
+        r, expected = (rk.coefficient_of_restitution(body, model, foot=foot, **parameters) for body in (FEET, polygon))
         assert r == pytest.approx(expected, rel=1e-12)
         assert FEET.side(foot).frequency_parameter == pytest.approx(polygon.side(foot).frequency_parameter, rel=1e-12)
     if model != "fixed":

@@ -185,7 +185,7 @@ def of_examples() -> list[Any]:
     bodies = [body for body in map(rk.examples.body, rk.examples.catalogue("body")) if not isinstance(body, rk.Solid)]
     return [
         [motion.acceleration for motion in motions],
-        [rk.coefficient_of_restitution(each, "ked", onto="left") for each in bodies],
+        [rk.coefficient_of_restitution(each, "ked", foot="left") for each in bodies],
     ]
 
 

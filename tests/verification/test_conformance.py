@@ -39,14 +39,14 @@ class Broken(RestitutionModel):
     name = "broken"
     inertia_only = True
 
-    def raw_coefficient(self, body, onto):  # noqa: PLR0911
-        new, old = body.side(onto), body.side(opposite(onto))
+    def raw_coefficient(self, body, foot):  # noqa: PLR0911
+        new, old = body.side(foot), body.side(opposite(foot))
         if self.how == "size":
             return 1.0 / (1.0 + 0.1 * new.half_width)
         if self.how == "density":
             return 1.0 / (1.0 + 1e-6 * new.mass / new.semi_diagonal**2)
         if self.how == "mirror":
-            return 0.9 if onto == "right" else 0.8
+            return 0.9 if foot == "right" else 0.8
         if self.how == "place":
             return 1.0 / (2.0 + math.sin(body.feet[0]))
         if self.how == "inertia":
@@ -59,8 +59,8 @@ class Broken(RestitutionModel):
         return 0.5 / slenderness
 
 
-def same(model, body, other, onto="right", other_onto=None):
-    here, there = model.coefficient(body, onto), model.coefficient(other, other_onto or onto)
+def same(model, body, other, foot="right", other_onto=None):
+    here, there = model.coefficient(body, foot), model.coefficient(other, other_onto or foot)
     return math.isclose(here, there, rel_tol=1e-8, abs_tol=1e-11)
 
 
@@ -71,9 +71,9 @@ def elsewhere(body, dx, up):
     return rk.Section.from_points(ring, region.density, feet=tuple(x + dx for x in body.feet), ground=up)
 
 
-def bounded(model, body, onto):
-    new, old = body.side(onto), body.side(opposite(onto))
-    r = model.coefficient(body, onto)
+def bounded(model, body, foot):
+    new, old = body.side(foot), body.side(opposite(foot))
+    r = model.coefficient(body, foot)
     return r * r * new.moment_of_inertia <= old.moment_of_inertia * (1.0 + 1e-12)
 
 
@@ -87,11 +87,11 @@ def bounded(model, body, onto):
 @given(body=sections())
 def test_scale_density_mirror_place(model, body):
     """The coefficient does not see size, density, mirror or position."""
-    for onto in ("left", "right"):
-        assert same(model, body, body.scaled(size=7.3), onto)
-        assert same(model, body, body.scaled(density=0.013), onto)
-        assert same(model, body, body.mirrored(), onto, opposite(onto))
-        assert same(model, body, elsewhere(body, 1000.125, -17.5), onto)
+    for foot in ("left", "right"):
+        assert same(model, body, body.scaled(size=7.3), foot)
+        assert same(model, body, body.scaled(density=0.013), foot)
+        assert same(model, body, body.mirrored(), foot, opposite(foot))
+        assert same(model, body, elsewhere(body, 1000.125, -17.5), foot)
 
 
 @pytest.mark.verifies("negative control", "models that see metres, kilograms, sides or the origin")
@@ -112,14 +112,14 @@ def test_invariance_criterion_rejects_broken_models(body):
 @given(body=sections())
 def test_number_and_flags(model, body):
     """The coefficient is finite and never negative; it is the raw value unless a flag says why not."""
-    for onto in ("left", "right"):
-        result = model.evaluate(body, onto)
+    for foot in ("left", "right"):
+        result = model.evaluate(body, foot)
         assert isinstance(result, Restitution)
         assert result.model is model
         assert math.isfinite(result.coefficient)
         assert result.coefficient == max(result.raw, 0.0)
         assert (result.flags == (Flag.STOPS,)) == (result.raw <= 0.0)
-        assert model.coefficient(body, onto) == result.coefficient
+        assert model.coefficient(body, foot) == result.coefficient
 
 
 @pytest.mark.verifies(against="r^2 I_new <= I_old", within="1e-12", control="test_energy_criterion_rejects")

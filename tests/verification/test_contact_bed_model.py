@@ -170,19 +170,19 @@ def test_two_points_are_housner() -> None:
 
 
 @pytest.mark.verifies("closed form", "Housner's impact onto any feet", within="3e-3")
-@pytest.mark.parametrize("onto", ["left", "right"])
-def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> None:
+@pytest.mark.parametrize("foot", ["left", "right"])
+def test_two_points_are_housner_for_a_plumb_line_off_the_middle(foot: Foot) -> None:
     """Two points: r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) within .003, or keeps energy."""
     for ratio, shift in itertools.product((1.5, 3.0), (0.0, 0.2, 0.5)):
         body = setup_block(ratio).with_feet(0.0, 0.2 - 0.1 * shift)
-        old, new = (0.1, 0.1 - 0.1 * shift) if onto == "right" else (0.1 - 0.1 * shift, 0.1)
+        old, new = (0.1, 0.1 - 0.1 * shift) if foot == "right" else (0.1 - 0.1 * shift, 0.1)
         over_base = (0.2**2 + (0.2 * ratio) ** 2) / 12.0 + (0.1 * ratio) ** 2
         housner = (over_base - old * new) / (over_base + new**2)
         bed = model("contact-bed", points=2, hardness=1000.0)
         assert isinstance(bed, ContactBedModel)
-        assert bed.evaluate(body, onto).source is CoefficientSource.TABLE
+        assert bed.evaluate(body, foot).source is CoefficientSource.TABLE
         expected = min(housner, math.sqrt((over_base + old**2) / (over_base + new**2)))
-        assert bed.coefficient(body, onto) == pytest.approx(expected, abs=3e-3)
+        assert bed.coefficient(body, foot) == pytest.approx(expected, abs=3e-3)
 
 
 @pytest.mark.verifies("behaviour")

@@ -39,10 +39,10 @@ class SpreadImpulse(rk.restitution.RestitutionModel):
     assumptions = ("the loss is that of Housner, times a share",)
     domain = "plane bodies"
 
-    def raw_coefficient(self, body, onto):
-        housner = rk.coefficient_of_restitution(body, "housner", onto=onto)
-        new = body.side(onto).moment_of_inertia
-        old = body.side("left" if onto == "right" else "right").moment_of_inertia
+    def raw_coefficient(self, body, foot):
+        housner = rk.coefficient_of_restitution(body, "housner", foot=foot)
+        new = body.side(foot).moment_of_inertia
+        old = body.side("left" if foot == "right" else "right").moment_of_inertia
         loss = 1.0 - housner**2 * new / old
         return ((1.0 - self.share * loss) * old / new) ** 0.5
 '''
@@ -55,7 +55,7 @@ OUTLINE = [
 MAP = "--motion sine:amplitude=1,period=0.8 --x frequency_ratio=0.5:8:30 --y amplitude_ratio=1:10:30"
 
 
-def expected(onto, share=0.6):
+def expected(foot, share=0.6):
     """The coefficient by Housner's equation, with moments that sums over slices of the outline give."""
     body, slices = Polygon(OUTLINE), 2000
     middles = [1.8 * (k + 0.5) / slices for k in range(slices)]
@@ -67,7 +67,7 @@ def expected(onto, share=0.6):
         (right**3 - left**3) / 3 + (right - left) * y**2 for (left, right), y in zip(spans, middles, strict=True)
     )
     about_ground = ground * 1.8 / slices - area * x**2  # about the point of the ground below the centre
-    new, old = (0.74 - x, x - 0.06) if onto == "right" else (x - 0.06, 0.74 - x)
+    new, old = (0.74 - x, x - 0.06) if foot == "right" else (x - 0.06, 0.74 - x)
     inertia_new, inertia_old = about_ground + area * new**2, about_ground + area * old**2
     housner = (about_ground - area * new * old) / inertia_new
     return math.sqrt((1 - share * (1 - housner**2 * inertia_new / inertia_old)) * inertia_old / inertia_new)

@@ -125,12 +125,12 @@ def test_half_cycles_are_those_of_the_engine(response):
     hits = response.impacts
     large = np.flatnonzero(np.abs(hits["velocity_after"]) > 0.1 * np.abs(hits["velocity_after"]).max())
     large = large[large < hits.size - 1]
-    sides = [BODY.side(str(foot)) for foot in hits["onto"][large]]
+    sides = [BODY.side(str(foot)) for foot in hits["foot"][large]]
     body = tuple(np.array([getattr(side, name) for side in sides]) for name in (
         "slenderness_angle", "frequency_parameter", "semi_diagonal",
     ))  # fmt: skip
     state = hits["time"][large], np.zeros(large.size), np.abs(hits["velocity_after"][large])
-    sign = np.where(hits["onto"][large] == "right", 1.0, -1.0)
+    sign = np.where(hits["foot"][large] == "right", 1.0, -1.0)
     lasts = np.diff(hits["time"])[large]
     found = Flights.of(response.motion, state, body, sign, 1.2 * lasts).ends()
     assert large.size > 4

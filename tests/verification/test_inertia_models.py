@@ -63,8 +63,8 @@ def test_housner_on_inner_feet():
     """Housner, REF: 1 x 4 m on feet at .1 and .7 m; swapped directions or symmetric feet do not
     pass."""
     body = block(4.0).with_feet(0.1, 0.7)
-    rightward = rk.coefficient_of_restitution(body, "housner", onto="right")
-    leftward = rk.coefficient_of_restitution(body, "housner", onto="left")
+    rightward = rk.coefficient_of_restitution(body, "housner", foot="right")
+    leftward = rk.coefficient_of_restitution(body, "housner", foot="left")
     assert rightward == pytest.approx(0.9780085522296884, rel=1e-14, abs=0.0)
     assert leftward == pytest.approx(0.9569635385534967, rel=1e-14, abs=0.0)
     assert leftward != pytest.approx(0.9780085522296884, rel=1e-14, abs=0.0)
@@ -125,11 +125,11 @@ def test_shifted_impulse(ratio, k):
 def test_shifted_impulse_ends():
     """Shifted impulse: k = 0 gives 1 and k = 1 Housner also for an asymmetric body; k = 0.9 does not."""
     body = portal().with_feet(0.05, 1.0)
-    for onto in ("left", "right"):
-        housner = rk.coefficient_of_restitution(body, "housner", onto=onto)
-        assert ShiftedImpulse(k=0.0).coefficient(body, onto) == 1.0
-        assert ShiftedImpulse(k=1.0).coefficient(body, onto) == pytest.approx(housner, rel=1e-14, abs=0.0)
-        assert ShiftedImpulse(k=0.9).coefficient(body, onto) != pytest.approx(housner, rel=1e-6)
+    for foot in ("left", "right"):
+        housner = rk.coefficient_of_restitution(body, "housner", foot=foot)
+        assert ShiftedImpulse(k=0.0).coefficient(body, foot) == 1.0
+        assert ShiftedImpulse(k=1.0).coefficient(body, foot) == pytest.approx(housner, rel=1e-14, abs=0.0)
+        assert ShiftedImpulse(k=0.9).coefficient(body, foot) != pytest.approx(housner, rel=1e-6)
 
 
 @pytest.mark.verifies("computed anew", "k to four digits", within="5e-5", control="within")
@@ -207,18 +207,18 @@ def exponent_by_quadrature(kappa, stretches, start, end, q):
 
 
 @pytest.mark.verifies("computed anew", "nested quadrature by SciPy", within="1e-10", control="within")
-@pytest.mark.parametrize("onto", ["left", "right"])
+@pytest.mark.parametrize("foot", ["left", "right"])
 @pytest.mark.parametrize("q", [0.0, 1.0, 2.5])
-def test_distributed_impulse_on_two_legs(q, onto):
+def test_distributed_impulse_on_two_legs(q, foot):
     """A base that touches in two stretches: against nested quadrature to 1e-10; filling the gap does not
     pass."""
     body = portal()
-    side, x = body.side(onto), body.centre[0]
-    flip = 1.0 if onto == "right" else -1.0
+    side, x = body.side(foot), body.centre[0]
+    flip = 1.0 if foot == "right" else -1.0
     stretches = sorted(tuple(sorted(flip * (s - x) for s in ends)) for ends in ((0.0, 0.2), (0.8, 1.1)))
     start, end = stretches[0][0], stretches[1][1]
     kappa = side.mass / (side.moment_of_inertia - side.mass * side.half_width**2)
-    r = DistributedImpulse(q=q).coefficient(body, onto)
+    r = DistributedImpulse(q=q).coefficient(body, foot)
     assert r == pytest.approx(np.exp(-exponent_by_quadrature(kappa, stretches, start, end, q)), rel=1e-10, abs=0.0)
     assert r != pytest.approx(np.exp(-exponent_by_quadrature(kappa, [(start, end)], start, end, q)), rel=1e-3)
 
@@ -228,10 +228,10 @@ def test_a_slab_on_two_strips_stops():
     """Where the impulse of the strips alone would throw the slab back, as Housner's does, it stops: r = 0."""
     outline = [(-0.5, 0), (-0.45, 0), (-0.45, 0.02), (0.4, 0.02), (0.4, 0), (0.5, 0), (0.5, 0.2), (-0.5, 0.2)]
     slab = rk.Section.from_points(outline)
-    for onto in ("left", "right"):
-        assert Housner().raw_coefficient(slab, onto) < 0.0
+    for foot in ("left", "right"):
+        assert Housner().raw_coefficient(slab, foot) < 0.0
         for q in (0.0, 1.0, 2.5):
-            assert DistributedImpulse(q=q).coefficient(slab, onto) == 0.0
+            assert DistributedImpulse(q=q).coefficient(slab, foot) == 0.0
     # on its whole base it goes on
     assert DistributedImpulse(q=0.0).coefficient(rk.Block(width=1.0, height=0.2)) > 0.1
 

@@ -128,7 +128,7 @@ def test_reference_values(ratio, value, agreement):
     agreement(error(Ked().of_slenderness([ratio])[0], mp.mpf(value)), 1e-14)
     # a Block's own height/width is rounded: its ratio may be one unit in the last place off
     assert error(rk.coefficient_of_restitution(block, "ked"), mp.mpf(value)) < 1e-14
-    assert error(rk.coefficient_of_restitution(block, "ked", onto="left"), mp.mpf(value)) < 1e-14
+    assert error(rk.coefficient_of_restitution(block, "ked", foot="left"), mp.mpf(value)) < 1e-14
 
 
 @pytest.mark.verifies(

@@ -214,9 +214,9 @@ def test_against_slices(name, place, agreement):
     quadrature."""
     regions, feet, (left, right), ground = placed(name, place)
     section = section_of(regions, feet, ground)
-    agreement(error(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, right, ground)), 1e-12)
+    agreement(error(rk.coefficient_of_restitution(section, "ked", foot="right"), oracle(regions, right, ground)), 1e-12)
     if place == "here":
-        r = rk.coefficient_of_restitution(section, "ked", onto="left")
+        r = rk.coefficient_of_restitution(section, "ked", foot="left")
         agreement(error(r, oracle(regions, left, ground)), 1e-12)
 
 
@@ -310,8 +310,8 @@ def test_far_away_criterion_rejects_uncentred_sums():
 def test_random_polygons_against_slices(ring):
     """Random asymmetric polygons: r to 1e-12 of independent quadrature, about both feet."""
     section, regions = rk.Section.from_points(ring, 1.0), [(ring, 1.0, [])]
-    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, ring[1][0]))
-    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, ring[0][0]))
+    assert agrees(rk.coefficient_of_restitution(section, "ked", foot="right"), oracle(regions, ring[1][0]))
+    assert agrees(rk.coefficient_of_restitution(section, "ked", foot="left"), oracle(regions, ring[0][0]))
 
 
 @pytest.mark.verifies("invariant", "the body cut into touching triangles", within="1e-11")
@@ -322,8 +322,8 @@ def test_additive_over_a_cut(ring):
     fan = [right, *rest, left]
     parts = [rk.Region([(0.0, 0.0), a, b], 3.0) for a, b in pairwise(fan)]
     whole, cut = rk.Section.from_points(ring, 3.0), rk.Section(parts)
-    for onto in ("left", "right"):
-        assert projected_moment(cut, onto) == pytest.approx(projected_moment(whole, onto), rel=1e-11, abs=0.0)
+    for foot in ("left", "right"):
+        assert projected_moment(cut, foot) == pytest.approx(projected_moment(whole, foot), rel=1e-11, abs=0.0)
     assert cut.mass == pytest.approx(whole.mass, rel=1e-12, abs=0.0)
     assert cut.moment_of_inertia == pytest.approx(whole.moment_of_inertia, rel=1e-11, abs=0.0)
 
@@ -351,10 +351,10 @@ def test_between_horizontal_momentum_and_the_energy_bound(ring):
     """r_HM <= r_KED and N <= I_O for any body; an integrand with a length too many breaks
     it."""
     section = rk.Section.from_points(ring)
-    for onto, other in (("left", "right"), ("right", "left")):
-        r = rk.coefficient_of_restitution(section, "ked", onto=onto)
-        assert rk.coefficient_of_restitution(section, "horizontal-momentum", onto=onto) <= r * (1 + 1e-12)
-        assert projected_moment(section, onto) <= section.side(other).moment_of_inertia * (1 + 1e-12)
+    for foot, other in (("left", "right"), ("right", "left")):
+        r = rk.coefficient_of_restitution(section, "ked", foot=foot)
+        assert rk.coefficient_of_restitution(section, "horizontal-momentum", foot=foot) <= r * (1 + 1e-12)
+        assert projected_moment(section, foot) <= section.side(other).moment_of_inertia * (1 + 1e-12)
     tall = rk.Block(width=1.0, height=4.0)
     y_to_the_fourth = 4.0**5 / 5.0 * tall.density
     assert y_to_the_fourth > tall.side("left").moment_of_inertia

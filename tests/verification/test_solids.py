@@ -37,8 +37,8 @@ BODIES = {
 def over_the_base(solid):
     base = solid.base
     start = base.edge(3 if isinstance(base, SupportPolygon) else 0.0)
-    onto = base.opposite(3) if isinstance(base, SupportPolygon) else base.edge(np.pi)
-    return impact_in_space(solid, -start.direction, pivot=start, onto=onto, model="ked-3d")
+    foot = base.opposite(3) if isinstance(base, SupportPolygon) else base.edge(np.pi)
+    return impact_in_space(solid, -start.direction, pivot=start, foot=foot, model="ked-3d")
 
 
 @pytest.mark.verifies(

@@ -53,9 +53,9 @@ def test_a_landing_on_an_edge_has_the_coefficient_of_the_plane(width, depth, sle
     onto = solid.base.opposite(number) if foot == "left" else solid.base.edge(number)
     start = solid.base.edge(number) if foot == "left" else solid.base.opposite(number)
     after = impact_in_space(solid, -start.direction, pivot=start, onto=onto, model="calibrated")
-    expected = rk.coefficient_of_restitution(section, "calibrated", onto=foot)
+    expected = rk.coefficient_of_restitution(section, "calibrated", foot=foot)
     assert after.coefficient == pytest.approx(expected, rel=1e-9, abs=0.0)
-    assert abs(rk.coefficient_of_restitution(section, "ked", onto=foot) - expected) > 1e-3
+    assert abs(rk.coefficient_of_restitution(section, "ked", foot=foot) - expected) > 1e-3
 
 
 @pytest.mark.verifies("closed form", "a loss above Housner's", within="1e-9", control="within")

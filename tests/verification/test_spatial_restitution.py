@@ -170,7 +170,7 @@ def test_prisms_of_any_polygon_equal_the_plane(section, onto, model):
     start, end = (left, right) if onto == "right" else (right, left)
     result = impact_in_space(solid, end.direction, pivot=start, onto=end, model=model)
     assert result.coefficient == pytest.approx(
-        rk.coefficient_of_restitution(section, PLANE[model], onto=onto), rel=1e-12, abs=0.0
+        rk.coefficient_of_restitution(section, PLANE[model], foot=onto), rel=1e-12, abs=0.0
     )
 
 

@@ -48,14 +48,14 @@ def mirrored(body: rk.Section) -> rk.Section:
     return rk.Section(regions)
 
 
-def bound(body: Any, onto: Foot) -> float:
+def bound(body: Any, foot: Foot) -> float:
     """Largest coefficient onto a foot: r^2 I_new = I_old, from moments about the centre by Steiner's theorem."""
     about = {f: body.moment_of_inertia + body.mass * body.side(f).semi_diagonal ** 2 for f in FEET}
-    return math.sqrt(about["left" if onto == "right" else "right"] / about[onto])
+    return math.sqrt(about["left" if foot == "right" else "right"] / about[foot])
 
 
-def coefficients(parameters: RockingParameters, onto: Foot, count: int = 2000) -> Any:
-    return np.array([parameters.coefficient(SIGNS[onto], 1.0, key, 3) for key in range(count)])
+def coefficients(parameters: RockingParameters, foot: Foot, count: int = 2000) -> Any:
+    return np.array([parameters.coefficient(SIGNS[foot], 1.0, key, 3) for key in range(count)])
 
 
 def cut_normal(mean: float, sd: float, most: float) -> Any:
@@ -98,9 +98,9 @@ def test_draws_follow_the_truncated_distribution(body: Any, mean: float, sd: flo
     assert stats.kstest(coefficients(parameters, other), exact.cdf).pvalue < ALARM
 
 
-def quantile(parameters: RockingParameters, onto: Foot, p: float) -> float:
+def quantile(parameters: RockingParameters, foot: Foot, p: float) -> float:
     law: Any = parameters.law
-    return float(law.quantile(parameters.side(SIGNS[onto]).share * p, onto))
+    return float(law.quantile(parameters.side(SIGNS[foot]).share * p, foot))
 
 
 @pytest.mark.verifies("closed form", "the probability beyond the energy bound", within="1e-4")
@@ -137,7 +137,7 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
     found = restitution_distribution(body, calibration=one_point(*point))
     for foot in FEET:
         most = bound(body, foot)
-        mean = min(eta * coefficient_of_restitution(body, ShiftedImpulse(k), onto=foot), most)
+        mean = min(eta * coefficient_of_restitution(body, ShiftedImpulse(k), foot=foot), most)
         exact = cut_normal(mean, scatter(np.array(mean), s, 0.0), most)
         whole = stats.norm(mean, scatter(np.array(mean), s, 0.0))
         levels = np.linspace(0.0, 1.0, found.tables[foot].size)

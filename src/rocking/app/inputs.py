@@ -300,9 +300,9 @@ class BodyRequest(JobTable):
 class ImpactRequest(BodyRequest):
     """A body, and the foot on which it lands."""
 
-    model_config = _shown({"body": _BODY, "onto": "both"})
+    model_config = _shown({"body": _BODY, "foot": "both"})
 
-    onto: Literal["left", "right", "both"] = "both"
+    foot: Literal["left", "right", "both"] = "both"
 
 
 class MotionRequest(JobTable):

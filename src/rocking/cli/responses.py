@@ -35,7 +35,7 @@ _TABLES = {
     "impacts": (
         "Impacts",
         (
-            "time", "feet", "velocity_before", "velocity_after", "coefficient", "onto", "energy_before",
+            "time", "feet", "velocity_before", "velocity_after", "coefficient", "foot", "energy_before",
             "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips",
         ),
     ),

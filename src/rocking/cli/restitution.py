@@ -40,7 +40,7 @@ class BodyDocument(JobTable):
 def _stages(answer: Any, path: Path) -> None:
     from rocking.plots import energy_stages_picture, write
 
-    write(energy_stages_picture(answer.impact.body, onto=next(reversed(answer.impact.tables))), path)
+    write(energy_stages_picture(answer.impact.body, foot=next(reversed(answer.impact.tables))), path)
 
 
 EXPORTS = {
@@ -51,11 +51,11 @@ EXPORTS = {
 }
 
 
-@options.takes(options.SIZES, before="onto")
+@options.takes(options.SIZES, before="foot")
 def restitution(
     context: typer.Context,
     body: options.BodyFile = None,
-    onto: Annotated[str, typer.Option(help="Landing foot: right, left or both.")] = "both",
+    foot: Annotated[str, typer.Option(help="Landing foot: right, left or both.")] = "both",
     restitution: Annotated[
         list[str] | None,
         typer.Option(
@@ -84,12 +84,12 @@ def restitution(
         from rocking.reports.body_facts import ImpactAnswer
 
         models = None if restitution is None else [_model(text) for text in restitution]
-        impact = ImpactAnswer.of(subject, models, onto=onto, gravity=gravity, identities=check_identities)
+        impact = ImpactAnswer.of(subject, models, foot=foot, gravity=gravity, identities=check_identities)
         answer: Any = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
     else:
         from rocking.cli.solids import SolidAnswer
 
-        plane = {"--onto": onto != "both", "--check-identities": check_identities}
+        plane = {"--foot": foot != "both", "--check-identities": check_identities}
         plane["--output stages=FILE"] = "stages" in exports.names
         if stated := [name for name, there in plane.items() if there]:
             raise InvalidValueError(
@@ -120,7 +120,7 @@ def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> 
     In space: a plane body of known depth is one in space.
     """
     word, sets = arguments.options["body"], arguments.sets
-    beside = ("onto", "restitution", "check_identities", "min_barrier")
+    beside = ("foot", "restitution", "check_identities", "min_barrier")
     if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
         with located(word, "file"):
             made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)
@@ -162,7 +162,7 @@ class PlaneAnswer:
 
     def write_csv(self, path: Path) -> None:
         write_records(path, [
-            {"onto": foot, **row.answer().values, "warnings": "; ".join(row.warnings)}
+            {"foot": foot, **row.answer().values, "warnings": "; ".join(row.warnings)}
             for foot, rows in self.impact.tables.items() for row in rows
         ])  # fmt: skip
 

@@ -275,21 +275,21 @@ class DrawnRestitution(ImpactLaw):
         """True if the law truncates at the energy bound; other classes are refused where they exceed the bound."""
         return type(self).__module__.partition(".")[0] == "rocking"
 
-    def table(self, onto: Foot | None = None) -> FloatArray:
+    def table(self, foot: Foot | None = None) -> FloatArray:
         """Return the quantiles for landing on a foot, at equally spaced probabilities from 0 to 1 [-]."""
         if self.factors.ndim == 1:
             return np.asarray(self.factors)
-        if onto is None:
-            raise InvalidValueError("this law has one table per foot; give onto='left' or onto='right'")
-        return np.asarray(self.factors[int(checks.foot("onto", onto) == "left")])
+        if foot is None:
+            raise InvalidValueError("this law has one table per foot; give foot='left' or foot='right'")
+        return np.asarray(self.factors[int(checks.foot("foot", foot) == "left")])
 
-    def quantile(self, probability: float, onto: Foot | None = None) -> float:
+    def quantile(self, probability: float, foot: Foot | None = None) -> float:
         """Return the quantile of a probability [-]."""
-        return interpolated(self.at, self.table(onto), probability)
+        return interpolated(self.at, self.table(foot), probability)
 
-    def share_within(self, most: float, onto: Foot) -> float:
+    def share_within(self, most: float, foot: Foot) -> float:
         """Return the probability of draws up to a bound [-]."""
-        table = self.table(onto)
+        table = self.table(foot)
         k = int(np.searchsorted(table, most, side="right"))
         if k in {0, table.size}:
             return float(k > 0)
@@ -300,9 +300,9 @@ class DrawnRestitution(ImpactLaw):
         """Return the draw for an impact, for a law with the same table on both sides [-]."""
         return self.draw(stream, impact)
 
-    def draw(self, stream: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
+    def draw(self, stream: int, impact: int, foot: Foot | None = None, share: float = 1.0) -> float:
         """Return the draw for an impact on a foot, from the lower fraction `share` of the distribution [-]."""
-        return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), onto)  # Eq. 41
+        return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), foot)  # Eq. 41
 
 
 class RandomRestitution(DrawnRestitution):

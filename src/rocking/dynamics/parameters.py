@@ -233,17 +233,17 @@ def _truncated(law: ImpactLaw) -> DrawnRestitution | None:
     return law if isinstance(law, DrawnRestitution) and law.truncates else None
 
 
-def _share(law: ImpactLaw, onto: Foot, r: float, bound: float) -> float:
+def _share(law: ImpactLaw, foot: Foot, r: float, bound: float) -> float:
     """Return the fraction of a distribution below the energy bound of a side; refuse other laws that exceed it."""
     distribution = _truncated(law)
-    largest = r * (distribution.quantile(1.0, onto) if distribution else law.largest)
+    largest = r * (distribution.quantile(1.0, foot) if distribution else law.largest)
     if largest <= bound * (1.0 + BOUND_ROUNDING):
         return 1.0
     if distribution:
-        share = distribution.share_within(bound / r, onto)
-        plausibility.of_truncation(1.0 - share, onto, bound)  # refuses an almost empty distribution
+        share = distribution.share_within(bound / r, foot)
+        plausibility.of_truncation(1.0 - share, foot, bound)  # refuses an almost empty distribution
         return share
-    raise energy_refusal(onto, bound, largest)
+    raise energy_refusal(foot, bound, largest)
 
 
 def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:

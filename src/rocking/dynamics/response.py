@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-9
 
 IMPACT = np.dtype(
-    [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("onto", "U5")]
+    [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("foot", "U5")]
 )
 """Fields of `Response.impacts`: [s], [rad/s], [rad/s], [-], foot."""
 

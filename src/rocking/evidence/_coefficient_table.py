@@ -20,7 +20,7 @@ from rocking.restitution.calibrated import kept, scatter
 
 
 def interval_for(
-    model: RestitutionModel, body: Body, *, onto: Foot = "right", measurements: DataSet | None = None
+    model: RestitutionModel, body: Body, *, foot: Foot = "right", measurements: DataSet | None = None
 ) -> PredictedCoefficient:
     """Return a model's coefficient with an interval from its own misfit to the measurements.
 
@@ -34,7 +34,7 @@ def interval_for(
         Any model; a fixed coefficient takes the scatter of the calibrated default.
     body : Body
         The body.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which it lands.
     measurements : DataSet, optional
         What was measured; the 39 published ones if not given.
@@ -46,9 +46,9 @@ def interval_for(
     """
     data = all_measurements() if measurements is None else measurements
     if isinstance(model, Calibrated):
-        return calibrate_hierarchy(data).predict(body, onto=onto)
-    _, bound = geometry_of(body, onto)
-    r = np.asarray(model.coefficient(body, onto))
+        return calibrate_hierarchy(data).predict(body, foot=foot)
+    _, bound = geometry_of(body, foot)
+    r = np.asarray(model.coefficient(body, foot))
     if isinstance(model, Fixed):
         floor, slope = (calibrate_hierarchy().summary[name]["mean"] for name in ("s", "gamma"))
     else:
@@ -125,7 +125,7 @@ def coefficient_table(
     body: Body,
     which: Sequence[RestitutionModel] | None = None,
     *,
-    onto: Foot = "right",
+    foot: Foot = "right",
 ) -> tuple[CoefficientRow, ...]:
     """Return the coefficient of a body under every model, with intervals and implications.
 
@@ -135,7 +135,7 @@ def coefficient_table(
         The body.
     which : sequence of RestitutionModel, optional
         Models to show; by default every registered one.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which it lands.
 
     Returns
@@ -151,24 +151,24 @@ def coefficient_table(
     ('calibrated', [0.911765])
     """
     chosen = [each for each in which or default_models() if not isinstance(each, Calibrated)]
-    return tuple(_row(body, onto, each) for each in (Calibrated(), *map(model, chosen)))
+    return tuple(_row(body, foot, each) for each in (Calibrated(), *map(model, chosen)))
 
 
-def _row(body: Body, onto: Foot, known: RestitutionModel) -> CoefficientRow:
-    interval, given = interval_for(known, body, onto=onto), known.evaluate(body, onto)
+def _row(body: Body, foot: Foot, known: RestitutionModel) -> CoefficientRow:
+    interval, given = interval_for(known, body, foot=foot), known.evaluate(body, foot)
     warnings: tuple[str, ...] = tuple(flag.value for flag in given.flags)
-    if isinstance(known, Calibrated) and (outside := outside_evidence(body, onto)):
+    if isinstance(known, Calibrated) and (outside := outside_evidence(body, foot)):
         warnings = (*warnings, outside)
     value, low, high = given.coefficient, float(interval.low), float(interval.high)
-    implication = implied(body, value, onto=onto)
+    implication = implied(body, value, foot=foot)
     objections = (*warnings, *implication.objections)
     return CoefficientRow(known.label, known.title, value, low, high, implication, objections)
 
 
-def outside_evidence(body: Body, onto: Foot = "right") -> str:
+def outside_evidence(body: Body, foot: Foot = "right") -> str:
     """Say that a body lies outside the slendernesses that were measured; nothing if it lies inside."""
     low, high = CALIBRATED_RANGE
-    ratio = body.side(onto).slenderness_ratio
+    ratio = body.side(foot).slenderness_ratio
     if low <= ratio <= high:
         return ""
     return Message(

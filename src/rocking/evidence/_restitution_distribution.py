@@ -46,7 +46,7 @@ class RestitutionDistribution:
         By foot, the probability outside [0, bound] that was cut off [-].
     bounds : dict of str to float
         By foot, the largest coefficient at which landing on it creates no energy [-].
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot of which mean, quantiles and samples are asked.
     extrapolated : bool
         Whether the slenderness is outside what was measured.
@@ -55,20 +55,20 @@ class RestitutionDistribution:
     tables: Mapping[Foot, FloatArray]
     cut: Mapping[Foot, float]
     bounds: Mapping[Foot, float]
-    onto: Foot
+    foot: Foot
     extrapolated: bool
 
     def __repr__(self) -> str:
         cut = ", ".join(f"{foot}={percent(self.cut[foot])} outside [0, {self.bounds[foot]:.6g}]" for foot in FEET)
         return (
-            f"RestitutionDistribution(onto={self.onto!r}, mean={self.mean:.4g}, "
+            f"RestitutionDistribution(foot={self.foot!r}, mean={self.mean:.4g}, "
             f"standard_deviation={self.standard_deviation:.2g}, cut off: {cut}, extrapolated={self.extrapolated})"
         )
 
     @property
     def quantiles(self) -> FloatArray:
         """Coefficients at equally spaced probabilities from 0 to 1 [-]."""
-        return self.tables[self.onto]
+        return self.tables[self.foot]
 
     @property
     def mean(self) -> float:
@@ -81,14 +81,14 @@ class RestitutionDistribution:
         moved = (self.quantiles - self.mean) ** 2
         return float(np.sqrt(trapezoid(moved, 1.0 / (self.quantiles.size - 1))))
 
-    def quantile(self, probability: Any, onto: Foot | None = None) -> FloatArray:
+    def quantile(self, probability: Any, foot: Foot | None = None) -> FloatArray:
         """Return the coefficients that are not exceeded with given probabilities.
 
         Parameters
         ----------
         probability : float or array_like
             Probabilities in [0, 1] [-].
-        onto : {"left", "right"}, optional
+        foot : {"left", "right"}, optional
             The foot on which the body lands, if not that of the distribution.
 
         Returns
@@ -104,10 +104,10 @@ class RestitutionDistribution:
         p = checks.real_array("probability", probability)
         if not ((p >= 0.0) & (p <= 1.0)).all():
             raise InvalidValueError(parameter="probability", allowed=Range(0.0, 1.0), value=probability)
-        table = self.tables[self.onto if onto is None else checks.foot("onto", onto)]
+        table = self.tables[self.foot if foot is None else checks.foot("foot", foot)]
         return np.interp(p, np.linspace(0.0, 1.0, table.size), table)
 
-    def sample(self, count: int, seed: int, onto: Foot | None = None) -> FloatArray:
+    def sample(self, count: int, seed: int, foot: Foot | None = None) -> FloatArray:
         """Return coefficients drawn from the distribution.
 
         Parameters
@@ -116,7 +116,7 @@ class RestitutionDistribution:
             How many.
         seed : int
             Seed; the same one gives the same draws, and onto both feet those of the same probabilities.
-        onto : {"left", "right"}, optional
+        foot : {"left", "right"}, optional
             The foot on which the body lands, if not that of the distribution.
 
         Returns
@@ -124,7 +124,7 @@ class RestitutionDistribution:
         ndarray
             Coefficients [-].
         """
-        return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))), onto)
+        return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))), foot)
 
     def per_history(self, seed: int) -> SampledRestitution:
         """Return the restitution of a body whose coefficient is not known: one draw for every history.
@@ -160,7 +160,7 @@ class RestitutionDistribution:
 
 
 def restitution_distribution(
-    body: Body | float, *, onto: Foot = "right", calibration: Calibration | None = None
+    body: Body | float, *, foot: Foot = "right", calibration: Calibration | None = None
 ) -> RestitutionDistribution:
     """Return the distribution of a body's coefficient of restitution from the calibrated model, on a new interface.
 
@@ -168,7 +168,7 @@ def restitution_distribution(
     ----------
     body : Body or float
         A body, or the slenderness ratio h/b of a rectangle [-].
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which it lands, of which quantiles are asked; laws are of both.
     calibration : Calibration, optional
         Posterior of the model; `calibrate_hierarchy` of the published measurements if not given.
@@ -194,20 +194,20 @@ def restitution_distribution(
     known: Body = (
         body if isinstance(body, Body) else Block(width=1.0, height=checks.positive("slenderness_ratio", body))
     )
-    checks.foot("onto", onto)
+    checks.foot("foot", foot)
     low, high = CALIBRATED_RANGE
-    outside = not all(low <= known.side(foot).slenderness_ratio <= high for foot in FEET)
-    bounds = {foot: energy_bound(known, foot) for foot in FEET}
-    feet = (onto,) if known.is_symmetric else FEET
-    geometries = {foot: ImpactGeometry.of_body(known, foot) for foot in feet}
+    outside = not all(low <= known.side(side).slenderness_ratio <= high for side in FEET)
+    bounds = {side: energy_bound(known, side) for side in FEET}
+    feet = (foot,) if known.is_symmetric else FEET
+    geometries = {side: ImpactGeometry.of_body(known, side) for side in feet}
     truncated = {
-        foot: _truncated(posterior, tuple(map(float, astuple(geometries[foot]))), bounds[foot]) for foot in feet
+        side: _truncated(posterior, tuple(map(float, astuple(geometries[side]))), bounds[side]) for side in feet
     }
-    for foot, (_, cut) in truncated.items():
-        plausibility.warn(plausibility.of_truncation(cut, foot, bounds[foot]))
-    both = {foot: truncated.get(foot, truncated[onto]) for foot in FEET}
-    tables, cuts = {foot: both[foot][0] for foot in FEET}, {foot: both[foot][1] for foot in FEET}
-    return RestitutionDistribution(tables, cuts, bounds, onto, outside)
+    for side, (_, cut) in truncated.items():
+        plausibility.warn(plausibility.of_truncation(cut, side, bounds[side]))
+    both = {side: truncated.get(side, truncated[foot]) for side in FEET}
+    tables, cuts = {side: both[side][0] for side in FEET}, {side: both[side][1] for side in FEET}
+    return RestitutionDistribution(tables, cuts, bounds, foot, outside)
 
 
 @lru_cache(maxsize=64)

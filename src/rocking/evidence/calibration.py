@@ -97,14 +97,14 @@ class Calibration:
         facts = self.summary
         return Interface(ShiftedImpulse(k=facts["k"]["mean"]), eta=facts["eta"]["mean"])
 
-    def predict(self, body: Body | Any, *, onto: Foot = "right") -> PredictedCoefficient:
+    def predict(self, body: Body | Any, *, foot: Foot = "right") -> PredictedCoefficient:
         """Return the posterior predictive coefficient of a body, or of rectangles by slenderness.
 
         Parameters
         ----------
         body : Body or array_like
             A body, or slenderness ratios h/b [-].
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The foot on which a body lands.
 
         Returns
@@ -124,7 +124,7 @@ class Calibration:
         True
         """
         if isinstance(body, Body):
-            values, shape = self._predicted(*geometry_of(body, onto)), ()
+            values, shape = self._predicted(*geometry_of(body, foot)), ()
         else:
             ratios = checks.positive_array("slenderness_ratio", body)
             values, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
@@ -278,10 +278,10 @@ def normalised(log_weight: FloatArray) -> FloatArray:
     return np.asarray(weight / weight.sum())  # Eq. 136
 
 
-def geometry_of(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]:
+def geometry_of(body: Body | Any, foot: Foot) -> tuple[ImpactGeometry, FloatArray]:
     """Return the impact of a body, or of rectangles by slenderness [-], and the bound that energy sets [-]."""
     if isinstance(body, Body):
-        return ImpactGeometry.of_body(body, onto), np.array([energy_bound(body, onto)])
+        return ImpactGeometry.of_body(body, foot), np.array([energy_bound(body, foot)])
     ratios = np.atleast_1d(checks.positive_array("slenderness_ratio", body)).ravel()
     return ImpactGeometry.of_slenderness(ratios), np.ones(ratios.shape)
 

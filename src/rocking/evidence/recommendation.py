@@ -56,11 +56,11 @@ class ModelForBody:
         """Share of the energy left after two impacts, one onto each foot; NaN where a coefficient is not known [-]."""
         return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
 
-    def scatter(self, onto: Foot) -> float:
+    def scatter(self, foot: Foot) -> float:
         """Return how far one measured body may lie from the model onto a foot, as a standard deviation [-]."""
         # the shorter side may have been cut at 0 or at the energy bound
-        r = self.coefficients[onto]
-        return max(self.high[onto] - r, r - self.low[onto]) / NORMAL_95
+        r = self.coefficients[foot]
+        return max(self.high[foot] - r, r - self.low[foot]) / NORMAL_95
 
     @property
     def impacts_to_half(self) -> float:

@@ -108,7 +108,7 @@ def recommend(
         (CALIBRATED, title, _both(given, posterior.predict), judged.calibrated, ())
     ]
     for each, record in zip(admitted, judged.models, strict=True):
-        interval = _both(given, lambda body, onto, each=each: interval_for(each, body, onto=onto, measurements=data))
+        interval = _both(given, lambda body, onto, each=each: interval_for(each, body, foot=onto, measurements=data))
         predicted.append((each.label, each.title, interval, record, _concerns(each, given)))
     rows = [_row(*each) for each in sorted(predicted, key=lambda each: each[3].rmse)]
     rows += [
@@ -152,7 +152,7 @@ def _refusals(which: RestitutionModel, body: Body) -> tuple[str, ...]:
         except RockingError as error:
             return (str(error),)
         found += [flag.value for flag in given.flags]
-        means = implied(body, given.coefficient, onto=foot)
+        means = implied(body, given.coefficient, foot=foot)
         # of rectangles a loss was measured that no impulse on the base explains: what an interface factor takes
         beyond = means.within_energy and (_is_rectangle(body) or isinstance(which, Interface))
         found += [] if beyond else [f"onto the {foot} foot it {each}" for each in means.objections]
@@ -166,7 +166,7 @@ def _concerns(which: RestitutionModel, body: Body) -> tuple[str, ...]:
     found = []
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     for foot in feet:
-        check = next(each for each in identity_report(body, which, onto=foot) if each.name == "inertia alone")
+        check = next(each for each in identity_report(body, which, foot=foot) if each.name == "inertia alone")
         if not check.holds:
             where = "" if body.is_symmetric else f" onto the {foot} foot"
             found.append(f"{check.found:.3f} instead of {check.expected:.3f}{where}")
@@ -175,8 +175,8 @@ def _concerns(which: RestitutionModel, body: Body) -> tuple[str, ...]:
 
 
 def _both(body: Body, predict: Any) -> dict[Foot, PredictedCoefficient]:
-    right = predict(body, onto="right")
-    return {"left": right if body.is_symmetric and _is_rectangle(body) else predict(body, onto="left"), "right": right}
+    right = predict(body, foot="right")
+    return {"left": right if body.is_symmetric and _is_rectangle(body) else predict(body, foot="left"), "right": right}
 
 
 def _row(

@@ -82,7 +82,7 @@ class Impact:
 
     number: int  # from zero; nothing is known of what the first one took
     time: float  # when it was, as it is computed [s]
-    onto: Foot  # the foot on which the body lands
+    foot: Foot  # the foot on which the body lands
     speed: float  # angular velocity before it, without sign [rad/s]
     coefficient: IntervalEstimate  # theta_dot_after / theta_dot_before [-]
 
@@ -382,7 +382,7 @@ class Identification(Exported):
         of = self.impacts
         columns = {
             "time": Column(np.array([each.time for each in of]), "s", "when it was, as computed"),
-            "onto": Column(text_array([each.onto for each in of]), "", "foot on which the body lands"),
+            "foot": Column(text_array([each.foot for each in of]), "", "foot on which the body lands"),
             "speed": Column(np.array([each.speed for each in of]), "rad/s", "angular velocity before it"),
         }
         for key, end, meaning in _ENDS:
@@ -412,7 +412,7 @@ def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foo
     """Where the impulse acts that coefficients imply; the larger the coefficient, the smaller k."""
     found: dict[Foot, IntervalEstimate] = {}
     for foot, each in coefficients.items():
-        value, high, low = (implied(body, r, onto=foot).impulse_ratio for r in (each.value, each.low, each.high))
+        value, high, low = (implied(body, r, foot=foot).impulse_ratio for r in (each.value, each.low, each.high))
         found[foot] = IntervalEstimate(value, low, high)
     return found
 
@@ -423,7 +423,7 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
     for name, kind in models().items():
         try:
             model: RestitutionModel = kind()
-            sides = [model.evaluate(body, onto=foot).coefficient for foot in FEET]
+            sides = [model.evaluate(body, foot=foot).coefficient for foot in FEET]
         except (TypeError, RockingError):  # it takes a number, or does not hold for this body
             continue
         value = math.sqrt(sides[0] * sides[1])

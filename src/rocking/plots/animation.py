@@ -143,7 +143,7 @@ def page_data(response: Response) -> dict[str, Any]:
     scene = scene_of(response)
     parameters, fall = response.parameters, response.overturning_time
     impacts = response.impacts
-    signs = np.where(impacts["onto"] == "right", 1, -1)
+    signs = np.where(impacts["foot"] == "right", 1, -1)
     columns = (impacts["time"], impacts["velocity_before"], impacts["velocity_after"], impacts["coefficient"], signs)
     shape = scene.shape
     return {
@@ -327,8 +327,8 @@ class _Stage:
         times = response.impacts["time"]
         last = int(np.searchsorted(times, time, side="right")) - 1
         if last >= 0 and time - times[last] < window:
-            onto = 1 if response.impacts["onto"][last] == "right" else 0
-            self.flash.set_data([scene.shape.feet[onto] + ground - camera], [0.0])
+            landing = 1 if response.impacts["foot"][last] == "right" else 0
+            self.flash.set_data([scene.shape.feet[landing] + ground - camera], [0.0])
             self.coefficient.set_text(f"impact, r = {response.impacts['coefficient'][last]:.3f}")
         else:
             self.flash.set_data([], [])

@@ -199,9 +199,9 @@ class _Falling:
             return side, (time, rotation, speed)
         return -side, (time, 0.0, self._coefficient(-side, speed) * speed)
 
-    def _coefficient(self, onto: float, speed: float) -> float:
+    def _coefficient(self, foot: float, speed: float) -> float:
         parameters, run = self.response.parameters, self.response.trajectory
-        return parameters.coefficient(onto, abs(speed), self.response.stream, run.impacts + 1)
+        return parameters.coefficient(foot, abs(speed), self.response.stream, run.impacts + 1)
 
     def _step(self, side: float, state: _State, step: float) -> _State:
         """Return the state after a step, by the classical method of Runge and Kutta."""

@@ -28,14 +28,14 @@ STAGE_WORDS = {
 
 
 @in_journal_style
-def energy_stages_picture(body: Body | None = None, *, onto: Foot = "right", angular_velocity: float = 1.0) -> "Figure":
+def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", angular_velocity: float = 1.0) -> "Figure":
     """Draw energy density and velocities over a body, stage by stage.
 
     Parameters
     ----------
     body : Body, optional
         Block or Section; by default a pedestal with a hollow.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which it lands.
     angular_velocity : float
         Angular velocity before the impact [rad/s].
@@ -46,7 +46,7 @@ def energy_stages_picture(body: Body | None = None, *, onto: Foot = "right", ang
         Four panels with one colour scale, and the share of energy in each.
     """
     body = _pedestal() if body is None else body
-    balance = energy_balance(body, onto=onto, angular_velocity=angular_velocity)
+    balance = energy_balance(body, foot=foot, angular_velocity=angular_velocity)
     x0, _, x1, height = body.local_box
     shape = min(max(height / (x1 - x0), 0.6), 3.0)
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)

@@ -71,7 +71,7 @@ def identification_picture(found: Identification) -> "Figure":
     else:
         _turned(axes[0], found)
     for each in found.impacts:
-        axes[0].axvline(each.time, color=_LOOKS[each.onto][0], linewidth=0.6)
+        axes[0].axvline(each.time, color=_LOOKS[each.foot][0], linewidth=0.6)
     _residuals(axes[2], found)
     for axis, words in zip(axes[1:], (_R, "time [s]", "impact"), strict=True):
         axis.set_xlabel(words)
@@ -100,7 +100,7 @@ def _heard(axes: "Axes", found: Identification, measurement: ImpactTimes) -> Non
     if found.impacts:  # of the first and the last nothing is known but when they were
         ends = zip(found.residual_times[[0, -1]], (found.impacts[0], found.impacts[-1]), strict=True)
         for time, neighbour in ends:
-            axes.axvline(time, color=_LOOKS[opposite(neighbour.onto)][0], linewidth=0.6)
+            axes.axvline(time, color=_LOOKS[opposite(neighbour.foot)][0], linewidth=0.6)
     other = np.setdiff1d(measurement.times, found.residual_times)
     axes.plot(other, np.full(other.size, 1.04), "x", color=GREY)
 
@@ -164,7 +164,7 @@ def _impacts(axes: "Axes", found: Identification) -> None:
     axes.axhspan(found.mean.low, found.mean.high, color=PALE, linewidth=0.0)
     axes.axhline(found.mean.value, color=INK, linewidth=0.6)
     for each in found.impacts:
-        color, mark = _LOOKS[each.onto]
+        color, mark = _LOOKS[each.foot]
         axes.plot([each.number] * 2, [each.coefficient.low, each.coefficient.high], color=color, linewidth=0.8)
         axes.plot(each.number, each.coefficient.value, mark, color=color, markersize=3.5)
     axes.set_ylabel("r of each impact [-]")

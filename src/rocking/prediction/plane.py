@@ -96,8 +96,8 @@ class SampledInPlane(SampledBodies):
             distribution = restitution_distribution(self.body)
             self._tables = [distribution.tables[foot] for foot in FEET]
             ends = {"low": float(self._tables[1][25]), "high": float(self._tables[1][-26])}
-            onto = Message("{low:.3f} to {high:.3f} on the right foot in 95 % of samples", ends)
-            text = as_measured(onto, extrapolated=distribution.extrapolated)
+            interval = Message("{low:.3f} to {high:.3f} on the right foot in 95 % of samples", ends)
+            text = as_measured(interval, extrapolated=distribution.extrapolated)
             self._follows, fixed = True, False
             self.assumed["restitution"] = with_reason(text, MEASURED_REASON)
         elif name == COMPLEMENTARITY:

@@ -117,7 +117,7 @@ def _compared(models: tuple[ModelComparison, ...]) -> list[ReportSection]:
 
 
 TRIAL = ("trial", "coefficient", "scatter", "impacts")
-IMPACT = ("number", "time", "onto", "speed", "coefficient")
+IMPACT = ("number", "time", "foot", "speed", "coefficient")
 COMPARED = ("model", "coefficient", "bias", "within")
 DESIGN = ("release_ratio", "impacts", "timing_noise", "deviation")
 """Columns of the tables of an identification, in every output."""

@@ -68,26 +68,26 @@ class ImpactAnswer:
         body: Body,
         models: list[RestitutionModel] | None,
         *,
-        onto: str,
+        foot: str,
         gravity: float,
         identities: bool,
     ) -> "ImpactAnswer":
         """Compute the tables under a gravity [m/s2]."""
-        if onto not in (*FEET, "both"):
-            raise InvalidValueError(parameter="onto", allowed='"left", "right" or "both"', value=onto)
+        if foot not in (*FEET, "both"):
+            raise InvalidValueError(parameter="foot", allowed='"left", "right" or "both"', value=foot)
         gravity = checks.positive("gravity", gravity, "m/s2")
-        tables = {foot: coefficient_table(body, models, onto=foot) for foot in FEET if onto in (foot, "both")}
+        tables = {side: coefficient_table(body, models, foot=side) for side in FEET if foot in (side, "both")}
         if len(tables) == 2 and _same(tables["left"], tables["right"]):
             del tables["left"]
-        foot = next(reversed(tables))
+        last = next(reversed(tables))
         checked = (models or default_models()) if identities else []
-        return cls(body, tables, gravity, {model.label: identity_report(body, model, onto=foot) for model in checked})
+        return cls(body, tables, gravity, {model.label: identity_report(body, model, foot=last) for model in checked})
 
     def answer(self) -> Answer:
         """Return the body, KED's energy, and every model's coefficient with derived quantities."""
         return Answer({
             "body": self.body.answer(self.gravity),
-            "ked_energy_shares": {foot: energy_balance(self.body, onto=foot).shares for foot in self.tables},
+            "ked_energy_shares": {foot: energy_balance(self.body, foot=foot).shares for foot in self.tables},
             "coefficients": {foot: [row.answer() for row in rows] for foot, rows in self.tables.items()},
             "identities": {
                 name: {check.name: check.holds for check in report} for name, report in self.identities.items()
@@ -100,11 +100,11 @@ def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -
     return all(math.isclose(a.coefficient, b.coefficient, rel_tol=1e-12, abs_tol=1e-15) for a, b in pairs)
 
 
-def stages_answer(body: Body, onto: Foot, angular_velocity: float = 1.0) -> Answer:
+def stages_answer(body: Body, foot: Foot, angular_velocity: float = 1.0) -> Answer:
     """Return the energy balance of an impact at a velocity [rad/s] with a field of velocities for each stage of KED."""
     from rocking.plots.energy_stages import STAGE_WORDS
 
-    balance = energy_balance(body, onto=onto, angular_velocity=angular_velocity)
+    balance = energy_balance(body, foot=foot, angular_velocity=angular_velocity)
     points = _arrow_feet(body)
     fields = balance.velocities(points[:, 0], points[:, 1])
     stages = [

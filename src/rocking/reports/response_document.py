@@ -223,7 +223,7 @@ def response_content(response: Response, *, name: str, date: str, friction: floa
         raise InvalidValueError("the response has no result to report: {reason}", reason=response.summary)
     friction = friction if isinstance(friction, Assumed) else checks.positive("friction", friction)
     gravity = response.settings.gravity
-    impact = ImpactAnswer.of(response.body, None, onto="both", gravity=gravity, identities=False)
+    impact = ImpactAnswer.of(response.body, None, foot="both", gravity=gravity, identities=False)
     motion = (
         response.motion if response.motion is None or response.scale == 1.0 else response.motion.scaled(response.scale)
     )

@@ -64,7 +64,7 @@ class Implication:
         return tuple(reasons)
 
 
-def energy_bound(body: Body, onto: Foot) -> float:
+def energy_bound(body: Body, foot: Foot) -> float:
     """Return the largest coefficient of restitution at which an impact creates no energy.
 
     The bound is sqrt(I_old / I_new) with the moments of inertia about the feet; it exceeds 1 for one of two different
@@ -74,11 +74,11 @@ def energy_bound(body: Body, onto: Foot) -> float:
     >>> energy_bound(Block(width=1.0, height=2.0), "left")
     1.0
     """
-    old, new = body.side(opposite(checks.foot("onto", onto))), body.side(onto)
+    old, new = body.side(opposite(checks.foot("foot", foot))), body.side(foot)
     return math.sqrt(old.moment_of_inertia / new.moment_of_inertia)  # Eq. 29
 
 
-def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implication:
+def implied(body: Body, coefficient: float, *, foot: Foot = "right") -> Implication:
     """Return the implications of a coefficient for a body.
 
     Angular momentum is conserved about the point of action of the impulse on the ground:
@@ -91,7 +91,7 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
         The body.
     coefficient : float
         theta_dot_after / theta_dot_before, at least 0 [-].
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which the body lands.
 
     Returns
@@ -112,12 +112,12 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
     (1.0, 0.51)
     """
     r = checks.within("coefficient", coefficient, 0.0, math.inf, hint="a ratio of angular velocities")
-    new, old = body.side(onto), body.side(opposite(checks.foot("onto", onto)))
+    new, old = body.side(foot), body.side(opposite(checks.foot("foot", foot)))
     base_inertia = new.moment_of_inertia - new.mass * new.half_width**2
     lift = old.half_width + r * new.half_width
     arm = base_inertia * (1.0 - r) / (new.mass * lift)  # Eq. 4
-    direction = 1.0 if onto == "right" else -1.0
-    bound = energy_bound(body, onto)
+    direction = 1.0 if foot == "right" else -1.0
+    bound = energy_bound(body, foot)
     return Implication(
         coefficient=r,
         impulse_arm=arm,

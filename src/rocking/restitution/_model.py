@@ -89,7 +89,7 @@ class RestitutionModel(ABC):
     >>> class Half(rk.restitution.RestitutionModel):
     ...     name = "half"
     ...
-    ...     def raw_coefficient(self, body, onto):
+    ...     def raw_coefficient(self, body, foot):
     ...         return 0.5
     >>> rk.coefficient_of_restitution(rk.Block(width=1.0, height=4.0), Half())
     0.5
@@ -113,14 +113,14 @@ class RestitutionModel(ABC):
     trials: ClassVar[tuple[str, ...]] = ("",)
 
     @abstractmethod
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
         """Return the value of the model's equation for a body, without the limits of its domain.
 
         Parameters
         ----------
         body : Body
             The body.
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The foot on which the body lands.
 
         Returns
@@ -146,14 +146,14 @@ class RestitutionModel(ABC):
         values = [self.raw_coefficient(block, "right") for block in blocks]
         return np.array(values, dtype=np.float64).reshape(slenderness.shape)
 
-    def evaluate(self, body: Body, onto: Foot = "right") -> Restitution:
+    def evaluate(self, body: Body, foot: Foot = "right") -> Restitution:
         """Return the coefficient of a body with its flags.
 
         Parameters
         ----------
         body : Body
             The body.
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The foot on which the body lands.
 
         Returns
@@ -167,17 +167,17 @@ class RestitutionModel(ABC):
             If the foot is unknown or the model does not return a finite number.
         """
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
-        raw = checks.number(f"coefficient of model {self.name}", self.raw_coefficient(body, checks.foot("onto", onto)))
+        raw = checks.number(f"coefficient of model {self.name}", self.raw_coefficient(body, checks.foot("foot", foot)))
         return Restitution(self, raw, max(raw, 0.0), (Flag.STOPS,) if raw <= 0.0 else ())
 
-    def coefficient(self, body: Body, onto: Foot = "right") -> float:
+    def coefficient(self, body: Body, foot: Foot = "right") -> float:
         """Return the coefficient of restitution of a body.
 
         Parameters
         ----------
         body : Body
             The body.
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The foot on which the body lands.
 
         Returns
@@ -185,7 +185,7 @@ class RestitutionModel(ABC):
         float
             theta_dot_after / theta_dot_before, zero for a body that stops [-].
         """
-        return self.evaluate(body, onto).coefficient
+        return self.evaluate(body, foot).coefficient
 
     def of_slenderness(self, slenderness: Any) -> FloatArray:
         """Return the coefficients of homogeneous rectangles.
@@ -282,8 +282,8 @@ class InertiaModel(RestitutionModel):
             Values, of the shape of the fields of the geometry [-].
         """
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        return float(self.of_geometry(ImpactGeometry.of_body(body, onto)))
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
+        return float(self.of_geometry(ImpactGeometry.of_body(body, foot)))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         return np.asarray(self.of_geometry(ImpactGeometry.of_slenderness(slenderness)))

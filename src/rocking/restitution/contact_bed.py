@@ -131,10 +131,10 @@ class ContactBedModel(InertiaModel):
         inside = self.points in POINTS and DAMPING[0] <= self.damping <= DAMPING[1]
         return inside and HARDNESS[0] <= self.hardness <= HARDNESS[1]
 
-    def evaluate(self, body: Body, onto: Foot = "right") -> BedRestitution:
+    def evaluate(self, body: Body, foot: Foot = "right") -> BedRestitution:
         """Return the coefficient of a body with its flags and source."""
-        result = super().evaluate(body, onto)
-        geometry = ImpactGeometry.of_body(body, onto)
+        result = super().evaluate(body, foot)
+        geometry = ImpactGeometry.of_body(body, foot)
         read = bool(self._uses_table(geometry))
         source, error = (
             (CoefficientSource.TABLE, float(self._error(geometry))) if read else (CoefficientSource.RESOLVED, 1e-6)

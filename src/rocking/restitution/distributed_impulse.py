@@ -64,10 +64,10 @@ class DistributedImpulse(InertiaModel):
         """Return the closed form for a base in contact from foot to foot [-]."""
         return distributed(geometry, np.asarray(self.q))
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
         """Return the closed form for contact of the full base, otherwise the quadrature over its areas [-]."""
-        geometry = ImpactGeometry.of_body(body, onto)
-        patches = contact_of(body, onto)
+        geometry = ImpactGeometry.of_body(body, foot)
+        patches = contact_of(body, foot)
         if is_whole_base(patches, geometry):
             return float(self.of_geometry(geometry))
         return self._by_quadrature(patches, geometry)

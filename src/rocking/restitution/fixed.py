@@ -50,7 +50,7 @@ class Fixed(RestitutionModel):
         object.__setattr__(self, "sees_old_foot", self.r == 1.0)
         plausibility.warn(plausibility.of_coefficient(self.r))
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
         return self.r
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:

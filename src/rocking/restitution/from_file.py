@@ -144,10 +144,10 @@ def _check_promises(candidate: RestitutionModel) -> None:
     for ratio in ratios[1:-1]:
         block = Block(width=1.0, height=ratio)
         for body in (block, block.with_feet(0.35, 0.95), block.with_feet(0.02, 0.7)):
-            for onto in FEET:
-                r, new, old = candidate.coefficient(body, onto), body.side(onto), body.side(opposite(onto))
+            for foot in FEET:
+                r, new, old = candidate.coefficient(body, foot), body.side(foot), body.side(opposite(foot))
                 gain = r * r * new.moment_of_inertia / old.moment_of_inertia
-                impact: dict[str, Any] = {"ratio": ratio, "left": body.feet[0], "right": body.feet[1], "onto": onto}
+                impact: dict[str, Any] = {"ratio": ratio, "left": body.feet[0], "right": body.feet[1], "foot": foot}
                 if candidate.keeps_energy and gain > 1.0 + _ROUNDING:
                     raise InvalidValueError(
                         "an impact must not create energy, got {gain:.6g} times the energy before, " + _IMPACT,
@@ -155,9 +155,9 @@ def _check_promises(candidate: RestitutionModel) -> None:
                         **impact,
                     )
                 for quantity, changed_body, foot in (
-                    ("size", body.scaled(size=7.3), onto),
-                    ("density", body.scaled(density=0.013), onto),
-                    ("side", body.mirrored(), opposite(onto)),
+                    ("size", body.scaled(size=7.3), foot),
+                    ("density", body.scaled(density=0.013), foot),
+                    ("side", body.mirrored(), opposite(foot)),
                 ):
                     changed = candidate.coefficient(changed_body, foot)
                     if abs(changed - r) > 1e-8:

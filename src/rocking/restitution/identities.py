@@ -58,7 +58,7 @@ class IdentityCheck:
         return f"{self.name}: violated for this body ({self.statement}; {numbers})"
 
 
-def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right") -> tuple[IdentityCheck, ...]:
+def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right") -> tuple[IdentityCheck, ...]:
     """Return the checks of all identities for a model and a body.
 
     Parameters
@@ -67,7 +67,7 @@ def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right"
         The body.
     model : RestitutionModel
         The model.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which it lands.
 
     Returns
@@ -88,17 +88,17 @@ def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right"
     with warnings.catch_warnings():
         # modified bodies need no warnings: larger, lighter, with nearly coincident feet
         warnings.simplefilter("ignore", PlausibilityWarning)
-        r, r_back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
+        r, r_back = model.coefficient(body, foot), model.coefficient(body, opposite(foot))
         others = {
-            "scale": model.coefficient(body.scaled(size=3.7), onto),
-            "density": model.coefficient(body.scaled(density=3.7), onto),
-            "mirror": model.coefficient(body.mirrored(), opposite(onto)),
-            "coincident pivots": model.coefficient(body.with_feet(x - gap, x + gap), onto),
+            "scale": model.coefficient(body.scaled(size=3.7), foot),
+            "density": model.coefficient(body.scaled(density=3.7), foot),
+            "mirror": model.coefficient(body.mirrored(), opposite(foot)),
+            "coincident pivots": model.coefficient(body.with_feet(x - gap, x + gap), foot),
             "inertia alone": max(
-                (model.coefficient(twin, onto) for twin in _dumbbells(body)), key=lambda value: abs(value - r)
+                (model.coefficient(twin, foot) for twin in _dumbbells(body)), key=lambda value: abs(value - r)
             ),
         }
-    implication = implied(body, r, onto=onto)
+    implication = implied(body, r, foot=foot)
     bounds = {
         "energy bound": (implication.largest_coefficient, r, implication.within_energy),
         "round trip": (1.0, r * r_back, r * r_back <= 1.0 + _EXACT),  # Eq. 113

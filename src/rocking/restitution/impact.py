@@ -44,14 +44,14 @@ class ImpactGeometry:
             object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
 
     @classmethod
-    def of_body(cls, body: Body, onto: Foot) -> "ImpactGeometry":
+    def of_body(cls, body: Body, foot: Foot) -> "ImpactGeometry":
         """Return the impact of a body onto one of its feet.
 
         Parameters
         ----------
         body : Body
             The body.
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The new foot.
 
         Returns
@@ -59,7 +59,7 @@ class ImpactGeometry:
         ImpactGeometry
             Fields are zero-dimensional arrays.
         """
-        new, old, moments = body.side(onto), body.side(opposite(onto)), body.local_moments
+        new, old, moments = body.side(foot), body.side(opposite(foot)), body.local_moments
         return cls(
             np.asarray(moments.y),
             np.asarray(old.half_width),
@@ -102,10 +102,10 @@ class ImpactGeometry:
         return self.base_gyration + self.new_lever**2  # Eq. 108
 
 
-def contact_of(body: Body, onto: Foot) -> FloatArray:
+def contact_of(body: Body, foot: Foot) -> FloatArray:
     """Return the flat stretches of the base relative to the plumb line of the centre of mass [m], shape (n, 2)."""
     patches = np.array(body.local_contact, dtype=np.float64).reshape(-1, 2) - body.local_moments.x
-    return patches if onto == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
+    return patches if foot == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
 
 
 def is_whole_base(patches: FloatArray, geometry: ImpactGeometry) -> bool:

@@ -68,8 +68,8 @@ class Interface(RestitutionModel):
         """Factor and wrapped model: ``0.98*ked``."""
         return f"{self.eta:.4g}*{self.model.label}"
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        return self.eta * self.model.raw_coefficient(body, onto)  # Eq. 112
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
+        return self.eta * self.model.raw_coefficient(body, foot)  # Eq. 112
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         return self.eta * self.model.raw_of_slenderness(slenderness)  # Eq. 112

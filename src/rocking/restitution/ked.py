@@ -145,12 +145,12 @@ class Ked(RestitutionModel):
         "its high correlation is not evidence: that of Housner's model is equal on the same data",
     )
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
         """Return r by Eq. 17, Mao et al. 2024, over the mass distribution of the body [-]."""
         if isinstance(body, Block) and body.known is None and body.stands_on_corners:
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
-        return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
+        return float(np.sqrt(projected_moment(body, foot) / body.side(foot).moment_of_inertia))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         """Return r by Eq. 17 for homogeneous rectangles, in closed form [-]."""
@@ -163,7 +163,7 @@ class Ked(RestitutionModel):
 
 
 @singledispatch
-def projected_moment(body: Body, onto: Foot) -> float:
+def projected_moment(body: Body, foot: Foot) -> float:
     """Return the numerator of Eq. 17, the integral of ``y^4 / |S - O'|^2 dm``.
 
     Register a new kind of body with ``@projected_moment.register``.
@@ -172,7 +172,7 @@ def projected_moment(body: Body, onto: Foot) -> float:
     ----------
     body : Body
         The body.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The new foot O'.
 
     Returns
@@ -189,27 +189,27 @@ def projected_moment(body: Body, onto: Foot) -> float:
 
 
 @projected_moment.register
-def _(body: Block, onto: Foot) -> float:
+def _(body: Block, foot: Foot) -> float:
     if body.known is not None:
-        return _of_quarters(body, onto)
+        return _of_quarters(body, foot)
     if not body.stands_on_corners:
-        return projected_moment(body.to_section(), onto)
-    return Ked().raw_coefficient(body, onto) ** 2 * body.side(onto).moment_of_inertia
+        return projected_moment(body.to_section(), foot)
+    return Ked().raw_coefficient(body, foot) ** 2 * body.side(foot).moment_of_inertia
 
 
 @projected_moment.register
-def _(body: Section, onto: Foot) -> float:
+def _(body: Section, foot: Foot) -> float:
     if body.known is not None:
-        return _of_quarters(body, onto)
-    foot = np.array([body.local_feet[onto == "right"], 0.0])
+        return _of_quarters(body, foot)
+    pivot = np.array([body.local_feet[foot == "right"], 0.0])
     return body.depth * sum(
-        region.density * ring_integral(ring - foot) for region in body.regions for ring in region.rings
+        region.density * ring_integral(ring - pivot) for region in body.regions for ring in region.rings
     )
 
 
 @projected_moment.register
-def _(body: MassPoints, onto: Foot) -> float:
-    return _of_points(body.points - np.array([body.local_feet[onto == "right"], 0.0]), body.masses)
+def _(body: MassPoints, foot: Foot) -> float:
+    return _of_points(body.points - np.array([body.local_feet[foot == "right"], 0.0]), body.masses)
 
 
 def _of_points(points: FloatArray, masses: FloatArray) -> float:
@@ -221,13 +221,14 @@ def _of_points(points: FloatArray, masses: FloatArray) -> float:
     return float((masses * ratio).sum())
 
 
-def _of_quarters(body: Body, onto: Foot) -> float:
+def _of_quarters(body: Body, foot: Foot) -> float:
     """Return the projected moment of a body with stated moments, with its mass in the quarters of its box [kg m2]."""
-    foot = np.array([body.local_feet[onto == "right"], 0.0])
+    foot = np.array([body.local_feet[foot == "right"], 0.0])
     rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
     areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
-    spread = sum(m / area * abs(ring_integral(ring - foot)) for m, area, ring in zip(inside, areas, rings, strict=True))
-    return float(spread) + _of_points(corners - foot, outside)
+    integrals = [abs(ring_integral(ring - pivot)) for ring in rings]
+    spread = sum(m / area * each for m, area, each in zip(inside, areas, integrals, strict=True))
+    return float(spread) + _of_points(corners - pivot, outside)
 
 
 STAGES = ("before", "stage 1", "stage 2", "after")
@@ -242,7 +243,7 @@ class EnergyBalance:
     ----------
     body : Body
         The body.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which the body lands.
     velocity_before, velocity_after : float
         Angular velocities about the old and about the new foot [rad/s].
@@ -258,7 +259,7 @@ class EnergyBalance:
     """
 
     body: Body
-    onto: Foot
+    foot: Foot
     velocity_before: float
     velocity_after: float
     totals: dict[str, float]
@@ -283,11 +284,11 @@ class EnergyBalance:
             Velocities (v_x, v_y) by stage, with an additional last dimension of length 2 [m/s].
         """
         # a clockwise rotation leads to the right foot, a counter-clockwise one to the left
-        sense = 1.0 if self.onto == "right" else -1.0
+        sense = 1.0 if self.foot == "right" else -1.0
         feet = dict(zip(("left", "right"), self.body.feet, strict=True))
         up = np.asarray(y, dtype=np.float64) - self.body.ground
-        from_old = np.asarray(x, dtype=np.float64) - feet[opposite(self.onto)]
-        from_new = np.asarray(x, dtype=np.float64) - feet[self.onto]
+        from_old = np.asarray(x, dtype=np.float64) - feet[opposite(self.foot)]
+        from_new = np.asarray(x, dtype=np.float64) - feet[self.foot]
         before, after = sense * self.velocity_before, sense * self.velocity_after
         squared = up**2 + from_new**2
         remaining = np.divide(up**2, squared, out=np.zeros_like(squared), where=squared > 0.0)
@@ -326,14 +327,14 @@ def known_density(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
     return body.density_at(x, y)
 
 
-def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float = 1.0) -> EnergyBalance:
+def energy_balance(body: Body, *, foot: Foot = "right", angular_velocity: float = 1.0) -> EnergyBalance:
     """Return the energy balance of an impact under KED.
 
     Parameters
     ----------
     body : Body
         Block, Section or MassPoints.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which the body lands.
     angular_velocity : float
         Angular velocity before the impact [rad/s].
@@ -354,16 +355,16 @@ def energy_balance(body: Body, *, onto: Foot = "right", angular_velocity: float 
     >>> round(energy_balance(Block(width=1.0, height=4.0)).velocity_after, 8)
     0.94736684
     """
-    onto = checks.foot("onto", onto)
+    foot = checks.foot("foot", foot)
     speed = checks.positive("angular_velocity", angular_velocity, "rad/s")
     moments, half = body.local_moments, 0.5 * speed**2
-    projected = projected_moment(body, onto)
-    inertia = body.side(onto).moment_of_inertia
+    projected = projected_moment(body, foot)
+    inertia = body.side(foot).moment_of_inertia
     totals = {
-        "before": half * body.side(opposite(onto)).moment_of_inertia,
+        "before": half * body.side(opposite(foot)).moment_of_inertia,
         "stage 1": half * (moments.yy + moments.mass * moments.y**2),
         "stage 2": half * projected,  # Eq. 11, Mao et al. 2024
     }
     after = speed * float(np.sqrt(projected / inertia))  # Eq. 16, Mao et al. 2024
     # Eq. 15, Mao et al. 2024
-    return EnergyBalance(body, onto, speed, after, {**totals, "after": 0.5 * inertia * after**2})
+    return EnergyBalance(body, foot, speed, after, {**totals, "after": 0.5 * inertia * after**2})

@@ -63,11 +63,11 @@ class PlasticWinkler(InertiaModel):
             return super().raw_of_slenderness(slenderness)
         return np.asarray(1.0 / (1.0 + np.exp(-_log_odds()(logarithm))))
 
-    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+    def raw_coefficient(self, body: Body, foot: Foot) -> float:
         """Return the coefficient of a body with the contact stretches of its base [-]."""
-        geometry = ImpactGeometry.of_body(body, onto)
+        geometry = ImpactGeometry.of_body(body, foot)
         lever, back = float(geometry.new_lever), float(geometry.old_lever)
-        edges = (contact_of(body, onto) / lever).ravel().tolist()
+        edges = (contact_of(body, foot) / lever).ravel().tolist()
         return _impact(lever**2 / float(geometry.base_gyration), back / lever, tuple(edges))
 
 

@@ -102,7 +102,7 @@ def check_complete(kind: type[RestitutionModel]) -> None:
         )  # fmt: skip
 
 
-_METHOD = "raw_coefficient(self, body, onto)"
+_METHOD = "raw_coefficient(self, body, foot)"
 
 
 def withdraw(kind: type[RestitutionModel]) -> None:
@@ -267,12 +267,12 @@ def _coefficient(name: str, value: Any) -> float:
     return r
 
 
-def energy_refusal(onto: Foot, bound: float, largest: float) -> InvalidValueError:
+def energy_refusal(foot: Foot, bound: float, largest: float) -> InvalidValueError:
     """Return the error for a coefficient [-] above the energy bound of a side."""
     return InvalidValueError(
         "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], got "
         "{largest:.6g}: the impact would create energy",
-        foot=onto,
+        foot=foot,
         most=bound,
         largest=largest,
     )
@@ -282,7 +282,7 @@ def coefficient_of_restitution(
     body: Body,
     restitution: str | RestitutionModel | float | Mapping[str, float] = DEFAULT_RESTITUTION,
     *,
-    onto: Foot = "right",
+    foot: Foot = "right",
     eta: float = 1.0,
     **parameters: Any,
 ) -> float:
@@ -296,7 +296,7 @@ def coefficient_of_restitution(
         As for `simulate`: name of a model (see `rocking.restitution.models`), a model object, a coefficient, or
         ``{"left": r, "right": r}`` with one coefficient per foot. A law such as `SpeedRestitution` varies from impact
         to impact and has no single coefficient.
-    onto : {"left", "right"}
+    foot : {"left", "right"}
         The foot on which the body lands.
     eta : float
         Interface factor in (0, 1] that multiplies the coefficient [-].
@@ -325,23 +325,23 @@ def coefficient_of_restitution(
     0.94610778
     >>> rk.coefficient_of_restitution(block, 0.9)
     0.9
-    >>> rk.coefficient_of_restitution(block, {"left": 0.85, "right": 0.9}, onto="left")
+    >>> rk.coefficient_of_restitution(block, {"left": 0.85, "right": 0.9}, foot="left")
     0.85
 
     The coefficient of an asymmetric body depends on the foot:
 
     >>> cabinet = rk.Block(width=0.8, height=2.0, centre=(0.3, 0.8))
-    >>> [round(rk.coefficient_of_restitution(cabinet, "housner", onto=foot), 4) for foot in ("left", "right")]
+    >>> [round(rk.coefficient_of_restitution(cabinet, "housner", foot=foot), 4) for foot in ("left", "right")]
     [0.7818, 0.6825]
     """
     if isinstance(restitution, (str, RestitutionModel)):
-        return model(restitution, eta=eta, **parameters).coefficient(body, onto)
+        return model(restitution, eta=eta, **parameters).coefficient(body, foot)
     if parameters:
         raise UnknownModelError("a coefficient accepts no parameters, got {names}", names=", ".join(parameters))
-    onto = checks.foot("onto", onto)
+    foot = checks.foot("foot", foot)
     checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
     coefficients, _ = coefficients_of(restitution, body)
-    r, bound = coefficients[onto], energy_bound(body, onto)
+    r, bound = coefficients[foot], energy_bound(body, foot)
     if r > bound * (1.0 + BOUND_ROUNDING):
-        raise energy_refusal(onto, bound, r)
+        raise energy_refusal(foot, bound, r)
     return _factor(eta) * r

@@ -314,7 +314,7 @@ def bed_speed_law(
     *,
     points: int = 41,
     damping: float = 1.0,
-    onto: Foot = "right",
+    foot: Foot = "right",
     gravity: float = conventions.g,
 ) -> SpeedRestitution:
     """Return r(speed) of a body on a bed of given frequency sqrt(k / m) / (2 pi) [Hz], for `simulate`.
@@ -330,7 +330,7 @@ def bed_speed_law(
     left, right = body.local_feet
     hardness = np.geomspace(*HARDNESS, 41)
     hardness[[0, -1]] = HARDNESS
-    r = [ContactBedModel(points, damping, each).coefficient(body, onto) for each in hardness.tolist()]
+    r = [ContactBedModel(points, damping, each).coefficient(body, foot) for each in hardness.tolist()]
     return SpeedRestitution(hardness / (rate * (right - left)), np.minimum(r, 1.0))
 
 

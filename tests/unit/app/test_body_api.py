@@ -149,7 +149,7 @@ def test_impact_tells_both_feet_where_they_differ(client):
     """A leaning trapezoid has two tables, a block one; one foot alone can be asked for."""
     leaning = {"units": "m", "trapezoid": {"base": 1.0, "top": 0.5, "height": 3.0, "lean": 0.2}}
     assert set(client.post("/api/impact", json={"body": leaning}).json()["coefficients"]) == {"left", "right"}
-    one = client.post("/api/impact", json={"body": leaning, "onto": "left"}).json()
+    one = client.post("/api/impact", json={"body": leaning, "foot": "left"}).json()
     assert set(one["coefficients"]) == {"left"}
 
 
@@ -275,7 +275,7 @@ def test_the_page_offers_every_model_that_needs_no_number(told):
 
 def test_the_contact_bed_answers_at_impact(client):
     """The coefficient of the contact bed is that of the library to the last digit."""
-    answer = client.post("/api/impact", json={"body": BLOCK, "onto": "right"})
+    answer = client.post("/api/impact", json={"body": BLOCK, "foot": "right"})
     assert answer.status_code == 200
     rows = json.loads(answer.text, parse_constant=refuse_constant)["coefficients"]["right"]
     (bed,) = (row for row in rows if row["model"] == "contact-bed")

@@ -11,7 +11,7 @@ class Mine(rk.restitution.RestitutionModel):
     name = "{name}"
     colour = "#7a5195"
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return {value}
 """
 BODY = {"units": "m", "width": 0.5, "height": 2.0}

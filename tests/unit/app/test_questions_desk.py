@@ -450,7 +450,7 @@ def test_a_question_knows_the_owners_own_models(desk, tmp_path, monkeypatch):
     """A model of the file that the owner names is known in the process of a question, which cannot read the file."""
     (tmp_path / "own.py").write_text(
         "import rocking as rk\nclass Own(rk.restitution.RestitutionModel):\n    name = 'own'\n"
-        "    def raw_coefficient(self, body, onto):\n        return 0.5\n"
+        "    def raw_coefficient(self, body, foot):\n        return 0.5\n"
     )
     pulses = [{"pulse": ["sine:amplitude=3,period=0.8"]}]
     tables = {"body": TABLES["body"], "restitution": {"model": "own"}, "motions": pulses, "minimum": {"samples": 40}}

@@ -157,7 +157,7 @@ def test_the_interval_is_that_of_predictions():
     """The calibrated model's ends are the quantiles of what `predict` draws from, onto each foot."""
     named = choices(CABINET, ["calibrated"])
     for foot in ("left", "right"):
-        drawn = rk.evidence.restitution_distribution(CABINET, onto=foot).sample(200_000, 1)
+        drawn = rk.evidence.restitution_distribution(CABINET, foot=foot).sample(200_000, 1)
         for end, level in (("low", 0.025), ("high", 0.975)):
             below = (drawn < named[f"calibrated, {end}"][foot]).mean()
             assert below == pytest.approx(level, abs=0.002)  # five deviations of a share of 200 000 draws

@@ -38,7 +38,7 @@ def test_a_block_with_a_lowered_centre():
         assert side.uplift_acceleration == pytest.approx(G * b / y, rel=1e-14, abs=0.0)
         # angular momentum about the new foot: (I + m (y^2 - b b_old)) / I_O
         r = (inertia + m * (y * y - b * old)) / over
-        assert rk.coefficient_of_restitution(body, "housner", onto=foot) == pytest.approx(r, rel=1e-14, abs=0.0)
+        assert rk.coefficient_of_restitution(body, "housner", foot=foot) == pytest.approx(r, rel=1e-14, abs=0.0)
         assert rk.coefficient_of_restitution(rk.Block(**SIZE), "housner") != pytest.approx(r, rel=1e-2)
     assert (body.mass, *body.centre) == (300.0, 0.42, 0.7)
     assert body.moment_of_inertia == pytest.approx(95.0, rel=1e-15, abs=0.0)
@@ -100,9 +100,9 @@ def test_ked_of_an_assumed_distribution():
     assert spread.centre == pytest.approx((x, y), rel=1e-12)
     assert spread.moment_of_inertia / spread.mass == pytest.approx(known.moment_of_inertia / 300.0, rel=1e-12)
     for foot in ("left", "right"):
-        r = rk.coefficient_of_restitution(spread, "ked", onto=foot)
-        assert rk.coefficient_of_restitution(known, "ked", onto=foot) == pytest.approx(r, rel=1e-12)
-        other = rk.coefficient_of_restitution(cabinet(moment_of_inertia=60.0), "ked", onto=foot)
+        r = rk.coefficient_of_restitution(spread, "ked", foot=foot)
+        assert rk.coefficient_of_restitution(known, "ked", foot=foot) == pytest.approx(r, rel=1e-12)
+        other = rk.coefficient_of_restitution(cabinet(moment_of_inertia=60.0), "ked", foot=foot)
         assert other != pytest.approx(r, rel=1e-2)
 
 
@@ -258,9 +258,9 @@ def test_a_solid_of_known_moments_is_the_plane_one():
         assert side.mass == pytest.approx(300.0, rel=1e-12)
         assert side.moment_of_inertia == pytest.approx(plane.moment_of_inertia, rel=1e-12)
         for foot in ("left", "right"):
-            r = rk.coefficient_of_restitution(plane, "housner", onto=foot)
+            r = rk.coefficient_of_restitution(plane, "housner", foot=foot)
             assert side.side(foot).frequency_parameter == pytest.approx(plane.side(foot).frequency_parameter, rel=1e-12)
-            assert rk.coefficient_of_restitution(side, "housner", onto=foot) == pytest.approx(r, rel=1e-12)
+            assert rk.coefficient_of_restitution(side, "housner", foot=foot) == pytest.approx(r, rel=1e-12)
             edge = 3 if foot == "right" else 1
             assert edge_coefficient(solid(), "housner-3d", start=edge) == pytest.approx(r, rel=1e-12)
     assert edge_coefficient(solid(centre=(0.02, 0.0, 1.0)), "housner-3d", start=1) != pytest.approx(
@@ -323,7 +323,7 @@ def test_models_in_space_that_need_the_distribution_refuse():
     with pytest.raises(InvalidValueError, match=r"needs the distribution of mass.*housner-3d"):
         edge_coefficient(body, "ked-3d")
     edges = body.base.edges
-    result = impact_in_space(body, -edges[0].direction, pivot=edges[0], onto=body.base.opposite(0), model="housner-3d")
+    result = impact_in_space(body, -edges[0].direction, pivot=edges[0], foot=body.base.opposite(0), model="housner-3d")
     with pytest.raises(InvalidValueError, match="needs the distribution of mass"):
         unit_energies(result)
     with pytest.raises(InvalidValueError, match="needs the distribution of mass"):

@@ -16,7 +16,7 @@ MINE = """import rocking as rk
 class Mine(rk.restitution.RestitutionModel):
     name = "mine"
     title = "of mine"
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return 0.5
 """
 
@@ -46,7 +46,7 @@ def test_cor_options(run, own, tmp_path):
     picture = tmp_path / "body.svg"
     words = ["--restitution", f"{own}:Mine", "--restitution", "0.9*ked", "--check-identities", "--output", picture]
     words += ["--output", f"stages={tmp_path / 'stages.png'}"]
-    code, out, err = run("restitution", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
+    code, out, err = run("restitution", "--width", 100, "--height", 400, "--units", "cm", "--foot", "left", *words)
     assert (code, err) == (0, "")
     assert "0.500000" in out
     assert f"{0.9 * 0.9473668350323697:.6f}" in out

@@ -92,7 +92,7 @@ def test_every_file_says_the_same(run, rocked, tmp_path):
     with files[0].open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 10
-    assert {row["onto"] for row in rows} == {"left", "right"}
+    assert {row["foot"] for row in rows} == {"left", "right"}
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(files[1], engine="h5netcdf") as dataset:
         assert out.splitlines()[0] == dataset.attrs["verdict"]

@@ -25,7 +25,7 @@ PEER = "A DATABASE\nSOMEWHERE, CELLAR, {}\nACCELERATION IN UNITS OF G\nNPTS= 3, 
 MODEL = """from rocking.restitution import RestitutionModel
 class Mine(RestitutionModel):
     name = title = "mine"
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return 1 / 0
 """
 BODY = 'units = "m"\nwidth = 0.5\nheight = 2.0\n'
@@ -160,7 +160,7 @@ REFUSED = {
         "SIZE --units gal": "one of m, cm, mm, ft, in",
         "missing.toml": "missing.toml: there is no such file",
         "SIZE --restitution 1.5*ked": "eta must be in (0, 1]",
-        "SIZE --onto up": 'onto must be "left"',
+        "SIZE --foot up": 'foot must be "left"',
         "SIZE --set settings.gravity=0": "settings.gravity must be a number > 0",
         "SIZE --output a.bmp": ".png, .svg or .pdf",
         "SIZE --restitution no.py:X": "no file no.py",
@@ -176,7 +176,7 @@ REFUSED = {
         "a.stl --units mm --density nan": "density must be finite",
         "a.stl --units mm --set body.base_tolerance=-1": "body.base_tolerance must be > 0 m",
         "a.stl --units mm --width 1": "give a body file or dimensions, not both",
-        "a.stl --units mm --onto left": "it takes no --onto",
+        "a.stl --units mm --foot left": "it takes no --foot",
         "a.stl --units mm --identities --output stages=s.png": "it takes no --identities, --output stages=FILE",
         "a.stl --units mm --restitution best": "unknown restitution model in space 'best'",
         "a.stl --units mm --set settings.gravity=0": "settings.gravity must be a number > 0",

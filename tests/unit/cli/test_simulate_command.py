@@ -30,7 +30,7 @@ MINE = """import rocking as rk
 class Mine(rk.restitution.RestitutionModel):
     name = "mine"
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return 0.9
 """
 BODY = 'units = "m"\n[block]\nwidth = 0.5\nheight = 2.0\n'

@@ -122,16 +122,16 @@ def test_simulate_warns_where_sliding_would_follow() -> None:
 SECTION = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (0.6, 3.0), (0.1, 3.0)], 1000.0)], feet=(0.05, 0.9))
 
 
-@pytest.mark.parametrize("onto", ["left", "right"])
-def test_friction_of_an_impact_of_an_asymmetric_body(onto: Any) -> None:
+@pytest.mark.parametrize("foot", ["left", "right"])
+def test_friction_of_an_impact_of_an_asymmetric_body(foot: Any) -> None:
     """The impulse is the change of momentum: |Jx / Jz| by the centre's velocities about the old and the new foot."""
     r = {"left": 0.83, "right": 0.71}
     x, h = SECTION.centre
-    foot = dict(zip(("left", "right"), SECTION.feet, strict=True))
-    before, after = (np.array([h, foot[each] - x]) for each in ({"left": "right", "right": "left"}[onto], onto))
-    jump = r[onto] * after - before  # velocities of the centre at theta' = 1 before: omega times (y, -x) from the foot
-    new, old = (SECTION.side(each) for each in (onto, {"left": "right", "right": "left"}[onto]))
-    found = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, r[onto])
+    at = dict(zip(("left", "right"), SECTION.feet, strict=True))
+    before, after = (np.array([h, at[each] - x]) for each in ({"left": "right", "right": "left"}[foot], foot))
+    jump = r[foot] * after - before  # velocities of the centre at theta' = 1 before: omega times (y, -x) from the foot
+    new, old = (SECTION.side(each) for each in (foot, {"left": "right", "right": "left"}[foot]))
+    found = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, r[foot])
     assert float(found) == pytest.approx(abs(jump[0] / jump[1]), rel=1e-12, abs=0.0)
 
 
@@ -151,20 +151,20 @@ def test_largest_friction_of_impacts_of_an_asymmetric_body() -> None:
     assert abs(swapped / expected - 1.0) > 0.05, "levers that differ"
 
 
-@pytest.mark.parametrize("onto", ["left", "right"])
-def test_energy_bound_of_an_asymmetric_body(onto: Any) -> None:
+@pytest.mark.parametrize("foot", ["left", "right"])
+def test_energy_bound_of_an_asymmetric_body(foot: Any) -> None:
     """r^2 I_new may not exceed I_old, with moments about the feet by Steiner from the centre's: above it is refused,
     below it is taken, also where that is r > 1."""
     x, h = SECTION.centre
     about = {"left": (x - SECTION.feet[0]) ** 2, "right": (SECTION.feet[1] - x) ** 2}
     inertia = {each: SECTION.moment_of_inertia + SECTION.mass * (h**2 + arm) for each, arm in about.items()}
-    other = {"left": "right", "right": "left"}[onto]
-    most = math.sqrt(inertia[other] / inertia[onto])
+    other = {"left": "right", "right": "left"}[foot]
+    most = math.sqrt(inertia[other] / inertia[foot])
     assert abs(most - 1.0) > 0.01
-    r = {onto: 0.9999 * most, other: 0.5}
+    r = {foot: 0.9999 * most, other: 0.5}
     assert rk.free_rocking(SECTION, 0.05, r).impacts.size
-    with pytest.raises(InvalidValueError, match=f"onto the {onto} foot must be in .0, {most:.6g}.*create energy"):
-        rk.free_rocking(SECTION, 0.05, {**r, onto: 1.0001 * most})
+    with pytest.raises(InvalidValueError, match=f"onto the {foot} foot must be in .0, {most:.6g}.*create energy"):
+        rk.free_rocking(SECTION, 0.05, {**r, foot: 1.0001 * most})
 
 
 @pytest.mark.parametrize("share", [2.0, -2.0, 4.0])

@@ -255,11 +255,11 @@ def test_tables_are_the_response():
     """Impacts and intervals are those of the response, row by row."""
     rocked, sliding, corner = EVERY["rocked"], EVERY["slide and rock"], EVERY["corner"]
     impacts = rocked.exported().beside["impact"].columns
-    onto = [{"right": 1, "left": -1}[foot] for foot in rocked.impacts["onto"].tolist()]
+    foot = [{"right": 1, "left": -1}[foot] for foot in rocked.impacts["foot"].tolist()]
     numbers = ("time", "velocity_before", "velocity_after", "coefficient")
-    assert list(impacts) == [*numbers, "onto"]
-    assert {1, -1} == set(onto)
-    assert impacts["onto"].values.tolist() == onto
+    assert list(impacts) == [*numbers, "foot"]
+    assert {1, -1} == set(foot)
+    assert impacts["foot"].values.tolist() == foot
     assert all(impacts[name].values.tolist() == rocked.impacts[name].tolist() for name in numbers)
     tables = sliding.exported().beside
     assert tables["impact"].columns["energy_lost"].values.tolist() == sliding.impacts["energy_lost"].tolist()

@@ -41,8 +41,8 @@ def test_speed_law() -> None:
 def test_coefficients_by_side(name: str) -> None:
     """Landing left takes the left coefficient, landing right the right one, in either engine."""
     found = impacts_of({"left": 0.8, "right": 0.9}, name)
-    assert found["onto"][:4].tolist() == ["left", "right", "left", "right"]
-    expected = np.where(found["onto"] == "left", 0.8, 0.9)
+    assert found["foot"][:4].tolist() == ["left", "right", "left", "right"]
+    expected = np.where(found["foot"] == "left", 0.8, 0.9)
     np.testing.assert_array_equal(found["coefficient"], expected)
     np.testing.assert_allclose(found["velocity_after"], expected * found["velocity_before"], rtol=1e-15)
 

@@ -75,13 +75,13 @@ def test_impacts(name: str) -> None:
     """Times, speeds, coefficients and feet of the first five impacts are those of the closed form."""
     impacts = let_go(name).impacts
     time, speed = math.acosh(ALPHA / (ALPHA - 0.15)) / P, P * math.sqrt(ALPHA**2 - (ALPHA - 0.15) ** 2)
-    assert impacts.dtype.names == ("time", "velocity_before", "velocity_after", "coefficient", "onto")
+    assert impacts.dtype.names == ("time", "velocity_before", "velocity_after", "coefficient", "foot")
     for k in range(5):
         row, sign = impacts[k], -1.0 if k % 2 == 0 else 1.0
         assert row["time"] == pytest.approx(time, rel=1e-12, abs=0.0)
         assert row["velocity_before"] == pytest.approx(sign * speed, rel=1e-12, abs=0.0)
         assert row["velocity_after"] == pytest.approx(sign * R * speed, rel=1e-12, abs=0.0)
-        assert (row["coefficient"], row["onto"]) == (R, "left" if sign < 0.0 else "right")
+        assert (row["coefficient"], row["foot"]) == (R, "left" if sign < 0.0 else "right")
         speed *= R
         time += 2.0 * math.atanh(speed / (P * ALPHA)) / P
 

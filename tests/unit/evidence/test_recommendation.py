@@ -261,7 +261,7 @@ def test_coefficients_scatter_as_bodies_do():
     made = recommend(STATUE)
     left, right = recommending._draws(made, calibrate_hierarchy())
     for drawn, foot in ((left, "left"), (right, "right")):
-        exact = restitution_distribution(STATUE, onto=foot).quantile([0.1, 0.5, 0.9])
+        exact = restitution_distribution(STATUE, foot=foot).quantile([0.1, 0.5, 0.9])
         # 400 draws: standard errors of these quantiles are 0.0015, 0.001, 0.0015
         np.testing.assert_allclose(np.quantile(drawn, [0.1, 0.5, 0.9]), exact, atol=0.006)
     assert np.corrcoef(left, right)[0, 1] > 0.9
@@ -340,8 +340,8 @@ class Mine(rk.restitution.RestitutionModel):
     factor: float = 1.1
     name = "mine"
 
-    def raw_coefficient(self, body, onto):
-        side = body.side(onto)
+    def raw_coefficient(self, body, foot):
+        side = body.side(foot)
         return 1.0 - (self.factor * side.half_width / side.centre_height) ** 2
 
 

@@ -54,7 +54,7 @@ def test_a_body_and_its_slenderness_are_one():
     block = Block(width=0.25, height=1.0)
     expected = restitution_distribution(4.0).quantiles
     assert restitution_distribution(block).quantiles == pytest.approx(expected, abs=1e-12)
-    assert restitution_distribution(block, onto="left").quantiles == pytest.approx(expected, abs=1e-12)
+    assert restitution_distribution(block, foot="left").quantiles == pytest.approx(expected, abs=1e-12)
 
 
 def test_never_creates_energy():
@@ -66,7 +66,7 @@ def test_never_creates_energy():
         assert found.quantiles[0] >= 0.0
     old, new = LEANING.side("left"), LEANING.side("right")
     bound = math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
-    assert restitution_distribution(LEANING, onto="right").quantiles[-1] <= bound
+    assert restitution_distribution(LEANING, foot="right").quantiles[-1] <= bound
 
 
 def test_laws_are_made_of_it():
@@ -95,12 +95,12 @@ def test_a_narrower_posterior_is_narrower():
 
 def test_each_side_has_a_table_of_its_own():
     """A body with unequal sides has quantiles for each foot, the same whichever is asked for, and laws of both."""
-    right, left = (restitution_distribution(LEANING, onto=foot) for foot in ("right", "left"))
+    right, left = (restitution_distribution(LEANING, foot=foot) for foot in ("right", "left"))
     assert abs(right.mean - left.mean) > 1e-3
     for law in (right.per_history(seed=1), right.per_impact(seed=1), left.per_impact(seed=1)):
         for found, foot in ((right, "right"), (left, "left")):
             assert np.array_equal(law.table(foot), found.quantiles)
-        with pytest.raises(InvalidValueError, match="give onto="):
+        with pytest.raises(InvalidValueError, match="give foot="):
             law.factor(1.0, 0, 0)
 
 
@@ -117,7 +117,7 @@ def test_bad_questions_are_refused():
     for probability in (-0.1, 1.1, float("nan")):
         with pytest.raises(InvalidValueError, match="probability"):
             found.quantile(probability)
-    with pytest.raises(InvalidValueError, match="onto"):
-        restitution_distribution(4.0, onto="middle")
+    with pytest.raises(InvalidValueError, match="foot"):
+        restitution_distribution(4.0, foot="middle")
     with pytest.raises(InvalidValueError, match="count"):
         found.sample(-1, seed=1)

@@ -65,7 +65,7 @@ def test_plane_bodies_have_a_coefficient_under_every_model(name):
     """Inside its domain a model gives what its equation gives; no body is symmetric."""
     body, known = rk.examples.body(name), rk.restitution.models()
     for model in (rk.restitution.model(each) for each in known if each not in {"fixed", "implied"}):
-        found = [model.evaluate(body, onto) for onto in ("left", "right")]
+        found = [model.evaluate(body, foot) for foot in ("left", "right")]
         for one in found:
             assert not one.flags, (name, model.name)  # no example is outside the domain of a model
             assert one.coefficient == one.raw

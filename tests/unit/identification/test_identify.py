@@ -40,7 +40,7 @@ def test_what_each_impact_took(found):
     """Exact times tell r at each impact, with what is not known of the body beside it."""
     answer, took = found
     assert not answer.refused
-    assert [each.onto for each in answer.impacts[:3]] == ["right", "left", "right"]
+    assert [each.foot for each in answer.impacts[:3]] == ["right", "left", "right"]
     for each, true in zip(answer.impacts, np.exp(took), strict=True):
         assert each.coefficient.low < true < each.coefficient.high
         assert each.coefficient.high - each.coefficient.low < 0.02

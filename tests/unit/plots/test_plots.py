@@ -59,9 +59,9 @@ def test_figure_7_and_8_hold_every_block():
 def test_figure_2_prints_the_shares():
     """Titles of Figure 2 give the shares of the balance; landing on the other foot of a block gives the same."""
     block = rk.Block(width=1.0, height=2.0)
-    for onto in ("left", "right"):
-        titles = [axes.get_title() for axes in energy_stages_picture(block, onto=onto).axes[:4]]
-        for title, share in zip(titles, energy_balance(block, onto=onto).shares.values(), strict=True):
+    for foot in ("left", "right"):
+        titles = [axes.get_title() for axes in energy_stages_picture(block, foot=foot).axes[:4]]
+        for title, share in zip(titles, energy_balance(block, foot=foot).shares.values(), strict=True):
             assert f"{100.0 * share:.1f} %" in title
     assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
 
@@ -83,7 +83,7 @@ def test_bodies_of_any_kind_are_drawn(body, tmp_path):
     low, high = figure.axes[0].get_xlim()
     assert low < body.feet[0] < body.feet[1] < high
     assert write(figure, tmp_path / "body.png").stat().st_size > 5000
-    table = coefficient_picture(body, {"left": coefficient_table(body, onto="left")})
+    table = coefficient_picture(body, {"left": coefficient_table(body, foot="left")})
     assert write(table, tmp_path / "table.pdf").read_bytes().startswith(b"%PDF")
 
 
@@ -97,7 +97,7 @@ def drawn_at(axes, rows, marker):
 def test_each_foot_at_its_own_slenderness():
     """Coefficients onto a foot stand over h/b of that foot, 3 and 1.5 for this triangle, and say which foot it is."""
     body = rk.Section.from_points([(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)])
-    tables = {foot: coefficient_table(body, onto=foot) for foot in ("left", "right")}
+    tables = {foot: coefficient_table(body, foot=foot) for foot in ("left", "right")}
     figure = coefficient_picture(body, tables)
     left, right = (drawn_at(figure.axes[2], tables[f], m) for f, m in (("left", "<"), ("right", ">")))
     assert left == pytest.approx([3.0] * len(tables["left"]))

@@ -204,7 +204,7 @@ def test_a_body_wider_than_its_base_is_measured_as_its_section():
         for (a, b, c, d), density in shapes.items()
     ]
     found = SampledInSpace(Solid(parts), rk.pulses.sine(3.0, 0.8), {}, rk.conventions.g)
-    r = restitution_distribution(section, onto="left").tables["left"]  # the nearer one
+    r = restitution_distribution(section, foot="left").tables["left"]  # the nearer one
     assert found.inputs["restitution"].text.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
 
 

@@ -36,7 +36,7 @@ MOTION = rk.pulses.sine(amplitude=3.2, period=0.8)
 @pytest.mark.parametrize("body", [BLOCK, LEANING, POINTS])
 def test_everything_is_plain_json(body):
     """Body, outline, impact, stages and response of every kind of body are JSON without NaN."""
-    answer = ImpactAnswer.of(body, None, onto="both", gravity=9.81, identities=False)
+    answer = ImpactAnswer.of(body, None, foot="both", gravity=9.81, identities=False)
     response = rk.simulate(body, MOTION)
     answers = [
         body.answer(9.81), outline_answer(body), answer.answer(), stages_answer(body, "left"), response.answer(0.5),

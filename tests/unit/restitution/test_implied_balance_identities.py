@@ -16,12 +16,12 @@ ASYMMETRIC = rk.Block(width=2.0, height=1.0).with_feet(0.8, 2.0)
 def test_implied_inverts_the_shifted_impulse():
     """k of an asymmetric body comes back from its coefficient, both ways, at the right place on the
     ground."""
-    for onto, sign in (("right", 1.0), ("left", -1.0)):
+    for foot, sign in (("right", 1.0), ("left", -1.0)):
         for k in (0.0, 0.3, 1.0):
-            r = ShiftedImpulse(k=k).coefficient(ASYMMETRIC, onto)
-            result = implied(ASYMMETRIC, r, onto=onto)
+            r = ShiftedImpulse(k=k).coefficient(ASYMMETRIC, foot)
+            result = implied(ASYMMETRIC, r, foot=foot)
             assert result.impulse_ratio == pytest.approx(k, abs=1e-12)
-            place = 1.0 + sign * k * ASYMMETRIC.side(onto).half_width
+            place = 1.0 + sign * k * ASYMMETRIC.side(foot).half_width
             assert result.impulse_x == pytest.approx(place, abs=1e-12)
             assert result.within_base
             assert result.impulse_ratio != pytest.approx(k + 1e-6, abs=1e-12)
@@ -30,11 +30,11 @@ def test_implied_inverts_the_shifted_impulse():
 def test_the_base_reaches_from_foot_to_foot():
     """An impulse behind the centre is on the base down to the old foot, one ahead of it up to the new one."""
     middle_over_base = (4.0 + 1.0) / 12.0 + 0.25
-    for onto, sign in (("right", 1.0), ("left", -1.0)):
-        old, new = (0.2, 1.0) if onto == "right" else (1.0, 0.2)
+    for foot, sign in (("right", 1.0), ("left", -1.0)):
+        old, new = (0.2, 1.0) if foot == "right" else (1.0, 0.2)
         for arm in (-1.01 * old, -0.99 * old, -0.01, 0.01, 0.99 * new, 1.01 * new):
             r = (middle_over_base - arm * old) / (middle_over_base + arm * new)
-            result = implied(ASYMMETRIC, r, onto=onto)
+            result = implied(ASYMMETRIC, r, foot=foot)
             assert result.impulse_arm == pytest.approx(arm, rel=1e-9)
             assert result.impulse_x == pytest.approx(1.0 + sign * arm, rel=1e-12, abs=0.0)
             assert result.within_base is (-old < arm < new)
@@ -64,7 +64,7 @@ def test_implied_refuses(value):
     with pytest.raises(InvalidValueError, match=r"^coefficient must be"):
         implied(BODY, value)
     with pytest.raises(InvalidValueError, match=r"left.* or .*right"):
-        implied(BODY, 0.9, onto="up")
+        implied(BODY, 0.9, foot="up")
 
 
 @pytest.mark.verifies(
@@ -90,22 +90,22 @@ def test_ledger_totals():
 
 
 @pytest.mark.verifies("computed anew", "a midpoint mesh of 120 cells", within="3e-4", control="within")
-@pytest.mark.parametrize("onto", ["left", "right"])
-def test_ledger_fields_integrate_to_totals(onto):
+@pytest.mark.parametrize("foot", ["left", "right"])
+def test_ledger_fields_integrate_to_totals(foot):
     """Each field's energy density, integrated by a midpoint mesh, is the total; O(1/n^2) = 1e-4 for n =
     120."""
     section = rk.Section([
         rk.Region([(5, 1), (6, 1), (6, 2), (5, 2)], 2000.0),
         rk.Region([(5.25, 2), (5.75, 2), (5.75, 3), (5.25, 3)], 500.0),
     ], (5.1, 5.9), ground=1.0)  # fmt: skip
-    balance = energy_balance(section, onto=onto, angular_velocity=2.0)
+    balance = energy_balance(section, foot=foot, angular_velocity=2.0)
     n = 120
     x, y = np.meshgrid(5 + (np.arange(n) + 0.5) / n, 1 + (np.arange(2 * n) + 0.5) / n)
     for stage, density in balance.energy_density(x, y).items():
         assert density.sum() / n**2 == pytest.approx(balance.totals[stage], rel=3e-4)
         assert density.sum() / n**2 * 1.001 != pytest.approx(balance.totals[stage], rel=3e-4)
     speeds = balance.velocities(np.array([5.5]), np.array([3.0]))
-    assert np.sign(speeds["before"][0, 0]) == (1.0 if onto == "right" else -1.0)
+    assert np.sign(speeds["before"][0, 0]) == (1.0 if foot == "right" else -1.0)
     assert speeds["stage 1"][0, 1] == 0.0
 
 
@@ -147,8 +147,8 @@ def test_identity_report_catches_a_broken_model():
 
         name = "bad"
 
-        def raw_coefficient(self, body, onto):
-            return 1.0 + 1e-6 * body.mass + (0.1 if onto == "right" else 0.0)
+        def raw_coefficient(self, body, foot):
+            return 1.0 + 1e-6 * body.mass + (0.1 if foot == "right" else 0.0)
 
     assert {"scale", "density", "mirror", "round trip", "energy bound"} <= broken(BODY, Bad())
 
@@ -161,14 +161,14 @@ def test_twins_have_the_same_mass_centre_and_inertia():
 
         name = "seen"
 
-        def raw_coefficient(self, body, onto):
-            new = body.side(onto)
+        def raw_coefficient(self, body, foot):
+            new = body.side(foot)
             gyration = new.moment_of_inertia / new.mass
             return 0.4 + 0.1 / (1.0 + body.mass) + 0.01 * gyration + 0.1 * new.half_width + 0.02 * new.centre_height
 
     for body in (rk.Block(width=1.0, height=2.0, density=0.3), ASYMMETRIC.scaled(density=40.0)):
-        for onto in ("left", "right"):
-            checks = {check.name: check for check in identity_report(body, Seen(), onto=onto)}
+        for foot in ("left", "right"):
+            checks = {check.name: check for check in identity_report(body, Seen(), foot=foot)}
             assert checks["inertia alone"].holds
             # negative control: KED sees where the mass is
-            assert not {check.name: check for check in identity_report(body, Ked(), onto=onto)}["inertia alone"].holds
+            assert not {check.name: check for check in identity_report(body, Ked(), foot=foot)}["inertia alone"].holds

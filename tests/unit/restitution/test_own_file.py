@@ -19,11 +19,11 @@ class Mine(rk.restitution.RestitutionModel):
     reference = "my notes"
     colour = "#7a5195"
 
-    def raw_coefficient(self, body, onto):
-        side = body.side(onto)
+    def raw_coefficient(self, body, foot):
+        side = body.side(foot)
         return {value}
 """
-HOUSNER = "rk.coefficient_of_restitution(body, 'housner', onto=onto)"
+HOUSNER = "rk.coefficient_of_restitution(body, 'housner', foot=foot)"
 
 
 @pytest.fixture
@@ -126,7 +126,7 @@ def test_the_page_lists_it(own):
         ("1.2", "above", r"above.py: model 'above': r must be in \[0, 1\], got 1.2"),
         ("1.0", "gains", "model 'gains': an impact must not create energy"),
         ("1.0 / (2.0 + side.half_width)", "metres", "model 'metres': r must not depend on size"),
-        ("0.5 if onto == 'left' else 0.4", "sided", "model 'sided': r must not depend on side"),
+        ("0.5 if foot == 'left' else 0.4", "sided", "model 'sided': r must not depend on side"),
         ("float('nan')", "nan", "model 'nan': .*finite"),
         (HOUSNER, "ked", "model 'ked': a restitution model named 'ked' exists already"),
     ],

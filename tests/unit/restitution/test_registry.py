@@ -15,7 +15,7 @@ class Half(rk.restitution.RestitutionModel):
 
     name = "half"
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return 0.5
 
 
@@ -121,12 +121,12 @@ def test_what_is_no_body(body):
             rk.coefficient_of_restitution(body, name)
 
 
-@pytest.mark.parametrize("onto", ["up", "RIGHT", None, 1, ["left"], ""], ids=repr)
-def test_what_is_no_foot(onto):
+@pytest.mark.parametrize("foot", ["up", "RIGHT", None, 1, ["left"], ""], ids=repr)
+def test_what_is_no_foot(foot):
     """The new foot is "left" or "right" for every model, also those that do not use it."""
     for name, parameters in (("ked", {}), ("housner", {}), ("fixed", {"r": 0.5})):
-        with pytest.raises(InvalidValueError, match='onto must be "left" or "right"'):
-            rk.coefficient_of_restitution(BODY, name, onto=onto, **parameters)
+        with pytest.raises(InvalidValueError, match='foot must be "left" or "right"'):
+            rk.coefficient_of_restitution(BODY, name, foot=foot, **parameters)
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_register_refuses(value):
     class Nameless(rk.restitution.RestitutionModel):
         """No name."""
 
-        def raw_coefficient(self, body, onto):
+        def raw_coefficient(self, body, foot):
             return 0.5
 
     with pytest.raises(InvalidValueError, match="Nameless needs a class attribute name"):
@@ -203,7 +203,7 @@ def test_own_model_that_returns_no_number(value):
     class Bad(Half):
         """Returns what it should not."""
 
-        def raw_coefficient(self, body, onto):
+        def raw_coefficient(self, body, foot):
             return value
 
     with pytest.raises(InvalidValueError, match="coefficient of model half must be"):

@@ -111,8 +111,8 @@ def _facts(inputs: ImpactRequest) -> Answer:
     body = body_from(inputs.body)
     # a homogeneous block is the same on both sides; what is the same is told once
     same = isinstance(body, Block) and body.known is None and body.stands_on_corners
-    onto = "right" if inputs.onto == "both" and same else inputs.onto
-    coefficients = ImpactAnswer.of(body, None, onto=onto, gravity=inputs.settings.gravity or g, identities=False)
+    foot = "right" if inputs.foot == "both" and same else inputs.foot
+    coefficients = ImpactAnswer.of(body, None, foot=foot, gravity=inputs.settings.gravity or g, identities=False)
     facts = coefficients.answer()
     rows = [row for table in coefficients.tables.values() for row in table]
     warned: dict[str, dict[str, None]] = {}  # by sentence the models, each once

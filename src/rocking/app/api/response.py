@@ -54,7 +54,7 @@ Impact: Any = shape(
     "Impact",
     "One impact.",
     "time velocity_before velocity_after coefficient",
-    onto=(str, "foot on which the body lands"),
+    foot=(str, "foot on which the body lands"),
 )
 ResponseSeries: Any = shape(
     "ResponseSeries",

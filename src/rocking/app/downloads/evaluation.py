@@ -26,7 +26,7 @@ class Evaluation:
 
     inputs: Inputs  # what the user chose
     records: RecordStore  # uploaded records
-    onto: str = "both"  # foot on which the body lands, for coefficients
+    foot: str = "both"  # foot on which the body lands, for coefficients
 
     @property
     def name(self) -> str:
@@ -109,10 +109,10 @@ class Evaluation:
     @cached_property
     def impact(self) -> ImpactAnswer:
         """Coefficients under every model."""
-        return ImpactAnswer.of(self.body, None, onto=self.onto, gravity=self.gravity, identities=False)
+        return ImpactAnswer.of(self.body, None, foot=self.foot, gravity=self.gravity, identities=False)
 
     @property
-    def foot(self) -> Foot:
+    def drawn_foot(self) -> Foot:
         """The foot whose coefficients are drawn."""
         return next(reversed(self.impact.tables))
 

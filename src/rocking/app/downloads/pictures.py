@@ -51,7 +51,9 @@ def figure_of(what: str, evaluation: Evaluation) -> "Figure":
             return in_words(response_picture(chosen, evaluation.problem.assumed_friction), [chosen.parameters.label])
         case "coefficients":
             tables = evaluation.impact.tables
-            return in_words(coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.foot]])
+            return in_words(
+                coefficient_picture(evaluation.body, tables), [row.name for row in tables[evaluation.drawn_foot]]
+            )
     return body_picture(evaluation.body)
 
 

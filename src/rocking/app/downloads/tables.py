@@ -48,14 +48,14 @@ async def table(
     what: What,
     kind: Kind,
     inputs: Inputs,
-    onto: Annotated[Literal["left", "right", "both"], Query(description="foot on which the body lands")] = "both",
+    foot: Annotated[Literal["left", "right", "both"], Query(description="foot on which the body lands")] = "both",
     restitution: Annotated[
         int | None,
         Query(ge=0, description="which response, counted from 0; if left out the first one, in xlsx all of them"),
     ] = None,
 ) -> Answer:
     """Return a table as a file that Excel, MATLAB, Python or R opens."""
-    evaluation = Evaluation(inputs, state_of(request).records, onto)
+    evaluation = Evaluation(inputs, state_of(request).records, foot)
     data, name = await heavy(request, _named_table, what, kind, evaluation, restitution)
     return attachment(data, f"{name}.{kind}")
 
@@ -120,7 +120,7 @@ def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> 
 
 def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
     """Return the coefficients of a body under every model."""
-    rows = [{"onto": foot, **row.answer().values} for foot, each in answer.tables.items() for row in each]
+    rows = [{"foot": foot, **row.answer().values} for foot, each in answer.tables.items() for row in each]
     joined = [{**row, "warnings": "; ".join(row["warnings"]), "admissible": int(row["admissible"])} for row in rows]
     return as_table(about, {name: (_unit(name), [row[name] for row in joined]) for name in joined[0]})
 
@@ -170,13 +170,13 @@ def response_table(response: Response, about: dict[str, str]) -> Table:
 
 def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
     """Return the impacts of every response, one a row; none if there is no impact."""
-    names = ("time", "velocity_before", "velocity_after", "coefficient", "onto")
+    names = ("time", "velocity_before", "velocity_after", "coefficient", "foot")
     rows = [
         (label, number, *row)
         for label, response in responses.items()
         for number, row in enumerate(response.impacts.tolist(), start=1)
     ]
-    units = {"restitution": "", "impact": "-", **{name: _unit(name) for name in names}, "onto": ""}
+    units = {"restitution": "", "impact": "-", **{name: _unit(name) for name in names}, "foot": ""}
     return as_table(about, {name: (unit, [row[k] for row in rows]) for k, (name, unit) in enumerate(units.items())})
 
 

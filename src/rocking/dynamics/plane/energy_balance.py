@@ -166,8 +166,8 @@ def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:
     largest = 0.0
     for event in trajectory.events:
         if event.kind is EventKind.IMPACT:
-            onto: Foot = "right" if event.side > 0 else "left"
-            new, old = sides[onto], sides[opposite(onto)]
+            foot: Foot = "right" if event.side > 0 else "left"
+            new, old = sides[foot], sides[opposite(foot)]
             ratio = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, event.coefficient)
             largest = max(largest, abs(float(ratio)))
     return largest

@@ -178,7 +178,7 @@ class ContactBed:
         count: int,
         law: ContactLaw,
         *,
-        onto: Foot = "right",
+        foot: Foot = "right",
         rule: Rule = "trapezoid",
         friction: BaseFriction | None = None,
         kinematics: Kinematics = "exact",
@@ -193,7 +193,7 @@ class ContactBed:
             Number of points, two or more; a body with point contacts has its two feet only.
         law : ContactLaw
             The law of the bed.
-        onto : {"left", "right"}
+        foot : {"left", "right"}
             The new foot.
         rule : {"trapezoid", "ends"}
             Half weights at the ends of a stretch by the trapezoidal rule, or equal weights for all points. The first
@@ -215,7 +215,7 @@ class ContactBed:
         """
         count = checks.whole("count", count, 2, 100_000)
         is_equal = checks.one_of("rule", rule, get_args(Rule)) == "ends"
-        positions, lengths = _along(contact_of(body, onto), body, count, onto)
+        positions, lengths = _along(contact_of(body, foot), body, count, foot)
         shares = np.ones(len(positions)) if is_equal else lengths
         return cls(positions, law, shares / shares.sum(), friction=friction or Sticking(), kinematics=kinematics)
 
@@ -240,10 +240,10 @@ class ContactBed:
         return float(self.positions[0]), float(self.positions[-1])
 
 
-def _along(patches: FloatArray, body: Body, count: int, onto: Foot) -> tuple[FloatArray, FloatArray]:
+def _along(patches: FloatArray, body: Body, count: int, foot: Foot) -> tuple[FloatArray, FloatArray]:
     """Return points [m] and their lengths of the base [m]."""
     left, right = body.local_feet[0] - body.local_moments.x, body.local_feet[1] - body.local_moments.x
-    ends = (left, right) if onto == "right" else (-right, -left)
+    ends = (left, right) if foot == "right" else (-right, -left)
     if count == 2 or len(patches) == 0:
         return np.array(ends), np.ones(2)
     sizes = patches[:, 1] - patches[:, 0]

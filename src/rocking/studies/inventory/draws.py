@@ -60,9 +60,9 @@ def slenderest(item: InventoryObject) -> InventoryObject:
     return _resized(item, higher) if higher else item
 
 
-def impacts(bodies: Sequence[Body], onto: Foot, number: IntArray) -> ImpactGeometry:
+def impacts(bodies: Sequence[Body], foot: Foot, number: IntArray) -> ImpactGeometry:
     """Return the impacts onto a foot of those bodies that each motion has."""
-    each = [ImpactGeometry.of_body(body, onto) for body in bodies]
+    each = [ImpactGeometry.of_body(body, foot) for body in bodies]
     return ImpactGeometry(
         *(np.array([getattr(one, name) for one in each])[number] for name in ImpactGeometry.__slots__)
     )

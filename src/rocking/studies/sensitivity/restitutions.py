@@ -130,14 +130,14 @@ class SampledRestitution(DrawnRestitution):
         """Return the seed and the hashes of the tables; of a dataclass of your own, its fields."""
         return self._tables() if type(self) is SampledRestitution else super().content()
 
-    def draws(self, numbers: Any, onto: Foot | None = None, share: Any = 1.0) -> FloatArray:
+    def draws(self, numbers: Any, foot: Foot | None = None, share: Any = 1.0) -> FloatArray:
         """Return the draws of many histories, to the last bit those of `draw`.
 
         Parameters
         ----------
         numbers : array_like of int
             Numbers of histories.
-        onto : {"left", "right"}, optional
+        foot : {"left", "right"}, optional
             The foot on which they land, which a law of two tables needs.
         share : float or array_like
             Probability of the lowest part of the distribution, from which they are [-].
@@ -147,7 +147,7 @@ class SampledRestitution(DrawnRestitution):
         ndarray
             Coefficients or factors [-].
         """
-        u, table = share * uniforms(self.seed, numbers), self.table(onto)  # Eq. 41
+        u, table = share * uniforms(self.seed, numbers), self.table(foot)  # Eq. 41
         above = np.clip(np.searchsorted(self.at, u, side="right"), 1, self.at.size - 1)  # of no body the share is NaN
         low, high = table[above - 1], table[above]
         return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))

@@ -171,7 +171,7 @@ MINE = """import rocking as rk
 class Mine(rk.restitution.RestitutionModel):
     name = "mine"
 
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return {value}
 """
 
@@ -268,7 +268,7 @@ class Shared(RestitutionModel):
     share: float
     name = "shared"
     title = "a share"
-    def raw_coefficient(self, body, onto):
+    def raw_coefficient(self, body, foot):
         return self.share / (1.0 - self.share)
 """
 

@@ -68,7 +68,7 @@ def test_the_other_foot_sees_the_mirror() -> None:
     """Landing on the left of a body is landing on the right of its mirror image."""
     body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
     for points in (2, 7):
-        left = ContactBed.uniform(body, points, LAW, onto="left")
+        left = ContactBed.uniform(body, points, LAW, foot="left")
         mirror = ContactBed.uniform(body.mirrored(), points, LAW)
         assert left.positions == pytest.approx(mirror.positions)
         # a rectangle and a triangle of one area: the centre is (.05 + .5 / 3) / 2 from the left foot
@@ -91,14 +91,14 @@ def test_the_force_under_a_rocking_foot_follows_from_energy(rotation: float) -> 
 
 
 @pytest.mark.parametrize(
-    ("onto", "ends"), [("right", (-13.0 / 120.0, 23.0 / 120.0)), ("left", (-23.0 / 120.0, 13.0 / 120.0))]
+    ("foot", "ends"), [("right", (-13.0 / 120.0, 23.0 / 120.0)), ("left", (-23.0 / 120.0, 13.0 / 120.0))]
 )
-def test_two_points_are_the_feet(onto: Any, ends: tuple[float, float]) -> None:
+def test_two_points_are_the_feet(foot: Any, ends: tuple[float, float]) -> None:
     """A leaning body whose centre is 13/120 m from its left foot: two points stand at its feet, towards the new one,
     and so do the outer ones of more."""
     body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
     for count in (2, 4):
-        assert ContactBed.uniform(body, count, LAW, onto=onto).ends == pytest.approx(ends, rel=1e-13, abs=0.0)
+        assert ContactBed.uniform(body, count, LAW, foot=foot).ends == pytest.approx(ends, rel=1e-13, abs=0.0)
 
 
 @pytest.mark.parametrize("kinematics", ["exact", "small"])

@@ -306,7 +306,7 @@ def test_a_round_object_is_a_cylinder(base, centre):
         y = low + (high - low) * (np.arange(400) + 0.5) / 400
         total += mass / 400 * float((share[:, None] * y**4 / ((x[:, None] - 0.5 * base) ** 2 + y**2)).sum())
     # the sum of midpoints is within 1e-5
-    assert rk.coefficient_of_restitution(body, "ked", onto="right") == pytest.approx(
+    assert rk.coefficient_of_restitution(body, "ked", foot="right") == pytest.approx(
         math.sqrt(total / inertia), rel=2e-5
     )
     # negative control: the box of the same size is another body

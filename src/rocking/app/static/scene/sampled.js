@@ -18,7 +18,7 @@ export const actorOf = (answer, style) => {
     rotation: new Track(time, seen),
     share: new Track(time, sharesOf(seen, answer.body)),
     impactTimes: Float64Array.from(impacts, (one) => one.time),
-    impactFeet: Float64Array.from(impacts, (one) => (one.onto === "right" ? 1 : 0)),
+    impactFeet: Float64Array.from(impacts, (one) => (one.foot === "right" ? 1 : 0)),
     impactWords: impacts.map((one) => `r = ${fixed(one.coefficient, 3)}`),
   };
 };

@@ -28,7 +28,7 @@ export const Coefficients = ({ app, answer, foot }) => {
   ]);
   return html`<${Table} columns=${COLUMNS} rows=${shown} copied=${copied} testid="coefficients"
     caption=${t("Velocity after / velocity before, impact on the {foot} foot", { foot })}
-    csv=${() => app.download(`table/coefficients.csv?onto=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
+    csv=${() => app.download(`table/coefficients.csv?foot=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 
 /** The warnings of one foot, each with the models it concerns.

@@ -58,7 +58,7 @@ const MOST = 200;
 /** @param {Server.Impact[]} impacts */
 const rowsOf = (impacts) =>
   impacts.map((one, k) => [
-    k + 1, one.time, one.velocity_before, one.velocity_after, one.coefficient, one.onto,
+    k + 1, one.time, one.velocity_before, one.velocity_after, one.coefficient, one.foot,
   ]);
 
 /** The impacts of the model that is looked at.
