@@ -108,7 +108,7 @@ def recommend(
         (CALIBRATED, title, _both(given, posterior.predict), judged.calibrated, ())
     ]
     for each, record in zip(admitted, judged.models, strict=True):
-        interval = _both(given, lambda body, onto, each=each: interval_for(each, body, foot=onto, measurements=data))
+        interval = _both(given, lambda body, foot, each=each: interval_for(each, body, foot=foot, measurements=data))
         predicted.append((each.label, each.title, interval, record, _concerns(each, given)))
     rows = [_row(*each) for each in sorted(predicted, key=lambda each: each[3].rmse)]
     rows += [
