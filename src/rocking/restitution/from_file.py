@@ -147,19 +147,19 @@ def _check_promises(candidate: RestitutionModel) -> None:
             for foot in FEET:
                 r, new, old = candidate.coefficient(body, foot), body.side(foot), body.side(opposite(foot))
                 gain = r * r * new.moment_of_inertia / old.moment_of_inertia
-                impact: dict[str, Any] = {"ratio": ratio, "left": body.feet[0], "right": body.feet[1], "foot": foot}
+                impact: dict[str, Any] = {"ratio": ratio, "left": body.feet[0], "right": body.feet[1], "onto": foot}
                 if candidate.keeps_energy and gain > 1.0 + _ROUNDING:
                     raise InvalidValueError(
                         "an impact must not create energy, got {gain:.6g} times the energy before, " + _IMPACT,
                         gain=gain,
                         **impact,
                     )
-                for quantity, changed_body, foot in (
+                for quantity, changed_body, landing in (
                     ("size", body.scaled(size=7.3), foot),
                     ("density", body.scaled(density=0.013), foot),
                     ("side", body.mirrored(), opposite(foot)),
                 ):
-                    changed = candidate.coefficient(changed_body, foot)
+                    changed = candidate.coefficient(changed_body, landing)
                     if abs(changed - r) > 1e-8:
                         raise InvalidValueError(
                             "r must not depend on {property}, got {r:.6g} and {changed:.6g} " + _IMPACT,

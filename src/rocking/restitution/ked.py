@@ -223,7 +223,7 @@ def _of_points(points: FloatArray, masses: FloatArray) -> float:
 
 def _of_quarters(body: Body, foot: Foot) -> float:
     """Return the projected moment of a body with stated moments, with its mass in the quarters of its box [kg m2]."""
-    foot = np.array([body.local_feet[foot == "right"], 0.0])
+    pivot = np.array([body.local_feet[foot == "right"], 0.0])
     rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
     areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
     integrals = [abs(ring_integral(ring - pivot)) for ring in rings]
