@@ -70,7 +70,7 @@ type ChartSeries = { label: string; colour: string; dash?: number[]; width?: num
 type Band = { series: Point; fill: string };
 type ChartOptions = {
   title: string; x: ChartAxis; y: ChartAxis; series: ChartSeries[]; height?: number; bands?: Band[]; sync?: string;
-  onZoom?: (part: Point | null) => unknown;
+  onZoom?: (interval: Point | null) => unknown;
 };
 type Ticks = { colour: string; at: number[] };
 type Marks = { vertical?: number[]; horizontal?: number[]; ticks?: Ticks[]; words?: string };
@@ -121,7 +121,7 @@ type FieldProps<Value> = {
   label: string; value?: Value | Signal<Value> | null; on?: (value: Value) => unknown; unit?: string; help?: string; error?: string; kind?: string;
   hidden?: boolean; [more: string]: any;
 };
-type Limits = { min?: number; above?: number; max?: number; whole?: boolean; moves?: boolean; optional?: boolean };
+type Limits = { min?: number; above?: number; max?: number; integer?: boolean; moves?: boolean; optional?: boolean };
 type NumberProps = FieldProps<number | null> & Limits & { step?: number; aside?: boolean };
 
 /** What of a record may have to be told, what was, and what a file leaves open: views/motion-record-needs.js. */
@@ -137,16 +137,16 @@ type FileTexts = { [name: string]: { [key: string]: string } };
 type Forms = { [view: string]: { [name: string]: any } };
 type Form = { readonly value: any; at: (...path: string[]) => { value: any } };
 /** What hinders asking: words, or words of a field. */
-type Wrong = string | { key?: string; words: string };
+type Wrong = string | { key?: string; text: string };
 
 // Views: what is asked and found (views/answer.js, questions/parts.js), what is drawn, and what is chosen.
 type Asked<Found> = {
-  answer: Signal<Found | null>; refused: Signal<Refusal | null>; part: Signal<any>; ask: () => void; shown: () => void; hidden: () => unknown;
+  answer: Signal<Found | null>; refused: Signal<Refusal | null>; closeup: Signal<any>; ask: () => void; shown: () => void; hidden: () => unknown;
   look: (window: Point | null) => Promise<undefined>;
 };
 type Player = import("/scene/player.js").Player;
 type Margins = {
-  questions: Questions; question: { readonly value: Server.WholeQuestion | null }; found: { readonly value: any }; ask: () => unknown;
+  questions: Questions; question: { readonly value: Server.WholeQuestion | null }; answer: { readonly value: any }; ask: () => unknown;
 };
 /** What a view of a question shows: `answer` is what its command prints with --json, which the schema leaves open. */
 type Given = { answer: any; question: Server.WholeQuestion; questions: Questions };

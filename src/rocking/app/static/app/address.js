@@ -12,7 +12,7 @@ export const isOurs = (parts) => !Object.keys(parts).length || OURS.some((key) =
 /** Show a view in the address, without a new entry for every keystroke.
  * @param {{ [key: string]: string | undefined }} parts @param {{ push?: boolean }} [how] */
 export const write = (parts, { push = false } = {}) => {
-  const given = /** @type {[string, string][]} */ (Object.entries(parts).filter(([, value]) => value !== undefined));
-  const fragment = new URLSearchParams(given).toString();
+  const entries = /** @type {[string, string][]} */ (Object.entries(parts).filter(([, value]) => value !== undefined));
+  const fragment = new URLSearchParams(entries).toString();
   history[push ? "pushState" : "replaceState"](null, "", fragment ? `#${fragment}` : location.pathname);
 };

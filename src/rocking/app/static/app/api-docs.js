@@ -14,10 +14,10 @@ const HEADS = ["Name", "Type", "Required", "Meaning"];
 const TOLD = ["Name", "Type", "Always", "Meaning"];
 const LONG = 12;
 
-/** @param {any} page @param {Element} place */
-const show = (page, place) => {
-  fill(place);
-  render(page, place);
+/** @param {any} page @param {Element} element */
+const show = (page, element) => {
+  fill(element);
+  render(page, element);
 };
 
 const start = async () => {
@@ -25,10 +25,10 @@ const start = async () => {
   const operations = operationsOf(schema);
   const groups = groupsOf(operations);
   show(groups.map(([name, list]) => html`
-    <h2>${name}</h2><ul>${list.map((each) => html`<li><a href=${`#${each.id}`}><${Sign} ...${each} />${each.path}</a></li>`)}</ul>`),
+    <h2>${name}</h2><ul>${list.map((operation) => html`<li><a href=${`#${operation.id}`}><${Sign} ...${operation} />${operation.path}</a></li>`)}</ul>`),
   document.getElementById("contents"));
   show(html`<${Introduction} schema=${schema} count=${operations.length} /><${Errors} schema=${schema} />
-    ${groups.map(([name, list]) => html`<h2>${name}</h2>${list.map((each) => html`<${Endpoint} schema=${schema} operation=${each} />`)}`)}`,
+    ${groups.map(([name, list]) => html`<h2>${name}</h2>${list.map((operation) => html`<${Endpoint} schema=${schema} operation=${operation} />`)}`)}`,
   document.getElementById("main"));
   if (location.hash) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 };
@@ -43,12 +43,12 @@ const Introduction = ({ schema, count }) => html`
 /** @param {{ schema: any }} props */
 const Errors = ({ schema }) => html`
   <section class="card" id="errors" data-testid="api-errors" aria-label="Errors"><h2>Errors</h2>
-    <dl class="api-errors">${errorsOf(schema).map(([status, words]) => html`<dt>${status}</dt><dd>${words}</dd>`)}</dl>
+    <dl class="api-errors">${errorsOf(schema).map(([status, meaning]) => html`<dt>${status}</dt><dd>${meaning}</dd>`)}</dl>
     <${Fields} title="Response" rows=${errorForm(schema)} heads=${TOLD} /></section>`;
 
 /** @param {{ text: string, kind: string }} props */
-const Paragraphs = ({ text, kind }) => text.split(/\n\s*\n/).map((part) => html`
-  <p class=${kind}>${part.replace(/\s*\n\s*/g, " ").split("`").map((words, k) => (k % 2 ? html`<code>${words}</code>` : words))}</p>`);
+const Paragraphs = ({ text, kind }) => text.split(/\n\s*\n/).map((paragraph) => html`
+  <p class=${kind}>${paragraph.replace(/\s*\n\s*/g, " ").split("`").map((segment, k) => (k % 2 ? html`<code>${segment}</code>` : segment))}</p>`);
 
 /** @param {{ schema: any, operation: Operation }} props */
 const Endpoint = ({ schema, operation }) => {
@@ -61,7 +61,7 @@ const Endpoint = ({ schema, operation }) => {
       <${Fields} title="Path and query" rows=${operation.parameters.map(parameterOf)} />
       <${Fields} title="Request body" rows=${fieldsOf(schema, operation.body)} />
       ${kind === "file" && html`<p>A file is sent as application/octet-stream.</p>`}
-      ${formsOf(schema, operation.answer).map(({ words, rows }) => html`<${Fields} title=${comesBack(words)} rows=${rows} heads=${TOLD} />`)}
+      ${formsOf(schema, operation.answer).map(({ words: text, rows }) => html`<${Fields} title=${comesBack(text)} rows=${rows} heads=${TOLD} />`)}
       ${files.length > 0 && html`<p>${`Response: a file, ${files.join(" or ")}.`}</p>`}
       <${Calls} operation=${operation} /></section>`;
 };
@@ -69,8 +69,8 @@ const Endpoint = ({ schema, operation }) => {
 /** @param {{ method: string }} props */
 const Sign = ({ method }) => html`<span class="api-method" data-method=${method}>${method.toUpperCase()}</span>`;
 
-/** @param {string} words */
-const comesBack = (words) => (words ? `Response: ${words[0].toLowerCase()}${words.slice(1)}` : "Response");
+/** @param {string} text */
+const comesBack = (text) => (text ? `Response: ${text[0].toLowerCase()}${text.slice(1)}` : "Response");
 
 /** @param {Operation["parameters"][number]} parameter */
 const parameterOf = ({ name, schema, required = false, description }) => ({
@@ -117,4 +117,4 @@ document.getElementById("theme").addEventListener("click", () => {
   document.dispatchEvent(new CustomEvent("rocking:toggle-theme"));
 });
 
-start().catch((error) => show(html`<${Note} kind="error" words=${error.message} />`, document.getElementById("main")));
+start().catch((error) => show(html`<${Note} kind="error" text=${error.message} />`, document.getElementById("main")));

@@ -31,7 +31,7 @@ export const operationsOf = (schema) =>
  * @param {Operation[]} operations @returns {[string, Operation[]][]} */
 export const groupsOf = (operations) => {
   const groups = new Map();
-  for (const each of operations) groups.set(each.group, [...(groups.get(each.group) ?? []), each]);
+  for (const operation of operations) groups.set(operation.group, [...(groups.get(operation.group) ?? []), operation]);
   return [...groups];
 };
 
@@ -40,14 +40,14 @@ export const groupsOf = (operations) => {
 export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   const plain = resolved(schema, shape);
   if (!plain?.properties || depth > 4) return [];
-  return Object.entries(plain.properties).flatMap(([name, each]) => {
+  return Object.entries(plain.properties).flatMap(([name, property]) => {
     const row = {
       name: prefix + name,
-      type: typeOf(schema, each),
+      type: typeOf(schema, property),
       required: plain.required?.includes(name) ?? false,
-      about: aboutOf(resolved(schema, each), each),
+      about: aboutOf(resolved(schema, property), property),
     };
-    const inner = innerOf(schema, each);
+    const inner = innerOf(schema, property);
     if (!inner || seen.includes(inner)) return [row];
     return [row, ...fieldsOf(schema, inner, depth + 1, `${prefix}${name}.`, [...seen, inner])];
   });
@@ -59,7 +59,7 @@ export const formsOf = (schema, shape) => {
   const variants = shape?.oneOf ?? shape?.anyOf?.flatMap((/** @type {any} */ variant) => variant.oneOf ?? [variant]) ?? [];
   const forms = variants.map((/** @type {any} */ variant) => resolved(schema, variant));
   if (forms.length) {
-    return forms.map((each) => ({ words: plainText(each.description), rows: fieldsOf(schema, each) }));
+    return forms.map((form) => ({ words: plainText(form.description), rows: fieldsOf(schema, form) }));
   }
   const list = shape?.type === "array";
   const rows = fieldsOf(schema, list ? innerOf(schema, shape) : shape);
@@ -87,7 +87,7 @@ const operationOf = (schema, path, method, operation) => {
     about: plainText(operation.description),
     parameters: /** @type {Parameter[]} */ (operation.parameters ?? []),
     query: /** @type {Parameter[]} */ (operation.parameters ?? [])
-      .filter((each) => each.in === "query" && each.required).map((each) => each.name),
+      .filter((parameter) => parameter.in === "query" && parameter.required).map((parameter) => parameter.name),
     body: json?.schema ?? null,
     answer: answerOf(operation)["application/json"]?.schema ?? null,
     files: Object.keys(answerOf(operation)).filter((type) => type !== "application/json"),
@@ -104,9 +104,9 @@ const answerOf = (operation) => {
 
 /** @param {any} schema @param {string} path @param {any} json */
 const exampleOf = (schema, path, json) => {
-  const examples = Object.values(json.examples ?? {}).map((each) => each.value);
-  const given = json.example ?? examples[0] ?? resolved(schema, json.schema)?.examples?.[0];
-  if (given) return given;
+  const examples = Object.values(json.examples ?? {}).map((example) => example.value);
+  const example = json.example ?? examples[0] ?? resolved(schema, json.schema)?.examples?.[0];
+  if (example) return example;
   const word = path.split("/")[2];
   if (EXAMPLES[word]) return EXAMPLES[word];
   const names = Object.keys(resolved(schema, json.schema)?.properties ?? {});
@@ -127,15 +127,15 @@ const plainText = (text) => (text ?? "").split(/\n\s*(?:Parameters|Returns|Raise
 /** @param {any} schema @param {Shape} shape */
 const resolved = (schema, shape) => {
   if (!shape?.$ref) return shape;
-  return /** @type {string} */ (shape.$ref).split("/").slice(1).reduce((place, key) => place?.[key], schema);
+  return /** @type {string} */ (shape.$ref).split("/").slice(1).reduce((node, key) => node?.[key], schema);
 };
 
 /** @param {any} schema @param {Shape} shape @returns {string} */
 const typeOf = (schema, shape) => {
   if (shape.$ref) return typeOf(schema, resolved(schema, shape) ?? {});
   const choices = shape.anyOf ?? shape.oneOf;
-  if (choices) return [...new Set(choices.map((each) => typeOf(schema, each)))].join(" or ");
-  if (shape.enum) return shape.enum.map((each) => JSON.stringify(each)).join(", ");
+  if (choices) return [...new Set(choices.map((choice) => typeOf(schema, choice)))].join(" or ");
+  if (shape.enum) return shape.enum.map((value) => JSON.stringify(value)).join(", ");
   if (shape.const !== undefined) return JSON.stringify(shape.const);
   if (shape.type === "array") return `list of ${typeOf(schema, shape.items ?? shape.prefixItems?.[0] ?? {})}`;
   return KINDS[shape.type] ?? shape.type ?? "anything";
@@ -143,11 +143,11 @@ const typeOf = (schema, shape) => {
 
 /** @param {any} schema @param {Shape} shape @returns {any} */
 const innerOf = (schema, shape) => {
-  const choices = [shape, ...(shape.anyOf ?? [])].map((each) => resolved(schema, each));
-  const direct = choices.find((each) => each?.properties);
+  const choices = [shape, ...(shape.anyOf ?? [])].map((variant) => resolved(schema, variant));
+  const direct = choices.find((variant) => variant?.properties);
   if (direct) return direct;
-  const held = choices.flatMap((each) => [each?.items, each?.additionalProperties]);
-  return held.filter((each) => typeof each === "object").map((each) => innerOf(schema, each))
+  const held = choices.flatMap((variant) => [variant?.items, variant?.additionalProperties]);
+  return held.filter((inner) => typeof inner === "object").map((inner) => innerOf(schema, inner))
     .find(Boolean) ?? null;
 };
 
@@ -163,9 +163,9 @@ const LIMITS = {
 const aboutOf = (plain, shape) => {
   const numbers = [shape, ...(shape.anyOf ?? [])];
   const limits = Object.entries(LIMITS).flatMap(([key, sign]) =>
-    numbers.filter((each) => each[key] !== undefined).map((each) => `${sign} ${each[key]}`));
+    numbers.filter((variant) => variant[key] !== undefined).map((variant) => `${sign} ${variant[key]}`));
   const usual = shape.default ?? null;
-  const words = plainText(shape.description ?? plain?.description).replace(/\.$/, "");
-  const said = usual === null ? "" : `default ${JSON.stringify(usual)}`;
-  return [words, ...limits, said].filter(Boolean).join("; ");
+  const text = plainText(shape.description ?? plain?.description).replace(/\.$/, "");
+  const usualText = usual === null ? "" : `default ${JSON.stringify(usual)}`;
+  return [text, ...limits, usualText].filter(Boolean).join("; ");
 };

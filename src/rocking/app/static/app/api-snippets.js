@@ -69,7 +69,7 @@ const WORDS = { true: "True", false: "False", null: "None" };
 /** @param {unknown} value */
 const pythonOf = (value) =>
   JSON.stringify(value, null, 4).replace(/"(?:[^"\\]|\\.)*"|\b(true|false|null)\b/g,
-    (found, word) => WORDS[word] ?? found);
+    (literal, word) => WORDS[word] ?? literal);
 
 /** @param {Operation} operation @param {string} origin */
 const matlab = (operation, origin) => {

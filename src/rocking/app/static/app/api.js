@@ -112,9 +112,9 @@ const addressOf = (path, query) => {
 
 /** @param {Response} answer */
 const refusalOf = async (answer) => {
-  const told = await answer.json().catch(() => ({}));
+  const content = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-  const error = { message: t("the server returned status {status}", { status: answer.status }), ...told.error };
+  const error = { message: t("the server returned status {status}", { status: answer.status }), ...content.error };
   return answer.status === 401 && error.text ? { ...error, message: error.text, hint: null } : error; // its hint is for scripts
 };
 

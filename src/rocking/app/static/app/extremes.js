@@ -8,10 +8,10 @@ export const highest = (values, most = -Infinity) => {
 };
 
 /** The smallest of some values, not above `least`.
- * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [least] */
-export const lowest = (values, least = Infinity) => {
-  for (const value of values) if (value !== null && value < least) least = value;
-  return least;
+ * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [limit] */
+export const lowest = (values, limit = Infinity) => {
+  for (const value of values) if (value !== null && value < limit) limit = value;
+  return limit;
 };
 
 /** From the smallest to the largest. @param {ArrayLike<number | null> & Iterable<number | null>} values */

@@ -2,19 +2,19 @@
 
 import { t } from "/app/words.js";
 
-/** @typedef {{ inputs?: boolean, view?: string }} Which @typedef {{ label: string, words: string, view: string, input: Element }} Fault */
+/** @typedef {{ inputs?: boolean, view?: string }} Which @typedef {{ label: string, text: string, view: string, input: Element }} Fault */
 
-/** @type {Map<Element, { label: string, words: string }>} */
-const known = new Map();
+/** @type {Map<Element, { label: string, text: string }>} */
+const faultsByInput = new Map();
 /** @type {Set<(faults: Fault[]) => unknown>} */
 const watchers = new Set();
 
-/** Note what is wrong with a field; no words take it off the list.
- * @param {Element} input @param {string} label @param {string} words */
-const mark = (input, label, words) => {
-  if (words ? known.get(input)?.words === words : !known.has(input)) return;
-  if (words) known.set(input, { label, words });
-  else known.delete(input);
+/** Note what is wrong with a field; no text take it off the list.
+ * @param {Element} input @param {string} label @param {string} text */
+const mark = (input, label, text) => {
+  if (text ? faultsByInput.get(input)?.text === text : !faultsByInput.has(input)) return;
+  if (text) faultsByInput.set(input, { label, text });
+  else faultsByInput.delete(input);
   tell();
 };
 
@@ -25,10 +25,10 @@ const counts = (input) => input.isConnected && !input.closest("[hidden]:not([rol
 /** @param {Element} input */
 const viewOf = (input) => input.closest("[role=tabpanel]")?.id.replace("view-", "") ?? "";
 
-/** Every field in error: {label, words, view, input}; of one view, or `inputs` for all but the studies.
+/** Every field in error: {label, text, view, input}; of one view, or `inputs` for all but the studies.
  * @param {Which} [which] */
 const list = ({ inputs = false, view } = {}) =>
-  [...known].filter(([input]) => counts(input))
+  [...faultsByInput].filter(([input]) => counts(input))
     .map(([input, fault]) => ({ ...fault, view: viewOf(input), input }))
     .filter((fault) => (view ? fault.view === view : !inputs || fault.view !== "studies"));
 
@@ -38,7 +38,7 @@ const any = (which) => list(which).length > 0;
 /** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere.
  * @param {Which & { but?: string }} [which] */
 const sentence = ({ but, ...which } = {}) =>
-  list(which).filter(({ words }) => words !== but).map(({ label, words }) => `${t(label)}: ${t(words)}`).join(" ");
+  list(which).filter(({ text }) => text !== but).map(({ label, text }) => `${t(label)}: ${t(text)}`).join(" ");
 
 const tell = () => {
   for (const watcher of [...watchers]) watcher(list());

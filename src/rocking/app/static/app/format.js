@@ -13,11 +13,11 @@ const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u20
  * @param {number | string | null | undefined} value @param {number} [digits] */
 export const number = (value, digits = 4) => {
   if (value === null || value === undefined || !Number.isFinite(Number(value))) return NONE;
-  const given = Number(value);
-  if (given === 0) return "0";
-  const size = Math.abs(given);
+  const numeric = Number(value);
+  if (numeric === 0) return "0";
+  const size = Math.abs(numeric);
   const text = size >= 1e6 || size < 1e-4 ? scientific(size, digits) : plain(size, digits);
-  return given < 0 ? MINUS + text : text;
+  return numeric < 0 ? MINUS + text : text;
 };
 
 /** A number with so many decimals. @param {number} value @param {number} digits */
@@ -64,9 +64,9 @@ export const tidy = (value, digits = 12) => Number(Number(value).toPrecision(dig
 
 /** @param {number} size @param {number} digits */
 const plain = (size, digits) => {
-  const [whole, fraction = ""] = expanded(size, digits).split(".");
+  const [integer, fraction = ""] = expanded(size, digits).split(".");
   const trimmed = fraction.replace(/0+$/, "");
-  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, THIN) : whole;
+  const grouped = integer.length > 4 ? integer.replace(/\B(?=(\d{3})+$)/g, THIN) : integer;
   return trimmed ? `${grouped}${MARK}${trimmed}` : grouped;
 };
 
@@ -84,5 +84,5 @@ const scientific = (size, digits) => {
 
 /** @param {string} text */
 const raised = (text) => [...text].map(
-  (each) => (each === "-" ? "\u207b" : SUPERSCRIPTS[Number(each)])
+  (character) => (character === "-" ? "\u207b" : SUPERSCRIPTS[Number(character)])
 ).join("");

@@ -54,11 +54,11 @@ export const createInputs = (start) => {
       if (JSON.stringify(next[top]) !== JSON.stringify(before[top])) become(next, new Set([top]));
     },
     /** Show inputs from elsewhere; the user's own go aside: {inputs, words, mine}, or null while there are none.
-     * @param {Server.Inputs} document @param {string} words */
-    lend: (document, words) => {
+     * @param {Server.Inputs} document @param {string} text */
+    lend: (document, text) => {
       const own = aside?.mine ? aside.inputs : current;
-      const same = [FIRST, document].some((each) => JSON.stringify(each) === JSON.stringify(own));
-      put(same ? null : { inputs: own, words, mine: true });
+      const same = [FIRST, document].some((other) => JSON.stringify(other) === JSON.stringify(own));
+      put(same ? null : { inputs: own, words: text, mine: true });
       replace(document);
     },
     aside: () => aside,
@@ -94,7 +94,7 @@ export const encode = (inputs) => {
 export const decode = (text) => {
   try {
     const raw = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
-    return inputsOf(JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, (each) => each.charCodeAt(0)))));
+    return inputsOf(JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, (character) => character.charCodeAt(0)))));
   } catch {
     return null;
   }
@@ -104,9 +104,9 @@ export const decode = (text) => {
 export const kept = () => inputsOf(stored(KEPT));
 
 const keptAside = () => {
-  const found = stored(ASIDE);
-  const inputs = inputsOf(found?.inputs);
-  return inputs && { inputs, words: String(found.words), mine: Boolean(found.mine) };
+  const entry = stored(ASIDE);
+  const inputs = inputsOf(entry?.inputs);
+  return inputs && { inputs, words: String(entry.words), mine: Boolean(entry.mine) };
 };
 
 /** What was kept in this tab; null if nothing. @param {string} key */
@@ -129,10 +129,10 @@ export const keep = (key, value) => {
 
 /** A tree with one value changed, at a path of keys; undefined takes it away, and makes no table where there is none.
  * @param {any} tree @param {string[]} path @param {unknown} value @returns {any} */
-export const changedAt = (tree, [key, ...rest], value) => {
+export const changedAt = (tree, [key, ...path], value) => {
   const next = { ...(tree ?? {}) };
   if (value === undefined && !(key in next)) return next;
-  if (rest.length) next[key] = changedAt(next[key], rest, value);
+  if (path.length) next[key] = changedAt(next[key], path, value);
   else if (value === undefined) delete next[key];
   else next[key] = value;
   return next;
@@ -141,10 +141,10 @@ export const changedAt = (tree, [key, ...rest], value) => {
 /** @type {<T>(value: T) => T} */
 const freeze = (value) => {
   const copy = structuredClone(value);
-  /** @param {any} each */
-  const seal = (each) => {
-    if (each && typeof each === "object") Object.values(Object.freeze(each)).forEach(seal);
-    return each;
+  /** @param {any} node */
+  const seal = (node) => {
+    if (node && typeof node === "object") Object.values(Object.freeze(node)).forEach(seal);
+    return node;
   };
   return seal(copy);
 };

@@ -9,15 +9,15 @@ import { t } from "/app/words.js";
 export const mountLent = (views, inputs) => {
   const aside = signal(inputs.aside());
   inputs.subscribe(() => (aside.value = inputs.aside()));
-  const place = document.createElement("div");
-  views.prepend(place);
-  render(html`<${Lent} inputs=${inputs} aside=${aside} />`, place);
+  const holder = document.createElement("div");
+  views.prepend(holder);
+  render(html`<${Lent} inputs=${inputs} aside=${aside} />`, holder);
 };
 
 /** @param {{ inputs: App["inputs"], aside: Signal<Aside | null> }} props */
 const Lent = ({ inputs, aside: { value: aside } }) => html`
   <div class="lent" role="status" data-testid="lent" hidden=${!aside}>${aside && html`
-    <${Note} kind=${aside.mine ? "info" : "good"} words=${aside.mine
+    <${Note} kind=${aside.mine ? "info" : "good"} text=${aside.mine
       ? t("These inputs come from {shown}. Your own inputs are kept.", { shown: aside.words })
       : t("Your own inputs are restored. The inputs from {shown} are kept.", { shown: aside.words })} />
     <div class="toolbar">

@@ -95,9 +95,9 @@ const run = (app, view) => {
 /** @param {App} app @param {ReturnType<typeof createViews>} views @param {ReturnType<typeof createTabs>} tabs */
 const signingIn = (app, views, tabs) => {
   document.addEventListener("rocking:signed-out", () => showDoor(""));
-  /** @param {string} words */
-  const again = (words) => () => {
-    say(words);
+  /** @param {string} text */
+  const again = (text) => () => {
+    say(text);
     app.inputs.touch();
     app.project.save();
     views.show(tabs.current());

@@ -6,10 +6,10 @@ import { t } from "/app/words.js";
 /** @type {Map<string, Server.ModelFacts>} */
 const models = new Map();
 
-/** Learn the models that the server has; done once, before anything is drawn. @param {Server.ModelFacts[]} told */
-export const learnModels = (told) => {
+/** Learn the models that the server has; done once, before anything is drawn. @param {Server.ModelFacts[]} facts */
+export const learnModels = (facts) => {
   models.clear();
-  for (const model of told) models.set(model.name, model);
+  for (const model of facts) models.set(model.name, model);
 };
 
 /** @type {Look[]} */
@@ -33,8 +33,8 @@ export const modelStyle = (label) => {
 export const modelWords = (label) => {
   const text = String(label);
   const name = models.get(family(text))?.short_name;
-  const told = text.includes(":") ? text.split(":")[1].replaceAll(",", ", ") : "";
-  const parameter = told ? `, ${told.replaceAll("=", "\u00a0=\u00a0")}` : "";
+  const parameters = text.includes(":") ? text.split(":")[1].replaceAll(",", ", ") : "";
+  const parameter = parameters ? `, ${parameters.replaceAll("=", "\u00a0=\u00a0")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
   return name ? `${factor}${t(name)}${parameter}` : text;
 };

@@ -1,7 +1,7 @@
 /** The server's refusals in the words of the page, made from their facts: fields, regions counted from one, its units. */
 
 import { number, numbers, pretty } from "/app/format.js";
-import { t, told } from "/app/words.js";
+import { t, messageText } from "/app/words.js";
 
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
@@ -30,10 +30,10 @@ const WAYS = {
 };
 
 /** Why a file was left out, with what there is to do about it. @param {{ why: string, hint?: string, to_state?: string }} reason */
-export const whyLeftOut = ({ why, hint, to_state: path }) => {
+export const whyLeftOut = ({ why: reason, hint, to_state: path }) => {
   const way = WAYS[path ?? ""];
-  if (way) return t("{place}: {fault}", { place: why, fault: way });
-  return hint ? t("{fault}; {hint}", { fault: why, hint }) : t(why);
+  if (way) return t("{place}: {fault}", { place: reason, fault: way });
+  return hint ? t("{fault}; {hint}", { fault: reason, hint }) : t(reason);
 };
 
 /** A message as the page spells its facts. @param {any} message
@@ -42,7 +42,7 @@ export const spelt = (message, units = "m") => {
   const kinds = Object.values(message.facts);
   if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for it
   const way = kinds.map((fact) => (fact?.kind === "option" ? WAYS[fact.path] : undefined)).find(Boolean);
-  return way ? t(way) : told(message, (fact) => spelling(fact, units));
+  return way ? t(way) : messageText(message, (fact) => spelling(fact, units));
 };
 
 /** Files, with their lines, and steps in which something is refused. @param {Required<Server.Refusal>} refusal @returns {string[]} */
@@ -80,7 +80,7 @@ const sentenceOf = (error, units) => {
 };
 
 /** @param {string[]} places @param {string} fault */
-const within = (places, fault) => places.reduceRight((text, place) => t("{place}: {fault}", { place, fault: text }), fault);
+const within = (places, fault) => places.reduceRight((text, location) => t("{place}: {fault}", { place: location, fault: text }), fault);
 
 // A number that is out of its range stands in the field: it is repeated in the unit of its range.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
@@ -102,7 +102,7 @@ const spelling = (fact, units) => {
     case "range": return range(fact, units);
     case "message": return spelt(fact, units);
     default:
-      if (Array.isArray(fact)) return fact.map((part) => spelling(part, units)).join("; ");
+      if (Array.isArray(fact)) return fact.map((item) => spelling(item, units)).join("; ");
       return typeof fact === "number" ? number(fact) : t(String(fact ?? ""));
   }
 };
@@ -132,13 +132,13 @@ const placeOf = (error) => {
   const region = regionOf(error);
   const regions = first?.kind === "index" ? [first.number, second.number] : region === undefined ? [] : [region];
   const hole = ring?.facts?.hole?.number;
-  const place = { x: x?.value, y: y?.value, regions, hole };
-  return place.x === undefined && place.y === undefined && !regions.length ? null : place;
+  const location = { x: x?.value, y: y?.value, regions, hole };
+  return location.x === undefined && location.y === undefined && !regions.length ? null : location;
 };
 
 /** The region of a section in which something is refused. @param {Required<Server.Refusal>} error @returns {number | undefined} */
 const regionOf = (error) => {
-  const index = [...error.places.map(({ name }) => name), error.parameter].map(indexOf).find((one) => one !== undefined);
+  const index = [...error.places.map(({ name }) => name), error.parameter].map(indexOf).find((position) => position !== undefined);
   return index;
 };
 
@@ -151,5 +151,5 @@ const indexOf = (path) => {
 /** The last key of a path. @param {string} path */
 const nameOf = (path) => path.split(".").at(-1)?.replace(/(\[\d+\])+$/, "") ?? "";
 
-/** @param {string} words */
-const capital = (words) => words.replace(/^[a-z](?!\S*\.)(?![a-z]* ?[=[])/, (first) => first.toUpperCase());
+/** @param {string} text */
+const capital = (text) => text.replace(/^[a-z](?!\S*\.)(?![a-z]* ?[=[])/, (first) => first.toUpperCase());

@@ -5,16 +5,16 @@ import { el, fill } from "/app/dom.js";
 /** @type {{ [kind: string]: string | undefined }} */
 const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
 let timer = 0;
-let said = "";
+let shownText = "";
 /** @type {HTMLElement | null} */
 let kept = null; // it may have gone with the dialog that it was in
-const place = () => (kept ??= document.getElementById("status"));
+const statusLine = () => (kept ??= document.getElementById("status"));
 
 /** Say something in the status line. @param {string} text @param {string} [kind] */
 export const say = (text, kind = "info") => {
-  const line = place();
+  const line = statusLine();
   inSight(line);
-  said = text;
+  shownText = text;
   fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), el("span", {}, text));
   line.dataset.kind = kind;
   line.hidden = false;
@@ -32,10 +32,10 @@ const inSight = (line) => {
 };
 
 /** Take the status line away, or some words alone if it still says them. */
-export const hush = (text = said) => {
-  if (text !== said) return;
-  said = "";
-  const line = place();
+export const hush = (text = shownText) => {
+  if (text !== shownText) return;
+  shownText = "";
+  const line = statusLine();
   line.hidden = true;
   fill(line);
 };

@@ -5,7 +5,7 @@ import { call } from "/app/api.js";
 import { inPlaceOf } from "/app/failure.js";
 import { Button, Field, Note, toWrong } from "/parts/fields.js";
 
-const said = signal(null); // what the door says; nothing while there is none
+const doorMessage = signal(null); // what the door says; nothing while there is none
 
 /** Exchange the token of a link for the cookie; says why not if it did not work. @param {string} token */
 export const exchange = async (token) => {
@@ -24,8 +24,8 @@ const onSignedIn = (done) => document.addEventListener("rocking:signed-in", done
 /** A page that says how to get in, before the application; what the address holds is kept for after.
  * @param {string} message */
 export const showDoor = (message) => {
-  const before = said.value;
-  said.value = message;
+  const before = doorMessage.value;
+  doorMessage.value = message;
   if (before !== null) return;
   if (document.body.dataset.started === "true") return openOver();
   inPlaceOf(document.getElementById("main"), html`<${Door} />`);
@@ -44,22 +44,22 @@ const openOver = () => {
   addEventListener("focus", look);
   onSignedIn(() => {
     removeEventListener("focus", look);
-    said.value = null;
+    doorMessage.value = null;
     close();
   });
 };
 
 /** A dialog over the page; returns how to close it.
- * @param {string} label @param {VNode} what @param {{ stays?: boolean }} [how] */
-const over = (label, what, { stays = false } = {}) => {
-  const place = document.body.appendChild(document.createElement("div"));
+ * @param {string} label @param {VNode} content @param {{ stays?: boolean }} [how] */
+const over = (label, content, { stays = false } = {}) => {
+  const holder = document.body.appendChild(document.createElement("div"));
   const gone = () => {
-    render(null, place);
-    place.remove();
+    render(null, holder);
+    holder.remove();
   };
   render(html`<dialog class="over" aria-label=${label} onCancel=${(event) => stays && event.preventDefault()}
-    onClose=${() => (stays && said.value !== null ? dialog.showModal() : gone())}>${what}</dialog>`, place);
-  const dialog = /** @type {HTMLDialogElement} */ (place.firstElementChild);
+    onClose=${() => (stays && doorMessage.value !== null ? dialog.showModal() : gone())}>${content}</dialog>`, holder);
+  const dialog = /** @type {HTMLDialogElement} */ (holder.firstElementChild);
   dialog.showModal();
   return () => dialog.close();
 };
@@ -73,8 +73,8 @@ const Door = ({ running = false }) => {
     const token = link.value.trim().replace(/^.*token=/s, "").split("&")[0];
     wrong.value = token ? "" : "Paste the link first.";
     if (!token) return toWrong(form.current);
-    said.value = await exchange(token);
-    return said.value || signedIn();
+    doorMessage.value = await exchange(token);
+    return doorMessage.value || signedIn();
   };
   return html`
     <form ref=${form} class="card door" onSubmit=${enter} data-testid="door">
@@ -83,7 +83,7 @@ const Door = ({ running = false }) => {
       <p>${"`rocking serve` prints a one-time link to this server. "}
         ${"Open the link, or paste it here. If the link was used, select \u201cLink for another browser\u201d "}
         ${"at the bottom of the page in a signed-in browser, or restart the server."}</p>
-      <div class="refusal" role="alert">${said.value && html`<${Note} kind="warning" words=${said.value} />`}</div>
+      <div class="refusal" role="alert">${doorMessage.value && html`<${Note} kind="warning" text=${doorMessage.value} />`}</div>
       <${Field} label="Link or token" value=${link} error=${wrong.value} help="The line that begins with http:// in the terminal." />
       <${Button} type="submit" kind="primary">Sign in<//>
     </form>`;

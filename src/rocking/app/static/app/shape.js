@@ -8,9 +8,9 @@ const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
  * @param {unknown} document @returns {Server.Inputs | null} */
 export const inputsOf = (document) => {
   if (!isTable(document)) return null;
-  const { motion, ...rest } = document;
-  const [response, settings] = [rest.response, rest.settings].map((table) => (isTable(table) && !Object.keys(table).length ? null : table));
-  const inputs = withoutNulls({ ...rest, body: isTable(rest.body) ? withoutNulls(rest.body) : null, response, settings });
+  const { motion, ...tables } = document;
+  const [response, settings] = [tables.response, tables.settings].map((table) => (isTable(table) && !Object.keys(table).length ? null : table));
+  const inputs = withoutNulls({ ...tables, body: isTable(tables.body) ? withoutNulls(tables.body) : null, response, settings });
   const good = Object.keys(inputs).every((key) => CHECKS[key]?.(inputs[key])) && isBody(inputs.body);
   if (!good || !(motion === undefined || motion === null || isMotion(motion))) return null;
   return /** @type {any} */ (motion ? { ...inputs, motion: withoutNulls(motion) } : inputs);
@@ -27,8 +27,8 @@ const isTable = (value) => typeof value === "object" && value !== null && !Array
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 /** @param {unknown} value */
 const isText = (value) => typeof value === "string";
-/** @param {(value: any) => boolean} each @returns {(value: any) => boolean} */
-const isList = (each) => (value) => Array.isArray(value) && value.every(each);
+/** @param {(value: any) => boolean} isItem @returns {(value: any) => boolean} */
+const isList = (isItem) => (value) => Array.isArray(value) && value.every(isItem);
 /** @param {any} value */
 const isPair = (value) => isList(isNumber)(value) && value.length === 2;
 /** @param {any} value */

@@ -1,6 +1,6 @@
 /** The shapes that can be chosen, with their fields. */
 
-const SIDES = { unit: "", min: 3, max: 10000, step: 1, whole: true };
+const SIDES = { unit: "", min: 3, max: 10000, step: 1, integer: true };
 
 /** Shapes with the fields of each; a field is a length unless it says otherwise. */
 /** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */

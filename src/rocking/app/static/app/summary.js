@@ -15,9 +15,9 @@ export const mountSummary = (aside, app) => {
     aside.classList.toggle("stale", wrong.value !== "");
   };
   app.faults.subscribe(look);
-  app.body.subscribe((found) => {
+  app.body.subscribe((described) => {
     look();
-    facts.value = found;
+    facts.value = described;
   });
   render(html`<${Summary} app=${app} facts=${facts} wrong=${wrong} />`, aside);
 };
@@ -26,7 +26,7 @@ export const mountSummary = (aside, app) => {
 const Summary = ({ app, facts: { value: facts }, wrong }) => html`
   <h2>The body</h2>
   <div class="refusal" data-testid="summary-faults">
-    ${wrong.value.split("\n").filter(Boolean).map((words) => html`<${Note} key=${words} kind="error" words=${words} />`)}</div>
+    ${wrong.value.split("\n").filter(Boolean).map((text) => html`<${Note} key=${text} kind="error" text=${text} />`)}</div>
   ${facts && html`<${Facts} facts=${facts} />`}
   <${Button} kind="quiet" onClick=${() => app.go("body")}>Change the body<//>`;
 

@@ -27,11 +27,11 @@ export const createViews = (app) => {
 };
 
 // A browser may keep that a module did not come: what is asked for again has an address of its own.
-const asked = new Map();
+const attempts = new Map();
 /** @param {string} name */
 const address = (name) => {
-  const before = asked.get(name) ?? 0;
-  asked.set(name, before + 1);
+  const before = attempts.get(name) ?? 0;
+  attempts.set(name, before + 1);
   return `/views/${name}.js${before ? `?again=${before}` : ""}`;
 };
 
@@ -46,7 +46,7 @@ const load = async (name, app, forget) => {
     return view;
   } catch (error) {
     forget();
-    inPlaceOf(section, html`<${Note} kind="error" words=${failure(error)} />
+    inPlaceOf(section, html`<${Note} kind="error" text=${failure(error)} />
       <${Button} kind="primary" onClick=${() => location.reload()}>Reload the page<//>`);
     section.dataset.ready = "failed";
     return {};

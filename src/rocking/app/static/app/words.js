@@ -20,7 +20,7 @@ export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), fac
 /** @typedef {{ text: string, facts: { [name: string]: any }, many?: string, context?: string }} Message */
 
 /** A message of the server. @param {Message} message @param {(fact: any) => string} spelling */
-export const told = ({ text, many, context, facts }, spelling) => filled(formOf(many ? [text, many] : text, facts.count, context), facts, spelling);
+export const messageText = ({ text, many, context, facts }, spelling) => filled(formOf(many ? [text, many] : text, facts.count, context), facts, spelling);
 
 /** A text in the language of the page without its places filled.
  * @param {string | [string, string]} text @param {number} [count] @param {string} [context] @returns {string} */
@@ -31,8 +31,8 @@ const formOf = (text, count = 1, context = "") => {
 };
 
 /** @param {string} form @param {{ [name: string]: any }} facts @param {(fact: any) => string} [spelling] */
-const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (place, name, quoted, digits, kind) => {
-  if (!(name in facts)) return place;
+const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (match, name, quoted, digits, kind) => {
+  if (!(name in facts)) return match;
   if (quoted) return `'${String(facts[name]).slice(0, digits || undefined)}'`;
   if (kind && typeof facts[name] === "number") return kind === "f" ? fixed(facts[name], Number(digits || 6)) : number(facts[name], Number(digits || 6));
   return spelling(facts[name]);

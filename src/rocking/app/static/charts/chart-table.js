@@ -10,10 +10,10 @@ const MOST = 60;
 /** A "show as table" part under a chart; refresh() after new data.
  * @param {ChartOptions} options @param {() => Columns} dataOf */
 export const chartTable = ({ title, x, y, series }, dataOf) => {
-  const place = el("div", {});
+  const holder = el("div", {});
   const of = el("span", { class: "visually-hidden" }, ` ${t("of {chart}", { chart: title })}`);
-  const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table", of), place);
-  const columns = [x, ...series.map((each) => ({ label: each.label, unit: y.unit }))];
+  const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table", of), holder);
+  const columns = [x, ...series.map((curve) => ({ label: curve.label, unit: y.unit }))];
   /** @param {number} every */
   const rowsOf = (every) => {
     const data = dataOf();
@@ -24,7 +24,7 @@ export const chartTable = ({ title, x, y, series }, dataOf) => {
     if (!element.open) return;
     const every = Math.max(1, Math.ceil(dataOf()[0].length / MOST));
     const caption = every > 1 ? t("{chart}: every {number}th sample; copying includes all samples", { chart: title, number: every }) : title;
-    render(html`<${Table} columns=${columns} rows=${rowsOf(every)} copied=${() => rowsOf(1)} caption=${caption} />`, place);
+    render(html`<${Table} columns=${columns} rows=${rowsOf(every)} copied=${() => rowsOf(1)} caption=${caption} />`, holder);
   };
   element.addEventListener("toggle", refresh);
   return { element, refresh };

@@ -40,9 +40,9 @@ export const drawChart = (pen, plot, { series, bands = [] }, all, marks) => {
   pen.clip();
   bands.forEach((band) => drawBand(pen, frame, band, data));
   drawMarks(pen, frame, marks);
-  series.forEach((each, k) => drawCurve(pen, frame, each, data[0], data[k + 1] ?? []));
+  series.forEach((curve, k) => drawCurve(pen, frame, curve, data[0], data[k + 1] ?? []));
   pen.restore();
-  series.forEach((each, k) => each.points && drawDots(pen, frame, each, data[0], data[k + 1] ?? []));
+  series.forEach((curve, k) => curve.points && drawDots(pen, frame, curve, data[0], data[k + 1] ?? []));
 };
 
 /** Columns of what lies in sight, to a value of each on either side. @param {{ min: number, max: number }} scale @param {Columns} data */
@@ -164,8 +164,8 @@ const drawBand = (pen, { x, y }, { series: [high, low], fill }, data) => {
 export const legendOf = (series, width) => {
   let [x, row] = [0, 0];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
-    const said = t(label);
-    const wide = 36 + measured(said).width;
+    const text = t(label);
+    const wide = 36 + measured(text).width;
     if (x > 0 && x + wide > width) [x, row] = [0, row + 1];
     const [at, y] = [x, row * ROW + 8];
     x += wide + 18;
@@ -176,7 +176,7 @@ export const legendOf = (series, width) => {
         x1: at, x2: at + 30, y1: y, y2: y, stroke, "stroke-width": 2,
         "stroke-dasharray": dash?.length ? dash.join(" ") : null,
       });
-    return [key, svg("text", { x: at + 36, y: y + 4, fill: colour("--ink-soft") }, said)];
+    return [key, svg("text", { x: at + 36, y: y + 4, fill: colour("--ink-soft") }, text)];
   });
   return svg("g", { "data-height": (row + 1) * ROW }, entries);
 };

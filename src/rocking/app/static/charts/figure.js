@@ -11,7 +11,7 @@ export const createTime = (onInstant, onZoom) => {
   /** @type {Chart | null} */
   let leading = null; // the chart under the pointer
   /** @param {number} instant */
-  const point = (instant) => charts.forEach((each) => each !== leading && each.point(instant));
+  const point = (instant) => charts.forEach((chart) => chart !== leading && chart.point(instant));
   return {
     /** Shows an instant that is played or sought elsewhere. @param {number} instant */
     show: (instant) => leading || point(instant),
@@ -34,15 +34,15 @@ const UNMARKED = {};
 /** @type {Time} */
 const ALONE = { add: () => () => {} };
 
-/** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `part` is in sight.
- * @param {{ shape: ChartOptions, data: Columns, part?: Point | null, marks?: Marks, time?: Time, testid?: string }} props */
-export const Figure = ({ shape, data, part, marks = UNMARKED, time = ALONE, testid }) => {
-  const place = useRef(null);
+/** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `interval` is in sight.
+ * @param {{ shape: ChartOptions, data: Columns, interval?: Point | null, marks?: Marks, time?: Time, testid?: string }} props */
+export const Figure = ({ shape, data, interval, marks = UNMARKED, time = ALONE, testid }) => {
+  const holder = useRef(null);
   /** @type {{ current: Chart }} */
   const chart = useRef(null);
   const look = JSON.stringify(shape);
   useLayoutEffect(() => {
-    chart.current = lineChart(place.current, { ...shape, onZoom: time.onZoom });
+    chart.current = lineChart(holder.current, { ...shape, onZoom: time.onZoom });
     const gone = time.add(chart.current);
     return () => {
       gone();
@@ -50,6 +50,6 @@ export const Figure = ({ shape, data, part, marks = UNMARKED, time = ALONE, test
     };
   }, [look]);
   useLayoutEffect(() => chart.current.setMarks(marks), [look, marks]);
-  useLayoutEffect(() => chart.current.setData(data, part), [look, data, String(part)]);
-  return html`<div ref=${place} class="figure" data-testid=${testid}></div>`;
+  useLayoutEffect(() => chart.current.setData(data, interval), [look, data, String(interval)]);
+  return html`<div ref=${holder} class="figure" data-testid=${testid}></div>`;
 };

@@ -5,18 +5,18 @@ const pen = /** @type {CanvasRenderingContext2D} */ (document.createElement("can
 /** @param {{ fontWeight: string, fontSize: string, fontFamily: string }} style */
 export const fontOf = ({ fontWeight, fontSize, fontFamily }) => `${fontWeight} ${fontSize} ${fontFamily}`;
 
-/** Words in letters of a font. @param {string} words @param {string} [font] */
-export const measured = (words, font = "12px system-ui, sans-serif") => {
+/** Words in letters of a font. @param {string} text @param {string} [font] */
+export const measured = (text, font = "12px system-ui, sans-serif") => {
   pen.font = font;
-  return pen.measureText(words);
+  return pen.measureText(text);
 };
 
-/** Words in lines of no more than a width. @param {string} words @param {number} width @param {string} font */
-export const wrapped = (words, width, font) => {
+/** Words in lines of no more than a width. @param {string} text @param {number} width @param {string} font */
+export const wrapped = (text, width, font) => {
   /** @type {string[]} */
   const lines = [];
-  const pieces = words.match(/[\u2e80-\u9fff]|[^ \u2e80-\u9fff]+ ?/g) ?? [];
-  for (const piece of pieces.flatMap((each) => (measured(each, font).width > width ? [...each] : [each]))) {
+  const pieces = text.match(/[\u2e80-\u9fff]|[^ \u2e80-\u9fff]+ ?/g) ?? [];
+  for (const piece of pieces.flatMap((piece) => (measured(piece, font).width > width ? [...piece] : [piece]))) {
     const longer = `${lines.at(-1) ?? ""}${piece}`;
     if (lines.length && measured(longer.trimEnd(), font).width <= width) lines[lines.length - 1] = longer;
     else lines.push(piece);

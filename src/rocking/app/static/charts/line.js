@@ -39,7 +39,7 @@ export const lineChart = (container, options) => {
   const readout = (self) => {
     const at = self.cursor.idx;
     const values = at === null || at === undefined ? [] : data.map((column) => column[at]);
-    fill(shown, values.length ? words(options, values) : "\u00a0");
+    fill(shown, values.length ? readoutText(options, values) : "\u00a0");
   };
 
   /** @param {uPlot} self */
@@ -83,14 +83,14 @@ export const lineChart = (container, options) => {
   return {
     plot,
     element: figure,
-    /** Takes columns; with a part of the abscissa [from, to] the chart goes on looking into that.
-     * @param {Columns} next @param {Point | null} [part] */
-    setData: (next, part = null) => {
+    /** Takes columns; with a interval of the abscissa [from, to] the chart goes on looking into that.
+     * @param {Columns} next @param {Point | null} [interval] */
+    setData: (next, interval = null) => {
       data = next;
-      zoomed = part;
-      if (part) plot.batch(() => {
+      zoomed = interval;
+      if (interval) plot.batch(() => {
         plot.setData(next, false);
-        plot.setScale("x", { min: part[0], max: part[1] });
+        plot.setScale("x", { min: interval[0], max: interval[1] });
       });
       else plot.setData(next);
       stage.setAttribute("aria-label", summary(options, next));
@@ -122,8 +122,8 @@ export const lineChart = (container, options) => {
 /** @param {ChartOptions} options @param {Columns} data */
 const csvOf = ({ x, series, y }, data) => {
   const head = [axisWords(x), ...series.map(({ label }) => axisWords({ label, unit: y.unit }))];
-  /** @param {string} words */
-  const quoted = (words) => `"${String(words).replaceAll('"', '""')}"`;
+  /** @param {string} text */
+  const quoted = (text) => `"${String(text).replaceAll('"', '""')}"`;
   const rows = data[0].map((_, k) => data.map((column) => column[k] ?? "").join(","));
   return [head.map(quoted).join(","), ...rows, ""].join("\n");
 };
@@ -158,7 +158,7 @@ const seriesOf = ({ label, colour: paint }) => ({ label, stroke: () => colour(pa
 /** @param {ChartSeries[]} series */
 const legendOf = (series) => {
   if (series.length < 2) return null;
-  return el("ul", { class: "legend" }, series.map((each) => el("li", {}, legendKey(each), each.label)));
+  return el("ul", { class: "legend" }, series.map((curve) => el("li", {}, legendKey(curve), curve.label)));
 };
 
 /** @param {ChartSeries} series */
@@ -166,7 +166,7 @@ const legendKey = ({ colour: paint, dash, points, width }) =>
   dashKey({ colour: paint, dash, dots: Boolean(points) && width === 0 });
 
 /** @param {ChartOptions} options @param {(number | null)[]} values */
-const words = ({ x, y, series }, [at, ...values]) =>
+const readoutText = ({ x, y, series }, [at, ...values]) =>
   [`${t(x.label)} ${quantity(at, x.unit)}`]
     .concat(values.map((value, index) => `${t(series[index].label)} ${quantity(value, y.unit)}`))
     .join(" \u00b7 ");

@@ -96,10 +96,10 @@ export class SvgPen {
     this.fill();
   }
 
-  /** @param {string} words @param {number} x @param {number} y */
-  fillText(words, x, y) {
+  /** @param {string} text @param {number} x @param {number} y */
+  fillText(text, x, y) {
     const [, size, family] = /(\d+)px (.*)$/.exec(this.font) ?? [];
     const look = { fill: this.fillStyle, "font-size": size, "font-family": family, "text-anchor": ANCHORS[this.textAlign] };
-    this.put("text", { x: at(x), y: at(y + (BELOW[this.textBaseline] ?? 0) * Number(size)), ...look }, words);
+    this.put("text", { x: at(x), y: at(y + (BELOW[this.textBaseline] ?? 0) * Number(size)), ...look }, text);
   }
 }

@@ -9,16 +9,16 @@ import { Made } from "/parts/made.js";
 /** What is in it is one figure; its file says more than its `title`, and `canvasOf` draws again what is on a canvas.
  * @param {{ title: string, more?: string, about?: string, canvasOf?: (canvas: HTMLCanvasElement) => SVGElement, children?: any }} props */
 export const Pictured = ({ title, more = "", about = "", canvasOf, children }) => {
-  const place = useRef(null);
-  const given = useRef(/** @type {any} */ (null));
-  given.current = { title: title + more, about, canvasOf };
+  const holder = useRef(null);
+  const latest = useRef(/** @type {any} */ (null));
+  latest.current = { title: title + more, about, canvasOf };
   const files = useMemo(() => chartFiles(title, () => ({
-    title: given.current.title,
-    about: given.current.about,
-    node: stillOf(place.current, given.current.canvasOf),
-    alt: [...place.current.querySelectorAll("[role=img], canvas[aria-label]")].map((each) => each.getAttribute("aria-label")).join(" "),
+    title: latest.current.title,
+    about: latest.current.about,
+    node: stillOf(holder.current, latest.current.canvasOf),
+    alt: [...holder.current.querySelectorAll("[role=img], canvas[aria-label]")].map((image) => image.getAttribute("aria-label")).join(" "),
   }), "picture"), [title]);
-  return html`<div ref=${place} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
+  return html`<div ref=${holder} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
 };
 
 /** A figure that the server draws: its file is what is shown. @param {{ title: string, path: string, [more: string]: any }} props */

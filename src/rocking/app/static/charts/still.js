@@ -13,9 +13,9 @@ const ABOVE = { overflow: "visible" }; // words may reach over the edge of a dra
 /** @typedef {(rect: DOMRect) => { x: number, y: number, width: number, height: number }} Placing */
 
 /** A copy of what an element shows; `canvasOf` draws again what stands on a canvas in it.
- * @param {Element} place @param {(canvas: HTMLCanvasElement) => SVGElement} [canvasOf] */
-export const stillOf = (place, canvasOf) => {
-  const { left, top, width, height } = place.getBoundingClientRect();
+ * @param {Element} root @param {(canvas: HTMLCanvasElement) => SVGElement} [canvasOf] */
+export const stillOf = (root, canvasOf) => {
+  const { left, top, width, height } = root.getBoundingClientRect();
   /** @type {Placing} */
   const at = (rect) => ({ x: round(rect.left - left), y: round(rect.top - top), width: round(rect.width), height: round(rect.height) });
   /** @param {Node} node @returns {Child} */
@@ -25,10 +25,10 @@ export const stillOf = (place, canvasOf) => {
     const where = at(node.getBoundingClientRect());
     if (node instanceof SVGSVGElement) return svg("svg", { ...where, ...ABOVE, viewBox: node.getAttribute("viewBox") }, [...dressed(node).childNodes]);
     if (node instanceof HTMLCanvasElement) return canvasOf ? set(canvasOf(node), where) : null;
-    return [node === place ? null : plateOf(getComputedStyle(node), where), ...[...node.childNodes].map(shown)];
+    return [node === root ? null : plateOf(getComputedStyle(node), where), ...[...node.childNodes].map(shown)];
   };
   const size = { width: Math.ceil(width), height: Math.ceil(height) };
-  return svg("svg", { ...size, ...ABOVE, viewBox: `0 0 ${size.width} ${size.height}` }, [shown(place)]);
+  return svg("svg", { ...size, ...ABOVE, viewBox: `0 0 ${size.width} ${size.height}` }, [shown(root)]);
 };
 
 /** @param {number} value */
@@ -80,7 +80,7 @@ const linesOf = (node, at) => {
   const look = { fill: style.color, "font-family": style.fontFamily, "font-size": style.fontSize, "font-weight": style.fontWeight };
   return lines.map(({ from, to, rect }) => {
     const { x, y } = at(rect);
-    const words = node.data.slice(from, to).replace(/\s+/g, " ");
-    return svg("text", { x, y: round(y + measured(words, fontOf(style)).fontBoundingBoxAscent), ...look }, words);
+    const text = node.data.slice(from, to).replace(/\s+/g, " ");
+    return svg("text", { x, y: round(y + measured(text, fontOf(style)).fontBoundingBoxAscent), ...look }, text);
   });
 };

@@ -18,7 +18,7 @@ export const colour = (paint) => {
 const listeners = new Set();
 document.addEventListener("rocking:theme", () => {
   resolved.clear();
-  listeners.forEach((each) => each());
+  listeners.forEach((listener) => listener());
 });
 
 /** Run a function whenever the page turns light or dark; returns how to stop. @param {() => unknown} listener */
@@ -58,5 +58,5 @@ const look = ({ label, unit, log }) => ({
   grid: { show: false },
   ticks: { show: false },
   /** @param {unknown} _ @param {(number | null)[]} ticks */
-  values: (_, ticks) => ticks.map((each) => (each === null ? "" : number(each, log ? 1 : 6))),
+  values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : number(tick, log ? 1 : 6))),
 });

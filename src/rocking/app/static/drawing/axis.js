@@ -10,7 +10,7 @@ export const axisOf = (low, high, from, to, count = 5) => {
   const step = roundStep(high - low, count);
   /** @param {number} value */
   const at = (value) => Math.round((from + ((value - low) / (high - low)) * (to - from)) * 100) / 100;
-  return { at, low, high, ticks: multiples(low, high, step).map((each) => tidy(each)) };
+  return { at, low, high, ticks: multiples(low, high, step).map((tick) => tidy(tick)) };
 };
 
 /** Grid lines and numbers under a picture.

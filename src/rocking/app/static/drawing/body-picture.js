@@ -4,7 +4,7 @@ import { svg } from "/app/dom.js";
 import { highest } from "/app/extremes.js";
 import { number, quantity } from "/app/format.js";
 import { pointsOf, regionPaths } from "/drawing/outline.js";
-import { arc, centreMark, footMark, groundLine, words } from "/drawing/symbols.js";
+import { arc, centreMark, footMark, groundLine, label } from "/drawing/symbols.js";
 import { boxOf, roundStep, viewport } from "/drawing/viewport.js";
 import { listed, t } from "/app/words.js";
 
@@ -62,8 +62,8 @@ const sideDrawing = (body, side, foot, sign, view) => {
     svg("path", { class: "thin dashed", d: `M${x} ${y}V${centre[1] - 10}` }),
     svg("path", { class: "accent-line", d: `M${x} ${y}L${centre[0]} ${centre[1]}` }),
     arc(x, y, radius, sign * side.slenderness_angle),
-    words(beside, y - radius - 8, `\u03b1 = ${degrees(side.slenderness_angle)}`, outside),
-    words(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal, "m")}`, outside));
+    label(beside, y - radius - 8, `\u03b1 = ${degrees(side.slenderness_angle)}`, outside),
+    label(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal, "m")}`, outside));
 };
 
 /** @param {number[][]} points @param {number[]} masses @param {Viewport} view */
@@ -94,7 +94,7 @@ const inWords = (body) => {
   const { left, right } = body.sides;
   const [x, y] = body.centre;
   const [leftAngle, rightAngle] = [left, right].map((side) => degrees(side.slenderness_angle));
-  const feet = listed(body.foot_positions.map((each) => number(each)));
+  const feet = listed(body.foot_positions.map((foot) => number(foot)));
   return t("Body to scale: centre of mass at x {x} m, y {y} m, feet at {feet} m, slenderness angle {left} to the left and {right} to the right.",
     { x: number(x), y: number(y), feet, left: leftAngle, right: rightAngle });
 };

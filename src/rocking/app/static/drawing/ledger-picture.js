@@ -24,12 +24,12 @@ export const ledgerPicture = (shares, { width }) => {
 
 /** @param {string} name @param {number} share @param {number} before @param {{ full: number, y: number }} where */
 const oneBar = (name, share, before, { full, y }) => {
-  const [title, words] = STAGE_WORDS[name] ?? [name, ""];
+  const [title, description] = STAGE_WORDS[name] ?? [name, ""];
   const lost = before - share;
   return svg("g", {},
     svg(
       "text", { x: 1, y: y + 14 }, svg("tspan", { class: "strong" }, title),
-      full > 460 ? svg("tspan", { class: "soft", dx: 8 }, words) : null,
+      full > 460 ? svg("tspan", { class: "soft", dx: 8 }, description) : null,
     ),
     svg("text", { x: full, y: y + 14, "text-anchor": "end", class: "figure" },
       lost > 1e-9 ? `${percent(share)} (\u2212${percent(lost)})` : percent(share)),

@@ -11,8 +11,8 @@ import { t } from "/app/words.js";
 /** Draw {measured: [{slenderness_ratio, coefficient, coefficient_low, coefficient_high, group}], curves, rows, slenderness}.
  * @param {{ measured: Server.MeasuredPoint[], curves: Server.ModelCurve[], rows: { model: string, value: number }[], slenderness: number }} facts @param {{ width: number, height?: number }} size */
 export const measuredPicture = ({ measured, curves, rows, slenderness }, { width, height = 380 }) => {
-  const all = [...measured.map((each) => each.slenderness_ratio), slenderness];
-  const values = [...measured.map((each) => each.coefficient), ...rows.map((each) => each.value)];
+  const all = [...measured.map((point) => point.slenderness_ratio), slenderness];
+  const values = [...measured.map((measurement) => measurement.coefficient), ...rows.map((row) => row.value)];
   const x = axisOf(0, highest(all) * 1.06, 60, width - 14, width < 500 ? 5 : 8);
   const y = axisOf(Math.max(0, Math.floor(lowest(values) * 10 - 0.3) / 10), 1.005, height - 48, 12, 6);
   const frame = { left: 60, right: width - 14, top: 12, bottom: height - 48 };
@@ -24,9 +24,9 @@ export const measuredPicture = ({ measured, curves, rows, slenderness }, { width
   },
     bottomAxis(x, { ...frame, label: "slenderness ratio h/b" }),
     leftAxis(y, { ...frame, label: "coefficient of restitution r" }),
-    curves.map((each) => curve(each, x, y)),
+    curves.map((modelCurve) => curve(modelCurve, x, y)),
     svg("path", { class: "thin dashed", d: `M${x.at(slenderness)} ${frame.top}V${frame.bottom}` }),
-    measured.map((each) => point(each, x, y)),
+    measured.map((measurement) => point(measurement, x, y)),
     rows.map(({ model, value }) => value < y.low ? null
       : svg("circle", {
         cx: x.at(slenderness), cy: y.at(value), r: 6, fill: modelStyle(model).colour, class: "dot-halo",
@@ -37,7 +37,7 @@ export const measuredPicture = ({ measured, curves, rows, slenderness }, { width
 /** @param {Server.ModelCurve} curve @param {Axis} x @param {Axis} y */
 const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
   const { colour, dash } = modelStyle(model);
-  const places = ratios.map((each, index) => [each, coefficient[index]])
+  const places = ratios.map((ratio, index) => [ratio, coefficient[index]])
     .filter(([ratio, value]) => ratio <= x.high && value !== null && value >= y.low)
     .map(([ratio, value]) => `${x.at(ratio)} ${y.at(value)}`);
   return places.length < 2 ? null : svg("path", {
@@ -46,14 +46,14 @@ const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
   });
 };
 
-/** @param {Server.MeasuredPoint} each @param {Axis} x @param {Axis} y */
-const point = (each, x, y) => {
-  const { marker: shape, words } = GROUPS[each.group] ?? { marker: "circle", words: each.group };
-  const [px, py] = [x.at(each.slenderness_ratio), y.at(each.coefficient)];
-  const bar = each.coefficient_low === undefined || each.coefficient_low === null || each.coefficient_low === each.coefficient_high ? null
+/** @param {Server.MeasuredPoint} measurement @param {Axis} x @param {Axis} y */
+const point = (measurement, x, y) => {
+  const { marker: shape, words: text } = GROUPS[measurement.group] ?? { marker: "circle", words: measurement.group };
+  const [px, py] = [x.at(measurement.slenderness_ratio), y.at(measurement.coefficient)];
+  const bar = measurement.coefficient_low === undefined || measurement.coefficient_low === null || measurement.coefficient_low === measurement.coefficient_high ? null
     : svg(
-      "path", { class: "marker-bar", d: `M${px} ${y.at(each.coefficient_low)}V${y.at(Math.min(each.coefficient_high, y.high))}` },
+      "path", { class: "marker-bar", d: `M${px} ${y.at(measurement.coefficient_low)}V${y.at(Math.min(measurement.coefficient_high, y.high))}` },
     );
   return svg("g", {}, bar, marker(shape, px, py),
-    svg("title", {}, `${t(words)}: h/b ${number(each.slenderness_ratio)}, r ${number(each.coefficient)}`));
+    svg("title", {}, `${t(text)}: h/b ${number(measurement.slenderness_ratio)}, r ${number(measurement.coefficient)}`));
 };

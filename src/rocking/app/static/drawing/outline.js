@@ -12,7 +12,7 @@ export const pathOf = (rings, view) =>
 /** One path for each region; a lighter region is drawn fainter.
  * @param {Region[]} regions @param {Viewport} view @param {Attributes} [attributes] */
 export const regionPaths = (regions, view, attributes = {}) => {
-  const densest = highest(regions.map((each) => each.density ?? 1));
+  const densest = highest(regions.map((region) => region.density ?? 1));
   return regions.map(({ outline, holes = [], density }) =>
     svg("path", {
       class: "region", d: pathOf([outline, ...(holes ?? [])], view), "fill-rule": "evenodd",
@@ -21,7 +21,7 @@ export const regionPaths = (regions, view, attributes = {}) => {
 };
 
 /** Every point of every outline. @param {Region[]} regions */
-export const pointsOf = (regions) => regions.flatMap((each) => each.outline);
+export const pointsOf = (regions) => regions.flatMap((region) => region.outline);
 
 /** @param {number} value */
 const round = (value) => Math.round(value * 100) / 100;

@@ -20,11 +20,11 @@ export const rowPicture = (
 ) => {
   const narrow = width < 560;
   const left = narrow ? 8 : 208;
-  const each = narrow ? ROW + 18 : ROW;
-  const bottom = 12 + rows.length * each + extraHeight;
+  const rowHeight = narrow ? ROW + 18 : ROW;
+  const bottom = 12 + rows.length * rowHeight + extraHeight;
   const height = bottom + 44;
   const axis = axisOf(...domain, left + 8, width - (narrow ? 10 : 70), narrow ? 4 : 7);
-  const frame = { top: 8, bottom, left, width, rowsEnd: 12 + rows.length * each };
+  const frame = { top: 8, bottom, left, width, rowsEnd: 12 + rows.length * rowHeight };
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "data-testid": testid,
     "aria-label": `${t(title)}: ${rows.map((row) => `${modelWords(row.model)} ${inWords(row)}`).join("; ")}`,
@@ -33,7 +33,7 @@ export const rowPicture = (
     extras?.(axis, frame),
     rows.map(
       (row, index) => oneRow(
-        row, axis, { narrow, width, left, y: 12 + index * each + (narrow ? 34 : ROW / 2), digits },
+        row, axis, { narrow, width, left, y: 12 + index * rowHeight + (narrow ? 34 : ROW / 2), digits },
       )
     ));
 };
@@ -41,8 +41,8 @@ export const rowPicture = (
 /** @param {Row} row @param {Axis} axis @param {{ narrow: boolean, width: number, left: number, y: number, digits: number }} where */
 const oneRow = ({ model, value, low, high }, axis, { narrow, width, left, y, digits }) => {
   const { colour, dash } = modelStyle(model);
-  /** @param {number} each */
-  const inside = (each) => axis.at(Math.min(axis.high, Math.max(axis.low, each)));
+  /** @param {number} value */
+  const inside = (value) => axis.at(Math.min(axis.high, Math.max(axis.low, value)));
   return svg("g", {},
     svg(
       "text", narrow ? { x: 8, y: y - 15 } : { x: left - 12, y: y + 4, "text-anchor": "end" },

@@ -24,7 +24,7 @@ export const stagesPicture = (body, field, foot, { width }) => {
   const columns = width < 520 ? 2 : 4;
   const panel = Math.floor((width - (columns - 1) * 12) / columns) - 18;
   const fastest = Math.max(
-    ...field.stages.flatMap((each) => each.velocities.map(([vx, vy]) => Math.hypot(vx, vy)))
+    ...field.stages.flatMap((stage) => stage.velocities.map(([vx, vy]) => Math.hypot(vx, vy)))
   );
   const reach = 0.16 * Math.min(panel, 300);
   return el("div", { class: `stages columns-${columns}`, "data-testid": "stages-picture" },
@@ -37,18 +37,18 @@ export const stagesPicture = (body, field, foot, { width }) => {
 const onePanel = (body, points, { name, share, velocities }, foot, { width, pixels }) => {
   const height = Math.min(320, Math.max(220, width * 1.3));
   const view = viewport(boxOf(
-    [...pointsOf(body.outline), ...(body.points ?? []), ...body.foot_positions.map((each) => [each, groundOf(body)])]
+    [...pointsOf(body.outline), ...(body.points ?? []), ...body.foot_positions.map((foot) => [foot, groundOf(body)])]
   ), {
     width, height, margin: { left: 26, right: 26, top: 26, bottom: 26 },
   });
   const floor = view.y(groundOf(body));
-  const [title, words] = STAGE_WORDS[name] ?? [name, ""];
+  const [title, description] = STAGE_WORDS[name] ?? [name, ""];
   const lands = foot === "right" ? 1 : 0;
   const foothold = body.foot_positions[name === "before" ? 1 - lands : lands];
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
-      "aria-label": t("{stage}: {description}. {share} of the kinetic energy remains.", { stage: title, description: words, share: percent(share) }),
+      "aria-label": t("{stage}: {description}. {share} of the kinetic energy remains.", { stage: title, description, share: percent(share) }),
     },
       groundLine(4, width - 4, floor),
       regionPaths(body.outline, view, { class: "region faint" }),
@@ -56,7 +56,7 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
       svg("g", { class: `stage-arrows ${name.replace(" ", "-")}` }, points.map(([x, y], index) =>
         arrow(view.x(x), view.y(y), velocities[index][0] * pixels, -velocities[index][1] * pixels)))),
     el(
-      "figcaption", {}, el("strong", {}, title), el("span", {}, words),
+      "figcaption", {}, el("strong", {}, title), el("span", {}, description),
       el("span", { class: "share" }, percent(share)),
     ));
 };

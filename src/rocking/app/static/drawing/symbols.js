@@ -43,8 +43,8 @@ export const arrow = (x, y, dx, dy, attributes = {}) => {
   const half = head * 0.45;
   return svg("path", {
     class: "arrow",
-    d: `M${place(x, y)}L${place(backX, backY)}M${place(tipX, tipY)}`
-      + `L${place(backX - half * uy, backY + half * ux)}L${place(backX + half * uy, backY - half * ux)}Z`,
+    d: `M${coordinates(x, y)}L${coordinates(backX, backY)}M${coordinates(tipX, tipY)}`
+      + `L${coordinates(backX - half * uy, backY + half * ux)}L${coordinates(backX + half * uy, backY - half * ux)}Z`,
     ...attributes,
   });
 };
@@ -64,12 +64,12 @@ export const arc = (x, y, radius, angle) => {
 
 /** Words beside something, on a halo so that they stay readable over lines.
  * @param {number} x @param {number} y @param {string} text @param {Attributes} [attributes] */
-export const words = (x, y, text, attributes = {}) => svg(
+export const label = (x, y, text, attributes = {}) => svg(
   "text", { x: r(x), y: r(y), class: "halo", ...attributes }, text,
 );
 
 /** @param {number} x @param {number} y */
-const place = (x, y) => `${r(x)} ${r(y)}`;
+const coordinates = (x, y) => `${r(x)} ${r(y)}`;
 
 /** @param {number} value */
 const r = (value) => Math.round(value * 10) / 10;

@@ -43,14 +43,14 @@ export const boxOf = (points) => {
 export const roundStep = (span, count) => {
   const rough = span / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  return [1, 2, 5, 10].map((each) => each * power).find((each) => each >= rough) ?? 10 * power;
+  return [1, 2, 5, 10].map((mantissa) => mantissa * power).find((candidate) => candidate >= rough) ?? 10 * power;
 };
 
 /** Multiples of a step inside a range. @param {number} low @param {number} high @param {number} step */
 export const multiples = (low, high, step) => {
-  const found = [];
+  const values = [];
   for (
     let index = Math.ceil(low / step - 1e-9); index * step <= high + step * 1e-9; index += 1
-  ) found.push(index * step);
-  return found;
+  ) values.push(index * step);
+  return values;
 };

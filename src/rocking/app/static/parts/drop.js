@@ -7,7 +7,7 @@ import { Button } from "/parts/fields.js";
 /** A place for files; `error` is what is wrong with it; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
  * @param {{ label: string, name?: string, accept?: string, many?: boolean, folders?: boolean, error?: string, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
 export const Drop = ({ label, name = label, accept, many = false, folders = many, error = "", on, testid, children, ...more }) => {
-  const [one, folder] = [useRef(null), useRef(null)];
+  const [fileInput, folder] = [useRef(null), useRef(null)];
   const about = useRef(freshId("drop")).current;
   /** @param {boolean} over */
   const mark = (over) => (/** @type {DragEvent & { currentTarget: HTMLElement }} */ event) => {
@@ -33,11 +33,11 @@ export const Drop = ({ label, name = label, accept, many = false, folders = many
     <div class=${`drop ${error ? "wrong" : ""}`} onDragOver=${mark(true)} onDragLeave=${mark(false)} onDrop=${drop} ...${more}>
       <p>${label}</p>
       <div class="toolbar">
-        <${Button} aria-describedby=${about} onClick=${() => one.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
+        <${Button} aria-describedby=${about} onClick=${() => fileInput.current.click()}>${many ? "Choose files" : "Choose a file"}<//>
         ${folders && html`<${Button} onClick=${() => folder.current.click()}>Choose a folder<//>
           <input ref=${folder} class="visually-hidden" type="file" tabindex="-1" aria-label="A folder" webkitdirectory onChange=${chosen} />`}
       </div>
-      <input ref=${one} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} data-testid=${testid}
+      <input ref=${fileInput} class="visually-hidden" type="file" tabindex="-1" aria-label=${name} accept=${accept} multiple=${many} data-testid=${testid}
         onChange=${chosen} />
       <p id=${about} class="field-help field-error">${error}</p>
       ${children}
@@ -51,8 +51,8 @@ const inFolders = async (entries) => (await Promise.all(entries.map(async (entry
   const reader = entry.createReader();
   /** @returns {Promise<File[]>} */
   const inside = async () => {
-    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
-    return some.length ? [...await inFolders(some), ...await inside()] : [];
+    const batch = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    return batch.length ? [...await inFolders(batch), ...await inside()] : [];
   };
   return inside();
 }))).flat();

@@ -29,14 +29,14 @@ const useTyped = (now, written, says) => {
   return [held, type];
 };
 
-/** What was refused of a form: the `key` of the field that it is about, and `words`; it is `past` once that was changed. */
+/** What was refused of a form: the `key` of the field that it is about, and its `text`; it is `past` once that was changed. */
 export const Refused = createContext({});
 
 /** What was refused of a field, until it is changed. @param {string} [name] @returns {[string, () => void]} */
 export const useRefused = (name) => {
   const refused = useContext(Refused);
   const stands = name && refused.key === name;
-  return [stands && !refused.past ? refused.words : "", () => stands && (refused.past = true)];
+  return [stands && !refused.past ? refused.text : "", () => stands && (refused.past = true)];
 };
 
 /** A box of one's own with the label and the words of a field.
@@ -59,7 +59,7 @@ const TURNS = { ArrowUp: 1, ArrowDown: -1 };
  * optional one that was emptied null; one that `moves` is not 0; what is wrong with one that is `aside` is no fault of the inputs.
  * @param {NumberProps} props */
 export const NumberField = ({
-  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, whole, moves, optional, aside = false,
+  label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, integer, moves, optional, aside = false,
   ...more
 }) => {
   const id = useId("number");
@@ -71,7 +71,7 @@ export const NumberField = ({
   useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
   /** @param {string} text */
   const take = (text) => {
-    const { fault = "", given } = checked(text, { min, above, max, whole, moves, optional, unit });
+    const { fault = "", given } = checked(text, { min, above, max, integer, moves, optional, unit });
     type(text, fault);
     if (!fault) put(given);
   };
@@ -90,13 +90,13 @@ export const NumberField = ({
 /** A line of text, or as `tag` says a "textarea"; `type` is that of its box.
  * @param {FieldProps<any> & { id?: string, tag?: string, type?: string }} props */
 export const Field = ({
-  label, id: given, name, unit, value, on, help, error: told = "", kind, hidden, tag = "input", type = "text", ...more
+  label, id: givenId, name, unit, value, on, help, error: message = "", kind, hidden, tag = "input", type = "text", ...more
 }) => {
   const own = useId("field");
-  const id = given ?? own;
+  const id = givenId ?? own;
   const [now, put] = bound(value, on);
   const [refused, changed] = useRefused(name);
-  const error = told || refused;
+  const error = message || refused;
   const [held, typed] = useTyped(now ?? "", String, saysText);
   /** @param {any} event */
   const take = ({ target }) => {
@@ -110,10 +110,10 @@ export const Field = ({
 
 /** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen; own: users name the options.
  * @param {FieldProps<any> & { chosen?: unknown, own?: boolean, options: [any, string][] }} props */
-export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: told = "", hidden, ...more }) => {
+export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: message = "", hidden, ...more }) => {
   const id = useId("choice");
   const [refused, changed] = useRefused(name);
-  const error = told || refused;
+  const error = message || refused;
   const [now, put] = bound(value, on);
   const shown = String(chosen ?? now ?? "");
   /** @param {any} event */
@@ -124,7 +124,7 @@ export const Choice = ({ label, name, value, on, chosen, options, own = false, h
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
     <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
-      ${options.map(([key, words]) => html`<option key=${key} value=${String(key)} translate=${own ? "no" : null}>${words}</option>`)}</select><//>`;
+      ${options.map(([key, text]) => html`<option key=${key} value=${String(key)} translate=${own ? "no" : null}>${text}</option>`)}</select><//>`;
 };
 
 /** A choice of one from a few [value, words], all in sight.
@@ -133,8 +133,8 @@ export const Segmented = ({ label, value, on, options, hidden }) => {
   const name = useId("choice");
   const [now, put] = bound(value, on);
   return html`<fieldset class="segmented" hidden=${hidden}><legend>${label}</legend><div class="segments">
-    ${options.map(([key, words]) => html`<label class="segment" key=${key}>
-      <input type="radio" name=${name} value=${String(key)} checked=${key === now} onChange=${() => put(key)} /><span>${words}</span></label>`)}
+    ${options.map(([key, text]) => html`<label class="segment" key=${key}>
+      <input type="radio" name=${name} value=${String(key)} checked=${key === now} onChange=${() => put(key)} /><span>${text}</span></label>`)}
   </div></fieldset>`;
 };
 
@@ -153,12 +153,12 @@ export const Switch = ({ label, value, on, help, hidden }) => {
 export const Slider = ({ label, unit = "", value, on, min, max, step, log = false, help, hidden }) => {
   const id = useId("slider");
   const [now, put] = bound(value, on);
-  const scale = log ? logarithmic(min, max) : { low: min, high: max, step: step ?? "any", from: (/** @type {number} */ given) => given, to: tidy };
-  const words = quantity(now, unit);
-  const beside = html`<output for=${id} class="slider-value">${words}</output>`;
+  const scale = log ? logarithmic(min, max) : { low: min, high: max, step: step ?? "any", from: (/** @type {number} */ value) => value, to: tidy };
+  const text = quantity(now, unit);
+  const beside = html`<output for=${id} class="slider-value">${text}</output>`;
   return html`<${Frame} id=${id} label=${label} beside=${beside} help=${help} kind="field-slider" hidden=${hidden}>
     <input ...${saidOf(id)} type="range" min=${scale.low} max=${scale.high} step=${scale.step} value=${scale.from(now)}
-      aria-valuetext=${words} onInput=${({ target }) => put(scale.to(Number(target.value)))} /><//>`;
+      aria-valuetext=${text} onInput=${({ target }) => put(scale.to(Number(target.value)))} /><//>`;
 };
 
 /** @type {{ [word: string]: string | undefined }} */
@@ -182,8 +182,8 @@ const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
 
 /** A text with a full stop at its end, in the language of the page; the catalogue may have it as a sentence. @param {string} text */
 export const stopped = (text) => {
-  const whole = [`${text}.`, `${capital(text)}.`].find((form) => t(form) !== form);
-  if (whole) return t(whole);
+  const sentenceText = [`${text}.`, `${capital(text)}.`].find((form) => t(form) !== form);
+  if (sentenceText) return t(sentenceText);
   return `${t(text)}${/[.!?\u3002\uff1f]$/.test(t(text)) ? "" : language === "zh" ? "\u3002" : "."}`;
 };
 
@@ -212,9 +212,9 @@ export const Card = ({ title, kind = "", children, ...more }) => {
 const SIGNS = { info: "i", warning: "!", error: "\u2715", good: "\u2713" };
 
 /** A sentence with a sign: kind is "info", "warning", "error" or "good".
- * @param {{ words: string, kind?: string, [more: string]: any }} props */
-export const Note = ({ words, kind = "info", ...more }) => html`
-  <p class=${`note ${kind}`} ...${more}><span class="sign" aria-hidden="true">${SIGNS[kind]}</span><span>${words}</span></p>`;
+ * @param {{ text: string, kind?: string, [more: string]: any }} props */
+export const Note = ({ text, kind = "info", ...more }) => html`
+  <p class=${`note ${kind}`} ...${more}><span class="sign" aria-hidden="true">${SIGNS[kind]}</span><span>${text}</span></p>`;
 
 /** @param {string} text @param {number | null} now */
 const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(text) === now : now === null);
@@ -222,7 +222,7 @@ const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(tex
 const saysText = (text, now) => text.trim() === now;
 
 /** @param {string} text @param {Limits & { unit: string }} limits @returns {{ given?: number | null, fault?: string }} */
-const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
+const checked = (text, { min, above, max, integer, moves, optional, unit }) => {
   if (!text.trim()) return optional ? { given: null } : { fault: "Enter a number." };
   const given = parseNumber(text);
   if (given === null) return { fault: "This is not a number." };
@@ -232,9 +232,9 @@ const checked = (text, { min, above, max, whole, moves, optional, unit }) => {
     [min !== undefined && min !== null && given < min, "At least {limit}.", min],
     [max !== undefined && max !== null && given > max, "At most {limit}.", max],
   ]).find(([fails]) => fails);
-  if (whole && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
+  if (integer && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
   if (wrong) return { fault: t(wrong[1], { limit: quantity(wrong[2], unit) }) };
-  return whole && !Number.isInteger(given) ? { fault: "Enter a whole number." } : { given };
+  return integer && !Number.isInteger(given) ? { fault: "Enter a whole number." } : { given };
 };
 
 // "1,000" is one to us and a thousand to others: say how it was read.
@@ -254,5 +254,5 @@ const logarithmic = (min, max) => ({
   low: 0, high: 1000, step: 1,
   /** @param {number} value */
   from: (value) => (1000 * Math.log(value / min)) / Math.log(max / min),
-  to: (place) => tidy(min * (max / min) ** (place / 1000), 4),
+  to: (position) => tidy(min * (max / min) ** (position / 1000), 4),
 });

@@ -5,21 +5,21 @@ import { fill } from "/app/dom.js";
 
 /** A node that was made elsewhere. @param {{ node: Child, [more: string]: any }} props */
 export const Made = ({ node, ...more }) => {
-  const place = useRef(null);
-  useLayoutEffect(() => void fill(place.current, node), [node]);
-  return html`<div ref=${place} ...${more}></div>`;
+  const element = useRef(null);
+  useLayoutEffect(() => void fill(element.current, node), [node]);
+  return html`<div ref=${element} ...${more}></div>`;
 };
 
 /** A picture in the width that it has, drawn by `draw(...of, width)`.
  * @param {{ draw: (...given: any[]) => Child, of: any[] }} props */
 export const Drawn = ({ draw, of }) => {
-  const place = useRef(null);
+  const element = useRef(null);
   const width = useSignal(0);
   useLayoutEffect(() => {
     const watcher = new ResizeObserver(([entry]) => (width.value = Math.floor(entry.contentRect.width) || width.value));
-    watcher.observe(place.current);
+    watcher.observe(element.current);
     return () => watcher.disconnect();
   }, []);
-  useLayoutEffect(() => void (width.value && fill(place.current, draw(...of, width.value))), [width.value, ...of]);
-  return html`<div ref=${place} class="responsive"></div>`;
+  useLayoutEffect(() => void (width.value && fill(element.current, draw(...of, width.value))), [width.value, ...of]);
+  return html`<div ref=${element} class="responsive"></div>`;
 };

@@ -15,7 +15,7 @@ const SENTENCE = 40; // letters, from which a cell has room for several words
  * @param {{ columns: (string | Column)[], rows: any[][], caption?: string, csv?: () => unknown, testid?: string, copied?: () => unknown[][], actions?: any }} props */
 export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows, actions }) => {
   const id = useRef(freshId("table")).current;
-  const heads = columns.map((each) => (typeof each === "string" ? { label: each } : each));
+  const heads = columns.map((column) => (typeof column === "string" ? { label: column } : column));
   return html`
     <div class="table-block">
       <div class="table-head"><p id=${id} class="caption">${caption}</p><div class="toolbar">
@@ -45,7 +45,7 @@ const Cell = ({ value, digits, numeric, nowrap, first }) => {
 export const Rows = ({ caption, head, rows }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>
     <table><caption class="visually-hidden">${caption}</caption>
-      <thead><tr>${head.map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+      <thead><tr>${head.map((text) => html`<th scope="col" key=${text}>${text}</th>`)}</tr></thead>
       <tbody>${rows.map((row, k) => html`<tr key=${k}>
         ${row.map((cell, j) => {
           const [text, kind] = Array.isArray(cell) ? cell : [cell, null];

@@ -8,9 +8,9 @@ import { t, userText } from "/app/words.js";
 /** @type {{ [state: string]: string }} */
 const SAVED = { saved: "saved", saving: "saving \u2026", unsaved: "not saved" };
 
-/** Show the line, and keep it up to date. @param {HTMLElement} place @param {Projects} projects @param {App} app */
-export const mountProject = (place, projects, app) => {
-  render(html`<${Bar} projects=${projects} app=${app} />`, place);
+/** Show the line, and keep it up to date. @param {HTMLElement} holder @param {Projects} projects @param {App} app */
+export const mountProject = (holder, projects, app) => {
+  render(html`<${Bar} projects=${projects} app=${app} />`, holder);
   document.addEventListener("keydown", (event) => {
     const way = wayOf(event);
     const elsewhere = event.defaultPrevented || isTyping(event.target) || document.querySelector("dialog[open]");

@@ -8,10 +8,10 @@ import { PARTS } from "/project/saving.js";
 const FEW = 12;
 
 // What a state was made by: the parts that were changed, or words.
-/** @param {string} words */
-const changed = (words) => {
-  const parts = words.split(", ").map((key) => PARTS[key]);
-  return parts.includes(undefined) ? t(words) : t("{parts} changed", { parts: parts.map((part) => t(String(part))).join(", ") });
+/** @param {string} text */
+const changed = (text) => {
+  const parts = text.split(", ").map((key) => PARTS[key]);
+  return parts.includes(undefined) ? t(text) : t("{parts} changed", { parts: parts.map((label) => t(String(label))).join(", ") });
 };
 
 /** The dialog; `handle.current.openIt()` opens it.
@@ -63,14 +63,14 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     event.target.value = "";
     if (file) await act(() => projects.bring(file))();
   };
-  /** @param {Server.ProjectFacts} one */
-  const take = (one) => act(() => app.download(`projects/${one.id}/file`, undefined, "project.zip"));
-  /** @param {Server.ProjectFacts} one */
-  const remove = (one) => act(async () => {
-    await app.call(`projects/${one.id}`, { method: "DELETE" });
-    app.say(t("{name} is deleted. You can restore it below.", { name: userText(one.name) }));
-    if (one.id !== projects.here.value.id) return;
-    const next = lists.value.projects.find((each) => each.id !== one.id);
+  /** @param {Server.ProjectFacts} project */
+  const take = (project) => act(() => app.download(`projects/${project.id}/file`, undefined, "project.zip"));
+  /** @param {Server.ProjectFacts} project */
+  const remove = (project) => act(async () => {
+    await app.call(`projects/${project.id}`, { method: "DELETE" });
+    app.say(t("{name} is deleted. You can restore it below.", { name: userText(project.name) }));
+    if (project.id !== projects.here.value.id) return;
+    const next = lists.value.projects.find((other) => other.id !== project.id);
     await (next ? projects.open(next.id) : projects.begin("New project"));
   });
   const states = all.value ? lists.value.states : lists.value.states.slice(0, FEW);
@@ -85,16 +85,16 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         <p>Projects are kept on this computer, with their history.</p>
         <${NameForm} for="rename" label="Name of the open project" value=${here.name} text="Rename" onSubmit=${named} />
         <ul class="project-list" aria-label="Projects">
-          ${lists.value.projects.map((one) => html`
-            <li key=${one.id} data-here=${one.id === here.id}>
-              <p><strong translate=${false}>${one.name}</strong><span class="quiet">${dateTime(one.changed)}</span></p>
+          ${lists.value.projects.map((project) => html`
+            <li key=${project.id} data-here=${project.id === here.id}>
+              <p><strong translate=${false}>${project.name}</strong><span class="quiet">${dateTime(project.changed)}</span></p>
               <div class="toolbar">
-                ${one.id === here.id
+                ${project.id === here.id
                   ? html`<span class="project-open">open</span>`
-                  : html`<${Act} text="Open" one=${one} go=${act(() => projects.open(one.id), true)} />`}
-                <${Act} text="Copy" one=${one} go=${act(() => projects.copy(one.id, t("{name} (copy)", { name: userText(one.name) }), one.name))} />
-                <${Act} text="Export" one=${one} go=${take(one)} />
-                <${Act} text="Delete" one=${one} go=${remove(one)} />
+                  : html`<${Act} text="Open" one=${project} go=${act(() => projects.open(project.id), true)} />`}
+                <${Act} text="Copy" one=${project} go=${act(() => projects.copy(project.id, t("{name} (copy)", { name: userText(project.name) }), project.name))} />
+                <${Act} text="Export" one=${project} go=${take(project)} />
+                <${Act} text="Delete" one=${project} go=${remove(project)} />
               </div>
             </li>`)}
         </ul>
@@ -106,13 +106,13 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         </div>
         <h2>${t("History of {name}", { name: userText(here.name) })}</h2>
         <ul class="project-list states" aria-label="History">
-          ${states.map((one) => html`
-            <li key=${one.number}>
-              <p><span>${changed(one.words)}</span><span class="quiet">${dateTime(one.time)}</span></p>
-              ${one.here
+          ${states.map((state) => html`
+            <li key=${state.number}>
+              <p><span>${changed(state.words)}</span><span class="quiet">${dateTime(state.time)}</span></p>
+              ${state.here
                 ? html`<span class="project-open">now</span>`
-                : html`<${Button} aria-label=${t("Restore state {number}: {change}", { number: one.number, change: changed(one.words) })}
-                    onClick=${act(() => projects.restore(one.number))}>Restore<//>`}
+                : html`<${Button} aria-label=${t("Restore state {number}: {change}", { number: state.number, change: changed(state.words) })}
+                    onClick=${act(() => projects.restore(state.number))}>Restore<//>`}
             </li>`)}
         </ul>
         ${lists.value.states.length > FEW && !all.value && html`
@@ -122,11 +122,11 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         ${lists.value.deleted.length > 0 && html`
           <h2>Deleted</h2>
           <ul class="project-list" aria-label="Deleted">
-            ${lists.value.deleted.map((one) => html`
-              <li key=${one.id}>
-                <p><strong translate=${false}>${one.name}</strong><span class="quiet">${dateTime(one.deleted ?? "")}</span></p>
-                <${Act} text="Restore" one=${one}
-                  go=${act(() => app.call(`projects/${one.id}/back`, { method: "POST" }))} />
+            ${lists.value.deleted.map((project) => html`
+              <li key=${project.id}>
+                <p><strong translate=${false}>${project.name}</strong><span class="quiet">${dateTime(project.deleted ?? "")}</span></p>
+                <${Act} text="Restore" one=${project}
+                  go=${act(() => app.call(`projects/${project.id}/back`, { method: "POST" }))} />
               </li>`)}
           </ul>`}
       </div>`}
@@ -138,11 +138,11 @@ const Act = ({ text, one, go }) => html`
   <${Button} aria-label=${`${t(text)}: ${one.name}`} onClick=${go}>${text}<//>`;
 
 /** @param {{ for: string, label: string, value: string, text: string, onSubmit: (event: any) => unknown }} props */
-const NameForm = ({ for: what, label, value, text, onSubmit }) => html`
-  <form class="project-form" data-for=${what} onSubmit=${onSubmit}>
+const NameForm = ({ for: purpose, label, value, text, onSubmit }) => html`
+  <form class="project-form" data-for=${purpose} onSubmit=${onSubmit}>
     <div class="field">
-      <label for=${`project-${what}`}>${label}</label>
-      <input id=${`project-${what}`} name="name" type="text" maxlength="200" autocomplete="off" defaultValue=${value}
+      <label for=${`project-${purpose}`}>${label}</label>
+      <input id=${`project-${purpose}`} name="name" type="text" maxlength="200" autocomplete="off" defaultValue=${value}
         key=${value} />
     </div>
     <${Button} type="submit">${text}<//>

@@ -44,9 +44,9 @@ export const createProjects = (app, first) => {
     return { inputs: aside?.mine ? aside.inputs : app.inputs.get(), ...(Object.keys(forms).length ? { forms } : {}) };
   };
   /** @param {Server.ProjectFacts & { document?: any }} facts */
-  const known = (facts) => {
-    const { document, ...rest } = facts;
-    here.value = rest;
+  const adopt = (facts) => {
+    const { document, ...fields } = facts;
+    here.value = fields;
     note();
     return document;
   };
@@ -72,8 +72,8 @@ export const createProjects = (app, first) => {
     else show(document);
   };
   let leaving = false; // what is sent then outlives the page
-  /** @param {string} what @param {unknown} [json] @returns {Promise<any>} */
-  const ask = (what, json) => app.call(`projects/${here.value.id}${what}`, { json, keepalive: leaving });
+  /** @param {string} suffix @param {unknown} [json] @returns {Promise<any>} */
+  const ask = (suffix, json) => app.call(`projects/${here.value.id}${suffix}`, { json, keepalive: leaving });
   // One after the other: every change names the version that it follows.
   /** @type {<Of>(work: () => Promise<Of>) => Promise<Of>} */
   const inLine = (work) => {
@@ -85,16 +85,16 @@ export const createProjects = (app, first) => {
     clearTimeout(timer);
     if (!changed.size || clash.value) return;
     const document = own();
-    const words = [...changed].join(", ");
+    const description = [...changed].join(", ");
     const mine = [...changed];
     changed.clear();
     saving.value = "saving";
     sent = [...sent.slice(-3), document];
     note();
     try {
-      const facts = await ask("", { version: here.value.version, document, words });
+      const facts = await ask("", { version: here.value.version, document, words: description });
       [sent, refused, last] = [[], false, document];
-      known(facts);
+      adopt(facts);
       saving.value = changed.size ? "saving" : "saved";
       tell();
     } catch (error) {
@@ -114,7 +114,7 @@ export const createProjects = (app, first) => {
       theirs = { ...theirs, ...(await app.call(`projects/${theirs.id}/back`, { method: "POST" })) };
       app.say("The project was deleted elsewhere. It is restored with your changes.");
       if (alone) {
-        known(theirs);
+        adopt(theirs);
         save(); // after this one, which waits for what is returned here
         return;
       }
@@ -128,7 +128,7 @@ export const createProjects = (app, first) => {
     sent = [];
     if (all) changed.clear();
     last = theirs.document;
-    known(theirs);
+    adopt(theirs);
     saving.value = all ? "saved" : "saving";
     if (!all) save(); // as above
   };
@@ -138,9 +138,9 @@ export const createProjects = (app, first) => {
   const join = (document) => {
     const [before, mine, theirs] = [last, own(), document].map(partsOf);
     if (!last || !inputsOf(document?.inputs) || app.inputs.aside()?.mine) return false;
-    const keys = [...new Set([before, mine, theirs].flatMap((each) => Object.keys(each)))];
-    /** @param {{ [key: string]: any }} one @param {{ [key: string]: any }} other */
-    const differs = (one, other) => keys.filter((key) => JSON.stringify(one[key]) !== JSON.stringify(other[key]));
+    const keys = [...new Set([before, mine, theirs].flatMap((parts) => Object.keys(parts)))];
+    /** @param {{ [key: string]: any }} first @param {{ [key: string]: any }} other */
+    const differs = (first, other) => keys.filter((key) => JSON.stringify(first[key]) !== JSON.stringify(other[key]));
     const [apart, there] = [differs(mine, theirs), differs(before, theirs)];
     if (differs(before, mine).some((key) => there.includes(key) && apart.includes(key))) return false;
     taking = true;
@@ -153,14 +153,14 @@ export const createProjects = (app, first) => {
     return true;
   };
 
-  /** @param {string} what */
-  const step = (what) => async () => {
+  /** @param {string} direction */
+  const step = (direction) => async () => {
     await save();
     return inLine(async () => {
       try {
-        if (refused && what === "redo") return;
+        if (refused && direction === "redo") return;
         // What cannot be saved is the last state: to undo it is to show the one before, which is there.
-        showUnlessTyped(known(await (refused ? ask("") : ask(`/${what}`, { version: here.value.version }))));
+        showUnlessTyped(adopt(await (refused ? ask("") : ask(`/${direction}`, { version: here.value.version }))));
         tell();
       } catch (error) {
         app.say(error.message, "error");
@@ -175,7 +175,7 @@ export const createProjects = (app, first) => {
     return inLine(async () => {
       const facts = await get();
       if (changed.size) save();
-      else show(known(facts));
+      else show(adopt(facts));
     });
   };
   /** @param {string} id */
@@ -203,7 +203,7 @@ export const createProjects = (app, first) => {
       const theirs = await ask("");
       // What was typed meanwhile follows the version before: saving it joins both, or asks.
       if (changed.size) save();
-      else show(known(theirs));
+      else show(adopt(theirs));
     }).catch(() => {}); // it is looked at again with the next change
   });
   addEventListener("pagehide", () => {
@@ -219,8 +219,8 @@ export const createProjects = (app, first) => {
      * @type {<Of>(work: Promise<Of>) => Promise<Of>} */
     within: async (work) => {
       const { id } = here.value;
-      const found = await work;
-      if (id === here.value.id) return found;
+      const result = await work;
+      if (id === here.value.id) return result;
       throw new Error("Another project was opened before this action finished. Repeat the action.");
     },
     undo: step("undo"),
@@ -238,7 +238,7 @@ export const createProjects = (app, first) => {
     rename: async (name) => {
       await save();
       return inLine(async () => {
-        known(await ask("/name", { version: here.value.version, name }));
+        adopt(await ask("/name", { version: here.value.version, name }));
         tell();
       });
     },
@@ -246,7 +246,7 @@ export const createProjects = (app, first) => {
     restore: async (state) => {
       await save();
       return inLine(async () => {
-        showUnlessTyped(known(await ask("/restore", { version: here.value.version, state })));
+        showUnlessTyped(adopt(await ask("/restore", { version: here.value.version, state })));
         tell();
       });
     },
@@ -259,7 +259,7 @@ export const createProjects = (app, first) => {
         const facts = keepMine
           ? await app.call("projects", { json: { name: t("{name} (mine)", { name: userText(theirs.name) }), document: own() } }) : theirs;
         clash.value = null;
-        show(known(facts));
+        show(adopt(facts));
       } catch (error) {
         app.say(t("Not saved: {reason}", { reason: error.message }), "error");
       }
@@ -269,33 +269,33 @@ export const createProjects = (app, first) => {
     start: async (fromLink) => {
       const { projects } = await app.call("projects");
       const kept = remembered();
-      const id = [kept?.id, ...projects.map((each) => each.id)].find((each) =>
-        projects.some((one) => one.id === each));
+      const id = [kept?.id, ...projects.map((project) => project.id)].find((candidate) =>
+        projects.some((project) => project.id === candidate));
       if (!id) {
-        known(await app.call("projects", { json: { name: "My first project", document: own() } }));
+        adopt(await app.call("projects", { json: { name: "My first project", document: own() } }));
         last = own();
         return;
       }
       const mine = own();
-      const whole = await app.call(`projects/${id}`);
+      const project = await app.call(`projects/${id}`);
       // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
-      if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, whole.document)) {
-        const ours = whole.version === kept.version || isOwn(whole, kept.version, kept.sent);
-        last = ours ? /** @type {Own} */ (whole.document) : kept.last ?? null;
-        const joined = ours || join(whole.document);
-        if (joined) last = /** @type {Own} */ (whole.document);
+      if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, project.document)) {
+        const ours = project.version === kept.version || isOwn(project, kept.version, kept.sent);
+        last = ours ? /** @type {Own} */ (project.document) : kept.last ?? null;
+        const joined = ours || join(project.document);
+        if (joined) last = /** @type {Own} */ (project.document);
         changed.add("inputs");
-        known(joined ? whole : { ...whole, version: kept.version }); // another reload asks again
+        adopt(joined ? project : { ...project, version: kept.version }); // another reload asks again
         if (joined) await save();
-        else clash.value = { theirs: whole, mine };
+        else clash.value = { theirs: project, mine };
         return;
       }
-      if (id === kept?.id && app.inputs.wereKept && same(mine, whole.document)) {
-        known(whole);
+      if (id === kept?.id && app.inputs.wereKept && same(mine, project.document)) {
+        adopt(project);
         last = mine;
         return;
       }
-      show(known(whole));
+      show(adopt(project));
       if (fromLink) app.inputs.lend(fromLink, "a link");
     },
   };
@@ -304,7 +304,7 @@ export const createProjects = (app, first) => {
 // What was saved without this tab having heard of it is nobody else's.
 /** @param {Server.WholeProject} theirs @param {number} version @param {Own[]} [sent] */
 const isOwn = (theirs, version, sent = []) =>
-  theirs.version === version + 1 && sent.some((each) => same(each, theirs.document));
+  theirs.version === version + 1 && sent.some((document) => same(document, theirs.document));
 
 // The parts of a document that are changed on their own: tables of the inputs, forms of views.
 /** @param {any} document @returns {{ [key: string]: any }} */
@@ -316,7 +316,7 @@ const partsOf = (document) => Object.fromEntries(
 // The order of keys says nothing.
 /** @param {any} one @param {any} other */
 const same = (one, other) => {
-  const [first, second] = [one, other].map((each) => JSON.stringify([inputsOf(each?.inputs), formsOf(each?.forms)]));
+  const [first, second] = [one, other].map((document) => JSON.stringify([inputsOf(document?.inputs), formsOf(document?.forms)]));
   return first === second;
 };
 

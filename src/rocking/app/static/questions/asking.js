@@ -26,7 +26,7 @@ export const createQuestions = (app, ...commands) => {
 
   const look = async () => {
     const { questions } = await app.call("questions");
-    all.value = questions.filter((each) => commands.includes(each.command) && each.project === here());
+    all.value = questions.filter((question) => commands.includes(question.command) && question.project === here());
   };
   /** @param {string} id @param {number} [mine] @param {number} [pause] */
   const follow = async (id, mine = (ticket += 1), pause = SOON) => {
@@ -43,7 +43,7 @@ export const createQuestions = (app, ...commands) => {
   /** @param {any} error */
   const tell = (error) => app.say(error.message, "error");
   /** @type {<Given extends any[]>(work: (...given: Given) => Promise<unknown>) => (...given: Given) => Promise<unknown>} */
-  const safely = (work) => (...given) => work(...given).catch(tell);
+  const safely = (work) => (...args) => work(...args).catch(tell);
 
   return {
     app, shown, all, busy,
@@ -56,12 +56,12 @@ export const createQuestions = (app, ...commands) => {
       if (!shown.value && all.value.length) await follow(all.value[0].id);
     }),
     ask: safely(async (tables, files, name, { command = commands[0], format = "", project = here() } = {}) => {
-      const place = here();
+      const projectId = here();
       shown.value = null;
       await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
-      if (place !== here()) return; // it stands in the project where it was asked
+      if (projectId !== here()) return; // it stands in the project where it was asked
       mine = question.id;
       shown.value = { ...question, answer: null, toml: "" };
       await follow(question.id);
@@ -108,10 +108,10 @@ const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : 
 /** The motion of the inputs as a question has it, and the files that it needs. @param {Server.Inputs} inputs */
 export const motionOf = (inputs) => {
   if (!inputs.motion) return null;
-  const { record, file_name: name, ...rest } = inputs.motion;
-  if (!record) return { tables: { motion: rest }, files: {} };
+  const { record, file_name: name, ...keys } = inputs.motion;
+  if (!record) return { tables: { motion: keys }, files: {} };
   const called = plainName(name, record);
-  return { tables: { motion: { record: called, ...rest } }, files: { [called]: record } };
+  return { tables: { motion: { record: called, ...keys } }, files: { [called]: record } };
 };
 
 /** @param {string | null | undefined} name @param {string} record */

@@ -23,17 +23,17 @@ export const record = async () => {
 
 /** @param {Float32Array[]} pieces @param {number} rate */
 const wave = (pieces, rate) => {
-  const count = pieces.reduce((sum, each) => sum + each.length, 0);
+  const count = pieces.reduce((sum, piece) => sum + piece.length, 0);
   const view = new DataView(new ArrayBuffer(44 + 2 * count));
   /** @param {number} at @param {string} text */
-  const words = (at, text) => [...text].forEach((mark, k) => view.setUint8(at + k, mark.charCodeAt(0)));
-  words(0, "RIFF");
+  const putText = (at, text) => [...text].forEach((mark, k) => view.setUint8(at + k, mark.charCodeAt(0)));
+  putText(0, "RIFF");
   view.setUint32(4, 36 + 2 * count, true);
-  words(8, "WAVEfmt ");
+  putText(8, "WAVEfmt ");
   for (const [at, value, bytes] of [
     [16, 16, 4], [20, 1, 2], [22, 1, 2], [24, rate, 4], [28, 2 * rate, 4], [32, 2, 2], [34, 16, 2],
   ]) view[bytes === 4 ? "setUint32" : "setUint16"](at, value, true);
-  words(36, "data");
+  putText(36, "data");
   view.setUint32(40, 2 * count, true);
   let at = 44;
   for (const piece of pieces) {

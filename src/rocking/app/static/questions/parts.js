@@ -13,10 +13,10 @@ import { dateTime, t, userText } from "/app/words.js";
 export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).current;
 
 /** The keys that were filled in, as a table has them; what is no number is left for the server to refuse.
- * @param {{ [key: string]: string }} texts @param {{ [key: string]: Server.KeyFacts }} known */
-export const filled = (texts, known) => Object.fromEntries(
-  Object.entries(texts).filter(([key, text]) => known[key] && typeof text === "string" && text.trim())
-    .map(([key, text]) => [key, valueOf(text.trim(), known[key].kind)]),
+ * @param {{ [key: string]: string }} texts @param {{ [key: string]: Server.KeyFacts }} facts */
+export const filled = (texts, facts) => Object.fromEntries(
+  Object.entries(texts).filter(([key, text]) => facts[key] && typeof text === "string" && text.trim())
+    .map(([key, text]) => [key, valueOf(text.trim(), facts[key].kind)]),
 );
 /** @param {string} text @param {string} kind */
 const valueOf = (text, kind) => {
@@ -25,7 +25,7 @@ const valueOf = (text, kind) => {
   if (kind === "numbers") return numbersOf(text) ?? text;
   if (!kind.includes("number")) return text;
   if (!kind.startsWith("list")) return parseNumber(text) ?? text;
-  return partsOf(text).map((part) => parseNumber(part) ?? part);
+  return partsOf(text).map((item) => parseNumber(item) ?? item);
 };
 /** @param {string} text */
 const apart = (text) => text.trim().split(/\s*;\s*|,\s+|\s+/);
@@ -34,8 +34,8 @@ const partsOf = (text) => (apart(text).length > 1 ? apart(text) : text.split(","
 // One number, or several, which blanks too hold apart; null where something is none.
 /** @param {string} text */
 const numbersOf = (text) => {
-  const found = (apart(text).length > 1 ? null : parseNumber(text)) ?? partsOf(text).map(parseNumber);
-  return Array.isArray(found) && found.includes(null) ? null : found;
+  const numbers = (apart(text).length > 1 ? null : parseNumber(text)) ?? partsOf(text).map(parseNumber);
+  return Array.isArray(numbers) && numbers.includes(null) ? null : numbers;
 };
 
 /** The endings of record files of every format, and of what they come in. @param {App} app */
@@ -61,9 +61,9 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
       }
       const all = adds ? [...(files.value || []), ...sent] : sent;
       // two files of one name are two files
-      const named = all.map((one, k) => (all.slice(0, k).some((each) => each.name === one.name && each.sha !== one.sha)
-        ? { ...one, name: `${one.sha.slice(0, 8)}-${one.name}` } : one));
-      files.value = named.filter((one, k) => named.findIndex((each) => each.sha === one.sha) === k);
+      const named = all.map((file, k) => (all.slice(0, k).some((other) => other.name === file.name && other.sha !== file.sha)
+        ? { ...file, name: `${file.sha.slice(0, 8)}-${file.name}` } : file));
+      files.value = named.filter((file, k) => named.findIndex((other) => other.sha === file.sha) === k);
     } catch (error) {
       app.say(error.message, "error");
     }
@@ -74,9 +74,9 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
       <p class="field-help">${help}</p>
       <p class="field-help" role="status">${sending.value}</p>
       ${files.value.length > 0 && html`<ul class="sent" aria-label="Files">
-        ${files.value.map((one) => html`<li key=${one.sha}><span translate=${false}>${one.name}</span>
-          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name: one.name })}
-            onClick=${() => (files.value = files.value.filter((each) => each !== one))}>remove<//></li>`)}
+        ${files.value.map((file) => html`<li key=${file.sha}><span translate=${false}>${file.name}</span>
+          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name: file.name })}
+            onClick=${() => (files.value = files.value.filter((other) => other !== file))}>remove<//></li>`)}
       </ul>`}<//>`;
 };
 
@@ -100,9 +100,9 @@ const Outcome = ({ questions, answer: Answer }) => {
       <h2 id="outcome-title" ref=${heading} tabindex="-1">${question.name}</h2>
       ${questions.busy.value && html`<${Waiting} questions=${questions} question=${question} />`}
       ${question.state === "refused" && html`
-        <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" words=${reasonOf(question)} /></div>
+        <div ref=${refusal} tabindex="-1" role="alert"><${Note} kind="error" text=${reasonOf(question)} /></div>
         <${Drawing} question=${question} alt="Partial result" />`}
-      ${question.state === "stopped" && html`<${Note} words="The run was stopped." />`}
+      ${question.state === "stopped" && html`<${Note} text="The run was stopped." />`}
       ${done && question.answer && html`<${Answer} answer=${question.answer} question=${question}
         questions=${questions} />`}
       ${done && html`<${Files} questions=${questions} question=${question} />`}
@@ -153,36 +153,36 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">
     <h2 id="earlier-title">Previous runs</h2>
     <ul class="project-list" aria-label="Previous runs">
-      ${questions.all.value.map((one) => html`<li key=${one.id}>
-        <p><strong>${one.name}</strong><span class="quiet">${dateTime(one.asked)}, ${t(one.state)}</span></p>
+      ${questions.all.value.map((question) => html`<li key=${question.id}>
+        <p><strong>${question.name}</strong><span class="quiet">${dateTime(question.asked)}, ${t(question.state)}</span></p>
         <div class="toolbar">
-          <${Button} aria-label=${t("Show {name}", { name: userText(one.name) })} onClick=${() => questions.open(one.id)}>Show<//>
-          <${Button} aria-label=${t("Delete {name}", { name: userText(one.name) })} onClick=${() => questions.remove(one.id)}>Delete<//>
+          <${Button} aria-label=${t("Show {name}", { name: userText(question.name) })} onClick=${() => questions.open(question.id)}>Show<//>
+          <${Button} aria-label=${t("Delete {name}", { name: userText(question.name) })} onClick=${() => questions.remove(question.id)}>Delete<//>
         </div></li>`)}
     </ul>
   </section>`;
 
 /** A refusal of the server as fields know it: the key that it names, and its words.
  * @param {{ message: string, refusal?: any }} refused */
-export const refusedOf = (refused) => ({ key: refused.refusal ? keyOf(refused.refusal) : undefined, words: reasonOf(refused) });
+export const refusedOf = (refused) => ({ key: refused.refusal ? keyOf(refused.refusal) : undefined, text: reasonOf(refused) });
 
 /** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
  * asking, as words or as {key, words} of a field.
  * @param {{ title: string, lead: string, questions: Questions, wrong: Wrong, onSubmit: (event: any) => unknown, answer: any, children: any }} props */
 export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => {
   const form = useRef(null);
-  const asked = useSignal(0);
+  const submissions = useSignal(0);
   const { value: question } = questions.shown;
-  const refused = useMemo(/** @returns {{ key?: string, words?: string }} */ () => {
-    if (wrong) return typeof wrong === "string" ? { words: wrong } : wrong;
+  const refused = useMemo(/** @returns {{ key?: string, text?: string }} */ () => {
+    if (wrong) return typeof wrong === "string" ? { text: wrong } : wrong;
     return question?.state === "refused" && questions.isOfForm(question.id) ? refusedOf(question) : {};
-  }, [asked.value, wrong, question?.id, question?.state]);
+  }, [submissions.value, wrong, question?.id, question?.state]);
   useEffect(() => {
-    if (refused.key && asked.value && (wrong || !isTyping())) toWrong(form.current);
+    if (refused.key && submissions.value && (wrong || !isTyping())) toWrong(form.current);
   }, [refused]);
   /** @param {any} event */
   const submit = (event) => {
-    asked.value += 1;
+    submissions.value += 1;
     onSubmit(event);
   };
   return html`
@@ -191,7 +191,7 @@ export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, 
       <div class="asked">
         <form ref=${form} class="card" onSubmit=${submit} aria-label="Inputs">
           <${Refused.Provider} value=${refused}>${children}<//>
-          ${wrong && html`<${Note} kind="error" role="alert" words=${refused.words} />`}
+          ${wrong && html`<${Note} kind="error" role="alert" text=${refused.text} />`}
           <${Button} type="submit" kind="primary" disabled=${questions.busy.value}>Compute<//>
         </form>
         <${Earlier} questions=${questions} />

@@ -32,18 +32,18 @@ const choice = (label, options, value, testid, onChange) => {
 const playButton = (onToggle) => {
   const path = svg("path", { d: PLAY, fill: "currentColor" });
   const icon = svg("svg", { viewBox: "0 0 16 16", width: "16", height: "16", "aria-hidden": "true" }, path);
-  const words = el("span", {}, "Play");
+  const caption = el("span", {}, "Play");
   const button = el(
     "button",
     { type: "button", class: "button primary scene-play", "data-testid": "scene-play", title: "Space" },
     icon,
-    words,
+    caption,
   );
   button.addEventListener("click", onToggle);
   /** @param {boolean} running */
   const tellRunning = (running) => {
     path.setAttribute("d", running ? PAUSE : PLAY);
-    words.textContent = t(running ? "Pause" : "Play");
+    caption.textContent = t(running ? "Pause" : "Play");
     button.dataset.running = String(running);
   };
   return [button, tellRunning];
@@ -71,13 +71,13 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const [button, tellRunning] = playButton(onToggle);
   const range = scrubber(onSeek);
   const time = el("output", { class: "scene-now", "data-testid": "scene-now" }, "0.000 s");
-  const place = el("output", { class: "scene-place", "data-testid": "scene-rotation" });
+  const rotationOutput = el("output", { class: "scene-place", "data-testid": "scene-rotation" });
   const factor = el("span", { class: "scene-factor", "aria-live": "polite" });
   const element = el(
     "div",
     { class: "scene-controls" },
     el("div", { class: "scene-row" }, button, range),
-    el("div", { class: "scene-row scene-readout" }, time, place, factor),
+    el("div", { class: "scene-row scene-readout" }, time, rotationOutput, factor),
     el(
       "div",
       { class: "scene-row" },
@@ -89,7 +89,7 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const tell = (now, end, rotation, share) => {
     range.value = String(end > 0 ? (1000 * now) / end : 0);
     time.textContent = `${fixed(now, 3)} s`;
-    place.textContent = t("\u03b8 = {rotation}\u00b0, {share} of \u03b1", { rotation: fixed(rotation * DEGREES, 2), share: fixed(share, 2) });
+    rotationOutput.textContent = t("\u03b8 = {rotation}\u00b0, {share} of \u03b1", { rotation: fixed(rotation * DEGREES, 2), share: fixed(share, 2) });
     const degrees = fixed(rotation * DEGREES, 1);
     range.setAttribute("aria-valuetext", t("{time} seconds, {angle} degrees", { time: fixed(now, 2), angle: degrees }));
   };
@@ -97,8 +97,8 @@ export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const tellGround = (mode, times, rides) => {
     const far = "large ground displacement: the camera follows the ground";
     const magnified = times === 1 ? "" : t("ground displacement magnified {factor} times", { factor: times });
-    const words = mode !== "ride" && rides ? far : magnified;
-    if (factor.textContent !== words) factor.textContent = words;
+    const text = mode !== "ride" && rides ? far : magnified;
+    if (factor.textContent !== text) factor.textContent = text;
   };
   return { element, tell, tellRunning, tellGround };
 };

@@ -21,15 +21,15 @@ const DIRECTIONS = 48;
 
 /** Returns the few points of many that reach farthest, one for each of some directions. @param {number[][]} corners */
 export const farthest = (corners) => {
-  const found = new Set();
+  const extreme = new Set();
   for (let k = 0; k < DIRECTIONS; k += 1) {
     const c = Math.cos((2 * Math.PI * k) / DIRECTIONS);
     const s = Math.sin((2 * Math.PI * k) / DIRECTIONS);
     let best = corners[0];
     for (const corner of corners) if (c * corner[0] + s * corner[1] > c * best[0] + s * best[1]) best = corner;
-    found.add(best);
+    extreme.add(best);
   }
-  return [...found];
+  return [...extreme];
 };
 
 /** @param {number[][]} corners @param {number[]} rotations @param {number[]} feet @param {number[]} shifts */

@@ -148,8 +148,8 @@ const drawStick = (pen, shape) => {
 };
 
 /** Draws the ring of an impact at a foot; `age` runs from 0 to 1.
- * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} x @param {number} age @param {string} words @param {number} wide */
-export const drawFlash = (pen, camera, colours, x, age, words, wide) => {
+ * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} x @param {number} age @param {string} text @param {number} wide */
+export const drawFlash = (pen, camera, colours, x, age, text, wide) => {
   holdScreen(pen, camera);
   pen.globalAlpha = 1 - 0.8 * age;
   pen.strokeStyle = colours.impact;
@@ -160,6 +160,6 @@ export const drawFlash = (pen, camera, colours, x, age, words, wide) => {
   pen.stroke();
   const fits = x + 36 + wide < camera.width;
   pen.textAlign = fits ? "left" : "right";
-  pen.fillText(words, fits ? x + 34 : x - 34, camera.floor - 8);
+  pen.fillText(text, fits ? x + 34 : x - 34, camera.floor - 8);
   pen.globalAlpha = 1;
 };

@@ -17,9 +17,9 @@ export const actorOf = (answer, style) => {
     falls: answer.outcome === "overturned",
     rotation: new Track(time, seen),
     share: new Track(time, sharesOf(seen, answer.body)),
-    impactTimes: Float64Array.from(impacts, (one) => one.time),
-    impactFeet: Float64Array.from(impacts, (one) => (one.foot === "right" ? 1 : 0)),
-    impactWords: impacts.map((one) => `r = ${fixed(one.coefficient, 3)}`),
+    impactTimes: Float64Array.from(impacts, (impact) => impact.time),
+    impactFeet: Float64Array.from(impacts, (impact) => (impact.foot === "right" ? 1 : 0)),
+    impactWords: impacts.map((impact) => `r = ${fixed(impact.coefficient, 3)}`),
   };
 };
 

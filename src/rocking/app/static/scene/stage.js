@@ -26,10 +26,10 @@ const posesOf = (actors, ground, factor, end) => {
  * @param {number} travel @param {number} size */
 export const visibleFactor = (travel, size) => {
   if (!(travel > 0)) return 1;
-  const wanted = (VISIBLE * size) / travel;
-  if (wanted <= 1) return 1;
-  const tens = 10 ** Math.floor(Math.log10(wanted));
-  return ([5, 2].find((one) => one * tens <= wanted) ?? 1) * tens;
+  const factor = (VISIBLE * size) / travel;
+  if (factor <= 1) return 1;
+  const tens = 10 ** Math.floor(Math.log10(factor));
+  return ([5, 2].find((step) => step * tens <= factor) ?? 1) * tens;
 };
 
 /** Draws the scene of one instant. */

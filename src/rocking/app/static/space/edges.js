@@ -11,7 +11,7 @@ export const Edges = ({ question, answer, children }) => {
   const round = answer.body.base.kind !== "polygon";
   const models = Object.keys(answer.edges[0].coefficients);
   const doubts = [...new Set(answer.edges.flatMap((/** @type {any} */ { coefficients }) => Object.entries(coefficients)
-    .flatMap(([name, { flags }]) => Object.values(flags).map((words) => `${t(name)}: ${t(words)}`))))];
+    .flatMap(([name, { flags }]) => Object.values(flags).map((flag) => `${t(name)}: ${t(flag)}`))))];
   return html`
     <p class="verdict" data-testid="verdict">Coefficient of restitution of each base edge, by model.</p>
     <${Scene} question=${question} title="Edges of the base" label="Body with numbered base edges" onSpace=${() => {}}
@@ -24,7 +24,7 @@ export const Edges = ({ question, answer, children }) => {
       legend=${[["holds", "edge with its number"], ["base", "corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}
     <${Rows} caption="Edges and corners" head=${[round ? "from" : "from edge", "onto", "slenderness [\u00b0]", ...models]}
-      rows=${answer.edges.map((/** @type {any} */ each) => [each.edge, each.lands_on, number((each.slenderness_angle * 180) / Math.PI, 3),
-        ...models.map((name) => number(each.coefficients[name].coefficient, 4))])} />
-    ${[...doubts, ...answer.notes].map((words) => html`<p class="field-help" key=${words}>${words}</p>`)}`;
+      rows=${answer.edges.map((/** @type {any} */ edge) => [edge.edge, edge.lands_on, number((edge.slenderness_angle * 180) / Math.PI, 3),
+        ...models.map((name) => number(edge.coefficients[name].coefficient, 4))])} />
+    ${[...doubts, ...answer.notes].map((note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };

@@ -9,17 +9,17 @@ const WIDTHS = { SCALAR: 1, VEC3: 3, VEC4: 4 };
  * @param {ArrayBuffer} buffer @returns {SpaceModel} */
 export const readGlb = (buffer) => {
   const length = new DataView(buffer).getUint32(12, true);
-  const told = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
   /** @param {number} [number] @returns {any} */
   const array = (number) => {
     if (number === undefined) return null;
-    const { bufferView, componentType, count, type } = told.accessors[number];
-    const at = 28 + length + told.bufferViews[bufferView].byteOffset;
+    const { bufferView, componentType, count, type } = header.accessors[number];
+    const at = 28 + length + header.bufferViews[bufferView].byteOffset;
     return new ARRAYS[componentType](buffer, at, count * WIDTHS[type]);
   };
-  const [{ attributes, indices }] = told.meshes[0].primitives;
-  const [turns, places] = told.animations?.[0].samplers ?? [];
-  const { tilt, hull, mended, ...extras } = told.extras.rocking;
+  const [{ attributes, indices }] = header.meshes[0].primitives;
+  const [turns, places] = header.animations?.[0].samplers ?? [];
+  const { tilt, hull, mended, ...extras } = header.extras.rocking;
   return {
     ...extras,
     points: array(attributes.POSITION), faces: array(indices), colours: array(attributes.COLOR_0), hull: array(hull), mended: array(mended),

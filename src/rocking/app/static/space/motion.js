@@ -21,7 +21,7 @@ const LEGEND = [["holds", "sticking contact"], ["slides", "sliding contact"], ["
 // Impacts that are marked: of thousands, only those that lose something worth seeing.
 /** @param {{ time: number, energy_before: number, energy_after: number }[]} impacts */
 const marked = (impacts) => {
-  const losses = impacts.map((each) => each.energy_before - each.energy_after);
+  const losses = impacts.map((impact) => impact.energy_before - impact.energy_after);
   const most = highest(losses);
   return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time: at }) => at);
 };
@@ -29,7 +29,7 @@ const marked = (impacts) => {
 /** The motion that a question found, with its controls.
  * @param {{ question: Server.WholeQuestion, answer: any }} props */
 export const MotionScene = ({ question, answer }) => {
-  const [now, running, words] = [useSignal(0), useSignal(false), useSignal("Loading the motion.")];
+  const [now, running, text] = [useSignal(0), useSignal(false), useSignal("Loading the motion.")];
   const speed = useSignal("1");
   /** @type {{ clock: Clock, played: Played, chart: Chart, told: number }} */
   const kept = useRef(/** @type {any} */ ({ clock: new Clock(), played: null, chart: null, told: 0 })).current;
@@ -37,7 +37,7 @@ export const MotionScene = ({ question, answer }) => {
   const { clock } = kept;
   const tell = () => {
     now.value = clock.now;
-    words.value = kept.played.words(clock.now);
+    text.value = kept.played.words(clock.now);
     kept.chart.point(clock.now);
   };
   /** @param {number} instant */
@@ -84,7 +84,7 @@ export const MotionScene = ({ question, answer }) => {
       title: "Tilt from the initial pose", height: 150, x: { label: "time", unit: "s" }, y: { label: "tilt", unit: "\u00b0" },
       series: [{ label: "tilt", colour: "--accent" }],
     });
-    kept.chart.setData([Array.from(time), Array.from(tilt, (each) => (each * 180) / Math.PI)]);
+    kept.chart.setData([Array.from(time), Array.from(tilt, (angle) => (angle * 180) / Math.PI)]);
     kept.chart.setMarks({ vertical: marked(answer.impacts) });
     kept.chart.plot.over.addEventListener("click", () => {
       const at = kept.chart.plot.cursor.left;
@@ -97,13 +97,13 @@ export const MotionScene = ({ question, answer }) => {
     kept.chart?.destroy();
   }, []);
   return html`
-    <${Scene} question=${question} words=${words.value} legend=${LEGEND} title="Motion of the body" onStage=${standing} onSpace=${toggle}
+    <${Scene} question=${question} words=${text.value} legend=${LEGEND} title="Motion of the body" onStage=${standing} onSpace=${toggle}
       label=${t("Motion of the body: {summary}", { summary: answer.summary })} />
     <div class="scene-row" role="group" aria-label="Play">
       <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>
         ${running.value ? "Pause" : "Play"}</button>
       <input type="range" class="scene-time" min="0" max=${clock.end || 1} step="any" value=${now.value} aria-label="Instant"
-        aria-valuetext=${words.value} data-testid="space-time" onInput=${(event) => seek(Number(event.target.value))}
+        aria-valuetext=${text.value} data-testid="space-time" onInput=${(event) => seek(Number(event.target.value))}
         onKeyDown=${(event) => {
           const stride = STRIDES[event.key];
           if (!stride) return;

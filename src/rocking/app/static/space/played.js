@@ -35,13 +35,13 @@ export class Played {
 
   /** Put the body where it is at an instant [s], and draw it. @param {number} instant */
   show(instant) {
-    const { time, turn, place, tilt } = this.motion;
+    const { time, turn, place: positions, tilt } = this.motion;
     const last = time.length - 1;
     const k = Math.min(Math.max(0, lastBefore(time.length, (i) => time[i], instant)), Math.max(0, last - 1));
     const next = Math.min(k + 1, last);
     const share = next > k ? Math.min(1, Math.max(0, (instant - time[k]) / (time[next] - time[k]))) : 0;
     this.one.fromArray(turn, 4 * k).slerp(this.other.fromArray(turn, 4 * next), share).toArray(this.turn);
-    for (let i = 0; i < 3; i += 1) this.centre[i] = between(place[3 * k + i], place[3 * next + i], share);
+    for (let i = 0; i < 3; i += 1) this.centre[i] = between(positions[3 * k + i], positions[3 * next + i], share);
     this.tilt = between(tilt[k], tilt[next], share);
     this.stage.place(this.turn, this.centre);
     this.touch(instant);
@@ -54,7 +54,7 @@ export class Played {
     if (interval === this.interval) return;
     this.interval = interval;
     const { vertices = [], sliding_vertices: sliding = [] } = interval ?? {};
-    this.stage.touch(vertices.filter((/** @type {number} */ each) => !sliding.includes(each)), sliding);
+    this.stage.touch(vertices.filter((/** @type {number} */ vertex) => !sliding.includes(vertex)), sliding);
   }
 
   /** What is seen at an instant that was shown. @param {number} instant */
@@ -74,5 +74,5 @@ const contactWords = (count, sliding) => {
     : t("{count} contact points, {sliding} sliding", { count, sliding });
 };
 
-/** @param {number} one @param {number} other @param {number} share */
-const between = (one, other, share) => one + (other - one) * share;
+/** @param {number} first @param {number} other @param {number} share */
+const between = (first, other, share) => first + (other - first) * share;

@@ -25,25 +25,25 @@ const Key = ({ kind }) => html`<${Made} node=${useMemo(() => (kind === "rise" ? 
 
 /** The picture of a question's body, with the `title` of its file; `onStage` is told of the stage once it stands, `onSpace` is what that key does.
  * @param {{ question: Server.WholeQuestion, words: string, title: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
-export const Scene = ({ question, words, title, label, onStage, onSpace, legend }) => {
+export const Scene = ({ question, words: description, title, label, onStage, onSpace, legend }) => {
   const canvas = useRef(null);
   const stage = useSignal(null);
   const trouble = useSignal("");
   const about = useRef(freshId("scene")).current;
   useEffect(() => {
     /** @type {Stage | null} */
-    let made = null;
+    let built = null;
     let gone = false;
-    const watcher = new ResizeObserver(() => made?.resize());
-    const forget = onTheme(() => made?.repaint());
+    const watcher = new ResizeObserver(() => built?.resize());
+    const forget = onTheme(() => built?.repaint());
     const sent = async () => (await fetchFile(`questions/${question.id}/space.glb`)).arrayBuffer();
     const build = async () => {
       const [file, three] = await Promise.all([sent(), import(LIBRARY)]);
       if (gone) return;
-      made = new Stage(three, canvas.current, readGlb(file));
-      stage.value = made;
+      built = new Stage(three, canvas.current, readGlb(file));
+      stage.value = built;
       watcher.observe(canvas.current);
-      onStage(made);
+      onStage(built);
       canvas.current.dataset.drawn = "true";
     };
     build().catch((error) => (trouble.value = t("No picture: {reason}. The text below describes the body.", { reason: error.message })));
@@ -51,7 +51,7 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
       gone = true;
       watcher.disconnect();
       forget();
-      made?.dispose();
+      built?.dispose();
     };
   }, []);
   /** @param {Aim} to */
@@ -80,8 +80,8 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
     does();
   };
   return html`
-    ${trouble.value && html`<${Note} kind="warning" words=${trouble.value} />`}
-    <div class="space-picture" hidden=${Boolean(trouble.value)} data-own=${question.name} data-about=${words}>
+    ${trouble.value && html`<${Note} kind="warning" text=${trouble.value} />`}
+    <div class="space-picture" hidden=${Boolean(trouble.value)} data-own=${question.name} data-about=${description}>
       <${Pictured} title=${title} canvasOf=${photograph}><canvas ref=${canvas} class="space-stage" role="img" tabindex="0" aria-label=${label} aria-describedby=${about}
         data-testid="space-stage" onKeyDown=${keys}
         onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)}
@@ -100,5 +100,5 @@ export const Scene = ({ question, words, title, label, onStage, onSpace, legend 
           onClick=${() => (to ? look({ ...to, near: 1 }) : nearer(times ?? 1))}>${name}<//>`)}
       </div>
     </div>
-    <p id=${about} class="space-words" data-testid="space-words">${words}</p>`;
+    <p id=${about} class="space-words" data-testid="space-words">${description}</p>`;
 };

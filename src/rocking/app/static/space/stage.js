@@ -94,7 +94,7 @@ export class Stage {
       const [at, end] = [k * gap, count * gap];
       ends.push([at, -end, 0], [at, end, 0], [-end, at, 0], [end, at, 0]);
     }
-    const lines = new three.BufferGeometry().setFromPoints(ends.map((each) => new three.Vector3(...each)));
+    const lines = new three.BufferGeometry().setFromPoints(ends.map((end) => new three.Vector3(...end)));
     scene.add(new three.LineSegments(lines, this.painted(new three.LineBasicMaterial(), "--space-line")));
     const plane = new three.Mesh(
       new three.PlaneGeometry(2 * count * gap, 2 * count * gap),
@@ -117,7 +117,7 @@ export class Stage {
   /** @param {number[][]} points @param {string} paint @param {any} [into] @param {boolean} [seenThrough] */
   line(points, paint, into = this.scene, seenThrough = false) {
     const { three } = this;
-    const geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
+    const geometry = new three.BufferGeometry().setFromPoints(points.map((point) => new three.Vector3(...point)));
     const line = new three.Line(geometry, this.painted(new three.LineBasicMaterial({ depthTest: !seenThrough }), paint));
     line.frustumCulled = false;
     if (seenThrough) line.renderOrder = 1;
@@ -130,7 +130,7 @@ export class Stage {
   dots(places, shape, paint) {
     const { three } = this;
     const seenThrough = shape === "dot";
-    const geometry = new three.BufferGeometry().setFromPoints(places.map((each) => new three.Vector3(...each)));
+    const geometry = new three.BufferGeometry().setFromPoints(places.map((position) => new three.Vector3(...position)));
     const material = new three.PointsMaterial({
       map: markTexture(three, shape), size: 15, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
       depthTest: !seenThrough,
@@ -204,17 +204,17 @@ export class Stage {
     this.base.visible = false;
     const points = loop(corners.map(([x, y]) => [x, y, 0.001 * this.size]));
     this.support.geometry.dispose();
-    this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((each) => new three.Vector3(...each)));
+    this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((point) => new three.Vector3(...point)));
   }
 
   /** Words on a plate, of a size on the screen.
-   * @param {string} words @param {number[]} place @param {any} into @param {number} size */
-  label(words, place, into, size) {
+   * @param {string} text @param {number[]} position @param {any} into @param {number} size */
+  label(text, position, into, size) {
     const { three } = this;
     const label = new three.Sprite(new three.SpriteMaterial({
-      map: labelTexture(three, words), sizeAttenuation: false, depthTest: into === this.scene,
+      map: labelTexture(three, text), sizeAttenuation: false, depthTest: into === this.scene,
     }));
-    label.position.fromArray(place);
+    label.position.fromArray(position);
     label.scale.setScalar(size);
     if (into === this.scene) label.center.set(0.5, 0); // it stands on the ground
     label.renderOrder = 4;
@@ -282,10 +282,10 @@ export class Stage {
 
   /** Give back what the graphics card holds. */
   dispose() {
-    this.scene.traverse((/** @type {any} */ each) => {
-      each.geometry?.dispose();
-      each.material?.map?.dispose();
-      each.material?.dispose();
+    this.scene.traverse((/** @type {any} */ node) => {
+      node.geometry?.dispose();
+      node.material?.map?.dispose();
+      node.material?.dispose();
     });
     this.renderer.dispose();
     this.renderer.forceContextLoss();

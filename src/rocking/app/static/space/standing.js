@@ -34,21 +34,21 @@ export const Standing = ({ question, answer, onPose, children }) => {
   const stage = useRef(null);
   const shown = Number(pose.value);
   // the hardest to leave first
-  const poses = [...answer.stable].sort((one, other) => (other.barrier ?? Infinity) - (one.barrier ?? Infinity));
+  const poses = [...answer.stable].sort((first, other) => (other.barrier ?? Infinity) - (first.barrier ?? Infinity));
   /** @param {string} number_ */
   const settle = (number_) => {
     pose.value = number_;
     stage.current?.settleIn(stage.current.model.poses[Number(number_)]);
   };
-  /** @param {SpaceStage} made */
-  const built = (made) => {
-    stage.current = settling(made);
+  /** @param {SpaceStage} spaceStage */
+  const built = (spaceStage) => {
+    stage.current = settling(spaceStage);
     for (const kind of ["summit", "saddle", "stable"]) {
-      const marks = made.model.marks.filter((each) => each.kind === kind);
-      made.dots(marks.slice(0, MOST).map(({ place }) => before(place, made.size)), kind, `--space-${kind}`);
+      const marks = spaceStage.model.marks.filter((mark) => mark.kind === kind);
+      spaceStage.dots(marks.slice(0, MOST).map(({ place: position }) => before(position, spaceStage.size)), kind, `--space-${kind}`);
     }
-    made.colourful(true);
-    stage.current.setIn(made.model.poses[shown]);
+    spaceStage.colourful(true);
+    stage.current.setIn(spaceStage.model.poses[shown]);
   };
   const here = answer.stable[shown];
   const most = answer.stable.at(-1).energy;
@@ -69,15 +69,15 @@ export const Standing = ({ question, answer, onPose, children }) => {
         ["rise", t("height of the centre of mass with this point at the bottom: dark is low (from {height} mm), bright is high", { height: millimetres(low) })]]} />
     <div class="space-choices">
       <${Choice} label="Stable pose" value=${{ get value() { return pose.value; }, set value(next) { settle(next); } }}
-        options=${poses.filter((each, k) => k < FEW || each.pose === shown).map((each) => [String(each.pose),
-          t("pose {pose}: energy barrier {rise} mm", { pose: each.pose, rise: millimetres(each.barrier) })])} />
+        options=${poses.filter((pose, k) => k < FEW || pose.pose === shown).map((pose) => [String(pose.pose),
+          t("pose {pose}: energy barrier {rise} mm", { pose: pose.pose, rise: millimetres(pose.barrier) })])} />
       <${Choice} label="Colours" value=${{ get value() { return colours.value; }, set value(next) {
         colours.value = next;
         stage.current?.colourful(next === "rise");
       } }} options=${COLOURS} />
     </div>
-    ${answer.rings.map((/** @type {any} */ each) => html`<p key=${each.tilt}>${t(each.kind === "stable" ? ROLLS : BALANCES,
-      { tilt: number((each.tilt * 180) / Math.PI, 3), height: millimetres(each.centre_height) })}</p>`)}
+    ${answer.rings.map((/** @type {any} */ ring) => html`<p key=${ring.tilt}>${t(ring.kind === "stable" ? ROLLS : BALANCES,
+      { tilt: number((ring.tilt * 180) / Math.PI, 3), height: millimetres(ring.centre_height) })}</p>`)}
     ${SCANNED.test(question.toml) && html`<div class="toolbar"><${Button} onClick=${() => {
       const { up_in_file: up } = stage.current?.model.poses[shown] ?? {};
       if (up) onPose(shown, up);
@@ -86,26 +86,26 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <${Drawing} question=${question} alt=${t("Rise of the centre of mass over tilt and azimuth from pose {pose}, and the support polygon", { pose: answer.stands_in })} />
     <h3>Toppling by direction</h3>
     <${Rows} caption="Directions" head=${["direction [\u00b0]", "direct rise of the centre [mm]", "lowest rise of the centre [mm]", "uplift at [m/s\u00b2]", "next pose"]}
-      rows=${answer.directions.map((/** @type {any} */ each) => [
-        number((each.azimuth * 180) / Math.PI, 3), millimetres(each.straight_rise), millimetres(each.lowest_rise),
-        number(each.uplift_acceleration, 3), each.topples_into === null ? "\u2013" : String(each.topples_into)])} />
+      rows=${answer.directions.map((/** @type {any} */ direction) => [
+        number((direction.azimuth * 180) / Math.PI, 3), millimetres(direction.straight_rise), millimetres(direction.lowest_rise),
+        number(direction.uplift_acceleration, 3), direction.topples_into === null ? "\u2013" : String(direction.topples_into)])} />
     <h3>Poses, highest energy barrier first</h3>
     <${Rows} caption="Poses" head=${["pose", "energy barrier [mm]", "centre [mm]", "energy [J]", "distance to edge [mm]"]}
-      rows=${poses.slice(0, FEW).map((each) => [String(each.pose), millimetres(each.barrier), millimetres(each.centre_height),
-        joules(each.energy, most), millimetres(each.nearest_edge)])} />
+      rows=${poses.slice(0, FEW).map((pose) => [String(pose.pose), millimetres(pose.barrier), millimetres(pose.centre_height),
+        joules(pose.energy, most), millimetres(pose.nearest_edge)])} />
     ${poses.length > FEW && html`<p class="field-help">${t("{count} more poses have an energy barrier of {rise} mm or less.",
       { count: poses.length - FEW, rise: millimetres(poses[FEW].barrier) })}</p>`}
     ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 
 // A place a little before the surface, where a mark is not cut in halves by it.
-/** @param {number[]} place @param {number} size */
-const before = (place, size) => place.map((each) => each * (1 + (0.03 * size) / Math.hypot(...place)));
+/** @param {number[]} position @param {number} size */
+const before = (position, size) => position.map((coordinate) => coordinate * (1 + (0.03 * size) / Math.hypot(...position)));
 
 // A stage on which a body is lifted, turned and set down.
-/** @param {SpaceStage} made @returns {Setting} */
-const settling = (made) => {
-  const stage = /** @type {Setting} */ (made);
+/** @param {SpaceStage} spaceStage @returns {Setting} */
+const settling = (spaceStage) => {
+  const stage = /** @type {Setting} */ (spaceStage);
   const [from, to] = [new stage.three.Quaternion(), new stage.three.Quaternion()];
   let ticket = 0;
   stage.setIn = ({ turn, height, support }) => {

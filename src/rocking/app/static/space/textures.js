@@ -20,7 +20,7 @@ const drawn = (three, draw) => {
 /** @param {CanvasRenderingContext2D} pen @param {Point[]} points */
 const path = (pen, points) => {
   pen.beginPath();
-  points.forEach((each) => pen.lineTo(...each));
+  points.forEach((point) => pen.lineTo(...point));
   pen.closePath();
 };
 
@@ -65,8 +65,8 @@ const RISE = ["#00224e", "#434e6c", "#7d7c78", "#bcaf6f", "#fee838"];
 export const riseKey = () => svg("svg", { class: "space-key", width: 60, height: 12, viewBox: "0 0 60 12", "aria-hidden": "true" },
   RISE.map((fill, k) => svg("rect", { x: 12 * k, width: 12.5, height: 12, fill })));
 
-/** A number on a plate. @param {any} three @param {string} words */
-export const labelTexture = (three, words) => drawn(three, (pen) => {
+/** A number on a plate. @param {any} three @param {string} text */
+export const labelTexture = (three, text) => drawn(three, (pen) => {
   pen.beginPath();
   pen.arc(0, 0, 28, 0, 7);
   pen.fillStyle = "#ffffff";
@@ -75,8 +75,8 @@ export const labelTexture = (three, words) => drawn(three, (pen) => {
   pen.strokeStyle = "#1d1f1e";
   pen.stroke();
   pen.fillStyle = "#1d1f1e";
-  pen.font = `bold ${words.length > 2 ? 18 : 32}px system-ui, sans-serif`;
+  pen.font = `bold ${text.length > 2 ? 18 : 32}px system-ui, sans-serif`;
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  pen.fillText(words, 0, 2);
+  pen.fillText(text, 0, 2);
 });

@@ -17,19 +17,19 @@ export const faultsOf = (app, ...views) => {
  * @param {App} app @param {string} name @param {string[]} keys @param {() => object | null} question
  * @param {{ path?: string, detail?: object, keeps?: boolean }} [how] @returns {Asked<any>} */
 export const createAnswer = (app, name, keys, question, { path = "response", detail = {}, keeps = false } = {}) => {
-  const [answer, refused, part] = [signal(null), signal(null), signal(null)];
+  const [answer, refused, closeup] = [signal(null), signal(null), signal(null)];
   let [visible, dirty, queued] = [false, true, false];
-  /** @param {any} found @param {Refusal | null} [error] */
-  const become = (found, error = null) => batch(() => {
-    [answer.value, refused.value, part.value] = [found, error, null];
+  /** @param {any} value @param {Refusal | null} [error] */
+  const become = (value, error = null) => batch(() => {
+    [answer.value, refused.value, closeup.value] = [value, error, null];
   });
   const refresh = async () => {
     [queued, dirty] = [false, false];
-    const given = question();
-    if (!given) return become(null);
+    const query = question();
+    if (!query) return become(null);
     try {
-      const found = await app.latest(name, path, given);
-      if (question()) become(found); // else nothing moves any more
+      const value = await app.latest(name, path, query);
+      if (question()) become(value); // else nothing moves any more
     } catch (error) {
       if (app.superseded(error)) return undefined;
       dirty = true; // what failed once is asked again when the view is next shown
@@ -48,16 +48,16 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
     if (visible) ask();
   });
   return {
-    answer, refused, part,
+    answer, refused, closeup,
     ask,
     /** Ask again for the part of the time that the figures show; null shows all of it. @param {Point | null} window */
     look: async (window) => {
-      const whole = answer.value;
-      part.value = window && { window };
+      const shownAnswer = answer.value;
+      closeup.value = window && { window };
       if (!window) return undefined;
       try {
-        const found = await app.latest(`${name}-part`, path, { ...question(), ...detail, window });
-        if (whole === answer.value && part.value?.window === window) part.value = { window, ...found };
+        const detailedAnswer = await app.latest(`${name}-part`, path, { ...question(), ...detail, window });
+        if (shownAnswer === answer.value && closeup.value?.window === window) closeup.value = { window, ...detailedAnswer };
       } catch (error) {
         if (!app.superseded(error)) app.say(error.message, "error");
       }

@@ -5,7 +5,7 @@ import { number, tidy } from "/app/format.js";
 import * as model from "/views/body-editor-model.js";
 import { groundOf } from "/drawing/body-picture.js";
 import { pathOf, regionPaths } from "/drawing/outline.js";
-import { centreMark, footMark, words } from "/drawing/symbols.js";
+import { centreMark, footMark, label } from "/drawing/symbols.js";
 import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/viewport.js";
 import { t } from "/app/words.js";
 
@@ -43,13 +43,13 @@ export const createCanvas = (editor, element) => {
     else if (!drag) view = fitted(regions, width, editor.state.photo);
     const focused = /** @type {HTMLElement | null} */ (document.activeElement)?.dataset?.place;
     editor.state.grid = gridStep(view, editor.state.step);
-    const place = editor.refusal();
-    const rings = ringsNamed(place, regions);
-    putWords(wrong, editor, view, width, refusedPoint(place, rings, view));
+    const faultPlace = editor.refusal();
+    const rings = ringsNamed(faultPlace, regions);
+    putWords(wrong, editor, view, width, refusedPoint(faultPlace, rings, view));
     set(board, width);
     fill(
       board, photograph(editor.state.photo, view), gridLines(view, width, editor.step()), regionPaths(regions, view),
-      statics(editor, view), edges(regions, view), picked(editor, regions, view), refused(place, rings, view, width),
+      statics(editor, view), edges(regions, view), picked(editor, regions, view), refused(faultPlace, rings, view, width),
       vertices(editor, regions, view), toolMarks(editor, view),
     );
     board.dataset.tool = editor.state.tool?.kind ?? "";
@@ -64,8 +64,8 @@ export const createCanvas = (editor, element) => {
   const middle = () => view.back(width / 2, HEIGHT / 2);
   /** @param {number[]} point @param {number} [scale] */
   const lookAt = (point, scale = view.scale) => {
-    const whole = fitted(editor.regions(), width, editor.state.photo).scale;
-    look = { middle: point, scale: Math.min(NEAREST * whole, Math.max(FARTHEST * whole, scale)) };
+    const fittedScale = fitted(editor.regions(), width, editor.state.photo).scale;
+    look = { middle: point, scale: Math.min(NEAREST * fittedScale, Math.max(FARTHEST * fittedScale, scale)) };
     editor.tell();
   };
   /** Nearer by a factor; the point stays where it is. @param {number} factor @param {number[]} [point] */
@@ -88,20 +88,20 @@ export const createCanvas = (editor, element) => {
   /** @param {MouseEvent} event */
   const pointOf = (event) => view.back(.../** @type {Point} */ (pixelOf(event)));
   /** @param {number[]} point */
-  const neat = (point) => editor.snapped(point).map((each) => tidy(each, 9));
+  const neat = (point) => editor.snapped(point).map((coordinate) => tidy(coordinate, 9));
 
   const fingers = new Map();
   /** @param {any} event */
   const begin = (event) => {
     const regions = editor.regions();
     const point = pointOf(event);
-    const place = model.nearest(regions, point, REACH / view.scale, editor.state.place);
+    const target = model.nearest(regions, point, REACH / view.scale, editor.state.place);
     const edge = event.target.closest("[data-edge]");
     if (editor.state.tool) {
       editor.tool.put(editor.state.tool.kind === "pen" ? neat(point) : point, REACH / view.scale);
       return board.focus({ preventScroll: true });
     }
-    if (place) drag = { place, begun: false };
+    if (target) drag = { place: target, begun: false };
     else if (edge) {
       const after = placeOf(edge.dataset.edge);
       editor.change(model.inserted(regions, after, neat(point)), { ...after, vertex: after.vertex + 1 });
@@ -140,10 +140,10 @@ export const createCanvas = (editor, element) => {
   });
   /** @param {number} id @param {number[]} before @param {number[]} now */
   const pinch = (id, before, now) => {
-    const other = [...fingers].find(([each]) => each !== id)?.[1];
+    const other = [...fingers].find(([finger]) => finger !== id)?.[1];
     if (!other) return;
-    /** @param {number[]} each */
-    const spread = (each) => Math.hypot(each[0] - other[0], each[1] - other[1]);
+    /** @param {number[]} position */
+    const spread = (position) => Math.hypot(position[0] - other[0], position[1] - other[1]);
     const held = view.back((before[0] + other[0]) / 2, (before[1] + other[1]) / 2);
     if (spread(before) > 8 && spread(now) > 8) zoom(spread(now) / spread(before), held);
     pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
@@ -202,7 +202,7 @@ const set = (board, width) => {
 /** @param {Region[]} regions @param {number} width @param {any} photo */
 const fitted = (regions, width, photo) => {
   const corners = photo ? [[photo.x, photo.y], [photo.x + photo.scale * photo.width, photo.y + photo.scale * photo.height]] : [];
-  const box = boxOf([...regions.flatMap((each) => each.outline), ...corners]);
+  const box = boxOf([...regions.flatMap((region) => region.outline), ...corners]);
   const air = 0.08 * Math.max(box.right - box.left, box.top - box.bottom);
   const roomy = {
     left: box.left - air, right: box.right + air, top: box.top + air, bottom: Math.min(box.bottom, 0) - air,
@@ -215,8 +215,8 @@ const fitted = (regions, width, photo) => {
 /** @param {Viewport} view @param {number | null | undefined} typed */
 const gridStep = (view, typed) => {
   if (!typed) return tidy(roundStep(CELL / view.scale, 1));
-  const times = [1, 2, 5].flatMap((each) => Array.from({ length: 12 }, (_, power) => each * 10 ** power));
-  return tidy(typed * (times.sort((one, two) => one - two).find((each) => typed * each * view.scale >= CELL / 3) ?? 1));
+  const times = [1, 2, 5].flatMap((mantissa) => Array.from({ length: 12 }, (_, power) => mantissa * 10 ** power));
+  return tidy(typed * (times.sort((a, two) => a - two).find((factor) => typed * factor * view.scale >= CELL / 3) ?? 1));
 };
 
 /** @param {Viewport} view @param {number} width @param {number[]} point */
@@ -225,31 +225,31 @@ const inSight = (view, width, [x, y]) =>
 
 /** @param {Editor} editor @param {Viewport} view @param {number} width */
 const chosenPoint = (editor, view, width) => {
-  const { place, tool } = editor.state;
-  const point = tool ? tool.cursor : model.ringAt(editor.regions(), place)?.[place.vertex];
+  const { place: vertexIndex, tool } = editor.state;
+  const point = tool ? tool.cursor : model.ringAt(editor.regions(), vertexIndex)?.[vertexIndex.vertex];
   return point && inSight(view, width, point) ? point : null;
 };
 
 /** @param {Viewport} view @param {number} width @param {number} step */
 const gridLines = (view, width, step) => {
   const [[left, top], [right, bottom]] = [view.back(0, 0), view.back(width, HEIGHT)];
-  const many = [1, 2, 5, 10, 20, 50, 100].find((each) => each * step * view.scale >= 60) ?? 100;
+  const many = [1, 2, 5, 10, 20, 50, 100].find((count) => count * step * view.scale >= 60) ?? 100;
   /** @param {number} value */
-  const told = (value) => Math.round(value / step) % many === 0;
+  const isLabelled = (value) => Math.round(value / step) % many === 0;
   const digits = Math.max(4, Math.ceil(Math.log10(Math.max(Math.abs(left), Math.abs(right), Math.abs(top)) / step)) + 1);
   /** @param {number} value @param {string} zero @param {string} d */
-  const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : told(value) ? "grid-line told" : "grid-line", d });
+  const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : isLabelled(value) ? "grid-line told" : "grid-line", d });
   return svg("g", { "aria-hidden": "true", "data-step": step },
     multiples(left, right, step).map((value) => [
       line(value, "axis", `M${view.x(value)} 0V${HEIGHT}`),
-      told(value) && svg(
+      isLabelled(value) && svg(
         "text", { class: "soft", x: view.x(value), y: HEIGHT - 6, "text-anchor": "middle" },
         number(tidy(value), digits),
       ),
     ]),
     multiples(bottom, top, step).map((value) => [
       line(value, "ground", `M0 ${view.y(value)}H${width}`),
-      told(value) && svg("text", { class: "soft", x: 6, y: view.y(value) - 4 }, number(tidy(value), digits)),
+      isLabelled(value) && svg("text", { class: "soft", x: 6, y: view.y(value) - 4 }, number(tidy(value), digits)),
     ]));
 };
 
@@ -289,33 +289,33 @@ const picked = (editor, regions, view) => {
   const flat = Math.abs(x2 - x1) > Math.abs(y2 - y1);
   return svg("g", { class: "edge-picked", "aria-hidden": "true" },
     svg("path", { class: "accent-line", d: `M${x1} ${y1}L${x2} ${y2}` }),
-    !editor.refusal() && words((x1 + x2) / 2 + (flat ? 0 : 9), (y1 + y2) / 2 - (flat ? 9 : 0), `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`, {
+    !editor.refusal() && label((x1 + x2) / 2 + (flat ? 0 : 9), (y1 + y2) / 2 - (flat ? 9 : 0), `${number(length)}\u00a0${editor.units()}, ${number(tidy(angle, 9))}°`, {
       "text-anchor": flat ? "middle" : "start",
     }));
 };
 
 // Where the server says that it cannot be: a ring about the point, a line at its height, or the outlines it names.
-/** @param {any} place @param {Ring[]} rings @param {Viewport} view @param {number} width */
-const refused = (place, rings, view, width) => {
-  if (!place) return null;
-  const marks = place.y === undefined ? rings.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
-    : place.x === undefined ? svg("path", { class: "refused", d: `M0 ${view.y(place.y)}H${width}` })
-      : svg("g", { class: "refused", transform: `translate(${view.x(place.x)} ${view.y(place.y)})` },
+/** @param {any} fault @param {Ring[]} rings @param {Viewport} view @param {number} width */
+const refused = (fault, rings, view, width) => {
+  if (!fault) return null;
+  const marks = fault.y === undefined ? rings.map((ring) => svg("path", { class: "refused", d: pathOf([ring], view) }))
+    : fault.x === undefined ? svg("path", { class: "refused", d: `M0 ${view.y(fault.y)}H${width}` })
+      : svg("g", { class: "refused", transform: `translate(${view.x(fault.x)} ${view.y(fault.y)})` },
         svg("circle", { r: 13 }), svg("path", { d: "M-5 -5L5 5M-5 5L5 -5" }));
   return svg("g", { "data-testid": "board-refusal", "aria-hidden": "true" }, marks);
 };
 
-/** @param {any} place @param {Ring[]} rings @param {Viewport} view */
-const refusedPoint = (place, rings, view) => {
-  if (!place) return null;
-  if (place.y !== undefined) return [place.x ?? view.back(0, 0)[0], place.y];
+/** @param {any} fault @param {Ring[]} rings @param {Viewport} view */
+const refusedPoint = (fault, rings, view) => {
+  if (!fault) return null;
+  if (fault.y !== undefined) return [fault.x ?? view.back(0, 0)[0], fault.y];
   const box = rings.length && boxOf(rings[rings.length - 1]);
   return box ? [(box.left + box.right) / 2, (box.bottom + box.top) / 2] : null;
 };
 
-/** @param {any} place @param {Region[]} regions */
-const ringsNamed = (place, regions) => (place?.regions ?? []).map((/** @type {number} */ index) => regions[index]).filter(Boolean)
-  .map((/** @type {Region} */ each) => each.holes?.[place.hole] ?? each.outline);
+/** @param {any} fault @param {Region[]} regions */
+const ringsNamed = (fault, regions) => (fault?.regions ?? []).map((/** @type {number} */ index) => regions[index]).filter(Boolean)
+  .map((/** @type {Region} */ region) => region.holes?.[fault.hole] ?? region.outline);
 
 // The words of the refusal beside its mark; whoever does not see it hears them from the alert below.
 /** @param {HTMLElement} note @param {Editor} editor @param {Viewport} view @param {number} width @param {number[] | null} point */
@@ -323,7 +323,7 @@ const putWords = (note, editor, view, width, point) => {
   note.hidden = !point;
   if (!point) return;
   // beside the body where there is room, so that they hide no vertex
-  const box = boxOf(editor.regions().flatMap((each) => each.outline));
+  const box = boxOf(editor.regions().flatMap((region) => region.outline));
   const [left, right] = [view.x(box.left), width - view.x(box.right)].map((room) => Math.min(room, width - 20) - 20);
   const [side, other] = left >= right ? ["right", "left"] : ["left", "right"];
   const room = Math.max(left, right);
@@ -382,25 +382,25 @@ const onKey = (event, editor, start) => {
 };
 
 /** @param {number} dx @param {number} dy @returns {(editor: Editor, place: Place, times: number) => void} */
-const shifted = (dx, dy) => (editor, place, times) => {
-  const [x, y] = model.ringAt(editor.regions(), place)[place.vertex];
+const shifted = (dx, dy) => (editor, vertexIndex, times) => {
+  const [x, y] = model.ringAt(editor.regions(), vertexIndex)[vertexIndex.vertex];
   const by = editor.step() * times;
-  editor.change(model.moved(editor.regions(), place, [tidy(x + dx * by), tidy(y + dy * by)]), place);
+  editor.change(model.moved(editor.regions(), vertexIndex, [tidy(x + dx * by), tidy(y + dy * by)]), vertexIndex);
 };
 
-/** @param {Editor} editor @param {Place} place */
-const drop = (editor, place) => {
-  const next = model.removed(editor.regions(), place);
+/** @param {Editor} editor @param {Place} vertexIndex */
+const drop = (editor, vertexIndex) => {
+  const next = model.removed(editor.regions(), vertexIndex);
   if (next === editor.regions()) return editor.say("A polygon needs at least three vertices.", "warning");
-  return editor.change(next, { ...place, vertex: Math.max(0, place.vertex - 1) });
+  return editor.change(next, { ...vertexIndex, vertex: Math.max(0, vertexIndex.vertex - 1) });
 };
 
-/** @param {Editor} editor @param {Place} place */
-const add = (editor, place) => {
-  const { from, to } = model.edgeAt(editor.regions(), place);
+/** @param {Editor} editor @param {Place} vertexIndex */
+const add = (editor, vertexIndex) => {
+  const { from, to } = model.edgeAt(editor.regions(), vertexIndex);
   editor.change(
-    model.inserted(editor.regions(), place, [0, 1].map((axis) => tidy((from[axis] + to[axis]) / 2))),
-    { ...place, vertex: place.vertex + 1 },
+    model.inserted(editor.regions(), vertexIndex, [0, 1].map((axis) => tidy((from[axis] + to[axis]) / 2))),
+    { ...vertexIndex, vertex: vertexIndex.vertex + 1 },
   );
 };
 

@@ -9,22 +9,22 @@ export const ringAt = (regions, { region, ring }) =>
 
 /** Every ring with its place. @param {Region[]} regions */
 export const ringsOf = (regions) =>
-  regions.flatMap((each, region) =>
-    [each.outline, ...(each.holes ?? [])].map((points, index) => ({ region, ring: index - 1, points })));
+  regions.flatMap((item, region) =>
+    [item.outline, ...(item.holes ?? [])].map((points, index) => ({ region, ring: index - 1, points })));
 
-/** Move one vertex. @param {Region[]} regions @param {Place} place @param {number[]} point */
-export const moved = (regions, place, point) =>
-  withRing(regions, place, (ring) => ring.map((each, index) => (index === place.vertex ? point : each)));
+/** Move one vertex. @param {Region[]} regions @param {Place} position @param {number[]} point */
+export const moved = (regions, position, point) =>
+  withRing(regions, position, (ring) => ring.map((corner, index) => (index === position.vertex ? point : corner)));
 
-/** A new vertex after one. @param {Region[]} regions @param {Place} place @param {number[]} point */
-export const inserted = (regions, place, point) =>
-  withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, /** @type {Point} */ (point)));
+/** A new vertex after one. @param {Region[]} regions @param {Place} position @param {number[]} point */
+export const inserted = (regions, position, point) =>
+  withRing(regions, position, (ring) => ring.toSpliced(position.vertex + 1, 0, /** @type {Point} */ (point)));
 
-/** Without one vertex; a triangle keeps all three. @param {Region[]} regions @param {Place} place */
-export const removed = (regions, place) =>
-  ringAt(regions, place).length <= 3
+/** Without one vertex; a triangle keeps all three. @param {Region[]} regions @param {Place} position */
+export const removed = (regions, position) =>
+  ringAt(regions, position).length <= 3
     ? regions
-    : withRing(regions, place, (ring) => ring.toSpliced(place.vertex, 1));
+    : withRing(regions, position, (ring) => ring.toSpliced(position.vertex, 1));
 
 /** Without a whole ring; the last region stays. @param {Region[]} regions @param {Place} place @returns {Region[]} */
 export const withoutRing = (regions, { region, ring }) => {
@@ -51,11 +51,11 @@ export const withDensity = (regions, region, density) =>
 /** Shifted so that the lowest point stands on y = 0.
  * @param {Region[]} regions @param {Exact} [exact] @returns {Region[]} */
 export const onTheGround = (regions, exact = (value) => value) => {
-  const low = lowest(regions.flatMap((each) => each.outline).map((point) => point[1]));
+  const low = lowest(regions.flatMap((region) => region.outline).map((point) => point[1]));
   /** @param {Ring} ring */
   const shift = (ring) => ring.map(([x, y]) => [x, exact(y - low)]);
   return regions.map(
-    (each) => tidied({ ...each, outline: shift(each.outline), holes: each.holes?.map(shift) })
+    (region) => tidied({ ...region, outline: shift(region.outline), holes: region.holes?.map(shift) })
   );
 };
 
@@ -63,48 +63,48 @@ export const onTheGround = (regions, exact = (value) => value) => {
  * @param {Ring} outline @param {Exact} [exact] @returns {Ring} */
 export const middleHole = (outline, exact = (value) => value) => {
   const [xs, ys] = [0, 1].map((axis) => outline.map((point) => point[axis]));
-  const [x, y] = [xs, ys].map((each) => each.reduce((sum, value) => sum + value, 0) / each.length);
-  const [dx, dy] = [xs, ys].map((each) => spanOf(each) / 8);
+  const [x, y] = [xs, ys].map((values) => values.reduce((sum, value) => sum + value, 0) / values.length);
+  const [dx, dy] = [xs, ys].map((values) => spanOf(values) / 8);
   return [
     [x - dx, y - dy], [x + dx, y - dy], [x + dx, y + dy], [x - dx, y + dy],
   ].map((point) => /** @type {Point} */ (point.map(exact)));
 };
 
 /** The edge after a vertex: both ends, its length and its angle from the horizontal in degrees.
- * @param {Region[]} regions @param {Place} place */
-export const edgeAt = (regions, place) => {
-  const ring = ringAt(regions, place);
-  const [from, to] = [ring[place.vertex], ring[(place.vertex + 1) % ring.length]];
+ * @param {Region[]} regions @param {Place} position */
+export const edgeAt = (regions, position) => {
+  const ring = ringAt(regions, position);
+  const [from, to] = [ring[position.vertex], ring[(position.vertex + 1) % ring.length]];
   const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
   return { from, to, length: Math.hypot(dx, dy), angle: (Math.atan2(dy, dx) * 180) / Math.PI };
 };
 
 /** With another length or angle of an edge: its second end moves.
- * @param {Region[]} regions @param {Place} place @param {{ length: number, angle: number }} edge @param {Exact} [exact] */
-export const withEdge = (regions, place, { length, angle }, exact = (value) => value) => {
-  const { from } = edgeAt(regions, place);
+ * @param {Region[]} regions @param {Place} position @param {{ length: number, angle: number }} edge @param {Exact} [exact] */
+export const withEdge = (regions, position, { length, angle }, exact = (value) => value) => {
+  const { from } = edgeAt(regions, position);
   const turn = (angle * Math.PI) / 180;
-  const end = [from[0] + length * Math.cos(turn), from[1] + length * Math.sin(turn)].map((each) => exact(each));
-  return moved(regions, { ...place, vertex: (place.vertex + 1) % ringAt(regions, place).length }, end);
+  const end = [from[0] + length * Math.cos(turn), from[1] + length * Math.sin(turn)].map((coordinate) => exact(coordinate));
+  return moved(regions, { ...position, vertex: (position.vertex + 1) % ringAt(regions, position).length }, end);
 };
 
 /** An edge as an arc that rises by so much out of the ring: {regions, chords, error}, the error at most what is asked.
- * @param {Region[]} regions @param {Place} place @param {number} rise @param {number} most @param {Exact} [exact] */
-export const withArc = (regions, place, rise, most, exact = (value) => value) => {
-  const { from, to, length } = edgeAt(regions, place);
+ * @param {Region[]} regions @param {Place} position @param {number} rise @param {number} most @param {Exact} [exact] */
+export const withArc = (regions, position, rise, most, exact = (value) => value) => {
+  const { from, to, length } = edgeAt(regions, position);
   const radius = (length ** 2 / 4 + rise ** 2) / (2 * Math.abs(rise));
-  const whole = 4 * Math.atan((2 * Math.abs(rise)) / length);
-  const chords = Math.max(2, Math.ceil(whole / (2 * Math.acos(Math.max(0, 1 - most / radius))) - 1e-9));
+  const arcAngle = 4 * Math.atan((2 * Math.abs(rise)) / length);
+  const chords = Math.max(2, Math.ceil(arcAngle / (2 * Math.acos(Math.max(0, 1 - most / radius))) - 1e-9));
   if (!(chords <= MOST_CHORDS)) return null;
-  const out = Math.sign(rise) * Math.sign(signedArea(ringAt(regions, place)) || 1);
+  const out = Math.sign(rise) * Math.sign(signedArea(ringAt(regions, position)) || 1);
   const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
   const points = Array.from({ length: chords - 1 }, (_, k) => {
-    const at = ((k + 1) / chords - 0.5) * whole;
+    const at = ((k + 1) / chords - 0.5) * arcAngle;
     const [along, up] = [length / 2 + radius * Math.sin(at), out * (radius * Math.cos(at) - radius + Math.abs(rise))];
-    return /** @type {Point} */ ([from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map((each) => exact(each)));
+    return /** @type {Point} */ ([from[0] + along * ux + up * uy, from[1] + along * uy - up * ux].map((coordinate) => exact(coordinate)));
   });
-  const next = withRing(regions, place, (ring) => ring.toSpliced(place.vertex + 1, 0, ...points));
-  return { regions: next, chords, error: radius * (1 - Math.cos(whole / (2 * chords))) };
+  const next = withRing(regions, position, (ring) => ring.toSpliced(position.vertex + 1, 0, ...points));
+  return { regions: next, chords, error: radius * (1 - Math.cos(arcAngle / (2 * chords))) };
 };
 
 const MOST_CHORDS = 1000;
@@ -118,7 +118,7 @@ const signedArea = (ring) => ring.reduce((sum, [x, y], index) => {
 /** A section turned left for right about its middle, its feet and its centre too.
  * @param {any} section @param {Region[]} regions @param {Exact} [exact] */
 export const mirrored = (section, regions, exact = (value) => value) => {
-  const xs = regions.flatMap((each) => each.outline).map((point) => point[0]);
+  const xs = regions.flatMap((region) => region.outline).map((point) => point[0]);
   const sum = lowest(xs) + highest(xs);
   /** @param {number} x */
   const turned = (x) => exact(sum - x);
@@ -127,25 +127,25 @@ export const mirrored = (section, regions, exact = (value) => value) => {
   const { feet, centre } = section;
   return {
     ...section,
-    region: regions.map((each) => tidied({ ...each, outline: ring(each.outline), holes: each.holes?.map(ring) })),
+    region: regions.map((region) => tidied({ ...region, outline: ring(region.outline), holes: region.holes?.map(ring) })),
     ...(feet ? { feet: [turned(feet[1]), turned(feet[0])] } : {}),
     ...(centre ? { centre: [turned(centre[0]), centre[1]] } : {}),
   };
 };
 
 /** A ring and its image beyond an edge as one: half a profile becomes the whole.
- * @param {Region[]} regions @param {Place} place @param {Exact} [exact] */
-export const doubled = (regions, place, exact = (value) => value) => {
-  const { from, to, length } = edgeAt(regions, place);
+ * @param {Region[]} regions @param {Place} position @param {Exact} [exact] */
+export const doubled = (regions, position, exact = (value) => value) => {
+  const { from, to, length } = edgeAt(regions, position);
   const [ux, uy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
   /** @param {number[]} point */
   const image = ([x, y]) => {
     const along = (x - from[0]) * ux + (y - from[1]) * uy;
-    return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map((each) => exact(each));
+    return [2 * (from[0] + along * ux) - x, 2 * (from[1] + along * uy) - y].map((coordinate) => exact(coordinate));
   };
-  return withRing(regions, place, (ring) => {
-    const rest = Array.from({ length: ring.length - 2 }, (_, k) => ring[(place.vertex + 2 + k) % ring.length]);
-    return [to, ...rest, from, ...rest.map(image).reverse()];
+  return withRing(regions, position, (ring) => {
+    const others = Array.from({ length: ring.length - 2 }, (_, k) => ring[(position.vertex + 2 + k) % ring.length]);
+    return [to, ...others, from, ...others.map(image).reverse()];
   });
 };
 
@@ -154,15 +154,15 @@ export const doubled = (regions, place, exact = (value) => value) => {
 export const nearest = (regions, [x, y], reach, chosen) => {
   let best = reach;
   /** @type {Place | null} */
-  let found = null;
+  let closest = null;
   for (const { region, ring, points } of ringsOf(regions)) {
     points.forEach((point, vertex) => {
       const away = Math.hypot(point[0] - x, point[1] - y);
       const same = chosen.region === region && chosen.ring === ring && chosen.vertex === vertex;
-      if (away < best || (away === best && same)) [best, found] = [away, { region, ring, vertex }];
+      if (away < best || (away === best && same)) [best, closest] = [away, { region, ring, vertex }];
     });
   }
-  return found;
+  return closest;
 };
 
 /** Round a point to a grid; a step of nothing leaves it.
@@ -195,17 +195,17 @@ export const createHistory = (most = 200) => {
 /** @param {any[]} from @param {any[]} to @param {(found: any) => any} nowLike */
 const travel = (from, to, nowLike) => {
   if (!from.length) return null;
-  const found = from.pop();
-  to.push(nowLike(found));
-  return found;
+  const entry = from.pop();
+  to.push(nowLike(entry));
+  return entry;
 };
 
 /** @param {Region[]} regions @param {{ region: number, ring: number }} place @param {(ring: Ring) => any} change @returns {Region[]} */
 const withRing = (regions, { region, ring }, change) => {
-  const each = regions[region];
+  const old = regions[region];
   const next = ring < 0
-    ? { ...each, outline: change(each.outline) }
-    : { ...each, holes: each.holes?.with(ring, change(each.holes[ring])) };
+    ? { ...old, outline: change(old.outline) }
+    : { ...old, holes: old.holes?.with(ring, change(old.holes[ring])) };
   return regions.with(region, next);
 };
 

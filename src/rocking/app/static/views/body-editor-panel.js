@@ -11,9 +11,9 @@ import { t } from "/app/words.js";
 export const Tools = ({ editor, children }) => {
   const { history, state } = editor;
   // a button that becomes disabled would drop the focus; one that says that it is keeps it
-  /** @param {"undo" | "redo"} direction @param {string} words @param {boolean} can */
-  const travel = (direction, words, can) => html`
-    <${Button} aria-disabled=${can ? null : "true"} onClick=${() => editor.travel(direction)}>${words}<//>`;
+  /** @param {"undo" | "redo"} direction @param {string} text @param {boolean} can */
+  const travel = (direction, text, can) => html`
+    <${Button} aria-disabled=${can ? null : "true"} onClick=${() => editor.travel(direction)}>${text}<//>`;
   return html`<div class="toolbar">
     ${travel("undo", "Undo", history.canUndo())}${travel("redo", "Redo", history.canRedo())}
     <${Button} onClick=${() => newRegion(editor)}>Add region<//>
@@ -26,12 +26,12 @@ export const Tools = ({ editor, children }) => {
 
 /** The chosen vertex, the grid and the densities, in numbers. @param {{ editor: Editor }} props */
 export const Details = ({ editor }) => {
-  const { place, snap, step } = editor.state;
+  const { place: position, snap, step } = editor.state;
   /** @type {Region[]} */
   const regions = editor.regions();
-  const point = model.ringAt(regions, place)[place.vertex];
+  const point = model.ringAt(regions, position)[position.vertex];
   /** @param {number} index */
-  const put = (index) => (/** @type {number} */ value) => editor.change(model.moved(editor.regions(), place, point.with(index, value)));
+  const put = (index) => (/** @type {number} */ value) => editor.change(model.moved(editor.regions(), position, point.with(index, value)));
   /** @param {number} index */
   const weigh = (index) => (/** @type {number | null} */ value) => editor.weigh(model.withDensity(editor.regions(), index, value), value);
   /** @param {"snap" | "step"} key */
@@ -42,7 +42,7 @@ export const Details = ({ editor }) => {
   return html`
     <div class="stack">
       <div class="fields">
-        ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(place)}`} label=${t("Vertex {axis}", { axis })}
+        ${["x", "y"].map((axis, index) => html`<${NumberField} key=${`${axis} ${Object.values(position)}`} label=${t("Vertex {axis}", { axis })}
           value=${point[index]} on=${put(index)} />`)}
         <${NumberField} label="Grid step" value=${step} on=${set("step")} above=${0} optional aside placeholder=${editable(editor.step())}
           help="Step of the grid and of the arrow keys (with Shift: ten steps). Empty: depends on the zoom." />
@@ -59,12 +59,12 @@ export const Details = ({ editor }) => {
 const newRegion = (editor) => {
   /** @type {Region[]} */
   const regions = editor.regions();
-  const points = regions.flatMap((each) => each.outline);
-  const [xs, ys] = [0, 1].map((axis) => points.map((each) => each[axis]));
+  const points = regions.flatMap((region) => region.outline);
+  const [xs, ys] = [0, 1].map((axis) => points.map((point) => point[axis]));
   const top = highest(ys);
-  const ridge = points.filter((each) => each[1] === top).map((each) => each[0]);
-  const whole = [lowest(xs), highest(xs)];
-  const [left, right] = ridge.length > 1 ? [lowest(ridge), highest(ridge)] : whole;
+  const ridge = points.filter((point) => point[1] === top).map((point) => point[0]);
+  const extent = [lowest(xs), highest(xs)];
+  const [left, right] = ridge.length > 1 ? [lowest(ridge), highest(ridge)] : extent;
   const high = tidy(top + (top - lowest(ys)) / 4, 6);
   /** @type {Ring} */
   const outline = [[left, top], [right, top], [right, high], [left, high]];

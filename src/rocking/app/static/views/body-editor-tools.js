@@ -20,8 +20,8 @@ const HOW = {
  * @param {Editor} editor */
 export const createTool = (editor) => {
   const held = () => /** @type {NonNullable<Editor["state"]["tool"]>} */ (editor.state.tool);
-  /** @param {string} words */
-  const say = (words) => (editor.told.value = words);
+  /** @param {string} text */
+  const say = (text) => (editor.told.value = text);
   const tell = () => {
     const { points, cursor } = held();
     const count = points.length;
@@ -113,12 +113,12 @@ export const PenEnds = ({ editor: { state, tool } }) => html`
 export const EdgePart = ({ editor }) => {
   const box = useRef(null);
   const [rise, off, wrong] = [null, null, ""].map(useSignal);
-  const { place } = editor.state;
-  const { length, angle } = model.edgeAt(editor.regions(), place);
+  const { place: position } = editor.state;
+  const { length, angle } = model.edgeAt(editor.regions(), position);
   /** @param {string} key */
   const change = (key) => (/** @type {number} */ value) => {
-    const now = model.edgeAt(editor.regions(), place);
-    editor.change(model.withEdge(editor.regions(), place, { ...now, [key]: value }, tidy));
+    const now = model.edgeAt(editor.regions(), position);
+    editor.change(model.withEdge(editor.regions(), position, { ...now, [key]: value }, tidy));
   };
   const fixed = () => {
     if (length === 0) editor.tool.say("This edge has length 0.");
@@ -128,17 +128,17 @@ export const EdgePart = ({ editor }) => {
     if (!fixed()) return undefined;
     if (!rise.value) wrong.value = "Enter a rise other than 0.";
     if (!rise.value || wrongIn(box.current)) return toWrong(box.current);
-    const made = model.withArc(editor.regions(), place, rise.value, off.value ?? Math.abs(rise.value) / 100, tidy);
-    if (!made) return editor.tool.say("This arc needs more than 1000 chords. Allow a larger deviation.");
-    editor.change(made.regions);
-    return editor.tool.say(t("Arc of {count} chords, largest deviation {length} {unit}.", { count: made.chords, length: number(made.error), unit: editor.units() }));
+    const arcResult = model.withArc(editor.regions(), position, rise.value, off.value ?? Math.abs(rise.value) / 100, tidy);
+    if (!arcResult) return editor.tool.say("This arc needs more than 1000 chords. Allow a larger deviation.");
+    editor.change(arcResult.regions);
+    return editor.tool.say(t("Arc of {count} chords, largest deviation {length} {unit}.", { count: arcResult.chords, length: number(arcResult.error), unit: editor.units() }));
   };
   /** @param {number | null} value */
   const rises = (value) => {
     rise.value = value;
     wrong.value = "";
   };
-  const of = Object.values(place).join();
+  const of = Object.values(position).join();
   return html`
     <details class="paste" data-testid="edge"><summary>Edge after the selected vertex</summary><div class="stack">
       <div class="fields">
@@ -151,7 +151,7 @@ export const EdgePart = ({ editor }) => {
           help="Positive: out of the body. Negative: into the body." />
         <${NumberField} label="Largest deviation from the arc" value=${off} above=${0} optional aside help="Empty: 1/100 of the rise." /></div>
       <div class="toolbar"><${Button} onClick=${arc}>Replace by an arc<//>
-        <${Button} onClick=${() => fixed() && editor.change(model.doubled(editor.regions(), place, tidy))}>Complete by symmetry<//></div>
+        <${Button} onClick=${() => fixed() && editor.change(model.doubled(editor.regions(), position, tidy))}>Complete by symmetry<//></div>
     </div></details>`;
 };
 
@@ -159,7 +159,7 @@ export const EdgePart = ({ editor }) => {
  * @param {{ editor: Editor }} props */
 export const PhotoPart = ({ editor }) => {
   const { state: { photo, tool }, tool: { say } } = editor;
-  const [box, opacity, known, wrong] = [useRef(null), useSignal(0.6), useSignal(null), useSignal("")];
+  const [box, opacity, knownLength, wrong] = [useRef(null), useSignal(0.6), useSignal(null), useSignal("")];
   /** @param {any} next */
   const show = (next) => {
     if (editor.state.photo) URL.revokeObjectURL(editor.state.photo.url);
@@ -167,9 +167,9 @@ export const PhotoPart = ({ editor }) => {
     editor.tell();
   };
   /** @param {any} event */
-  const load = async ({ target: { files: [given] } }) => {
-    if (!given) return;
-    const [url, image] = [URL.createObjectURL(given), new Image()];
+  const load = async ({ target: { files: [file] } }) => {
+    if (!file) return;
+    const [url, image] = [URL.createObjectURL(file), new Image()];
     image.src = url;
     try {
       await image.decode();
@@ -178,7 +178,7 @@ export const PhotoPart = ({ editor }) => {
       say("The browser cannot show this file as a picture.");
       return;
     }
-    const around = boxOf(editor.regions().flatMap((/** @type {Region} */ each) => each.outline));
+    const around = boxOf(editor.regions().flatMap((/** @type {Region} */ region) => region.outline));
     const [width, height] = [image.naturalWidth, image.naturalHeight];
     say("The picture has the height of the body. Set its scale.");
     show({ url, width, height, x: around.left, y: around.bottom, scale: (around.top - around.bottom) / height, opacity: opacity.value });
@@ -195,16 +195,16 @@ export const PhotoPart = ({ editor }) => {
   };
   /** @param {number} value */
   const measure = (value) => {
-    known.value = value;
+    knownLength.value = value;
     wrong.value = "";
   };
   // The first point stays where it is.
   const apply = () => {
     const [from, to] = tool?.points ?? [];
     if (!to) return say("Set two points first.");
-    if (!known.value) wrong.value = "Enter a distance above 0.";
-    if (!known.value || wrongIn(box.current)) return toWrong(box.current);
-    const factor = known.value / Math.hypot(to[0] - from[0], to[1] - from[1]);
+    if (!knownLength.value) wrong.value = "Enter a distance above 0.";
+    if (!knownLength.value || wrongIn(box.current)) return toWrong(box.current);
+    const factor = knownLength.value / Math.hypot(to[0] - from[0], to[1] - from[1]);
     Object.assign(photo, {
       scale: photo.scale * factor, x: from[0] + (photo.x - from[0]) * factor, y: from[1] + (photo.y - from[1]) * factor,
     });
@@ -225,7 +225,7 @@ export const PhotoPart = ({ editor }) => {
           <${Slider} label="Opacity" value=${opacity.value} on=${fade} min=${0.1} max=${1} step=${0.05} />
           <${NumberField} label="Picture's left edge" value=${tidy(photo.x, 9)} on=${put("x")} aside />
           <${NumberField} label="Picture's lower edge" value=${tidy(photo.y, 9)} on=${put("y")} aside />
-          <${NumberField} label="Length between the two points" name="known-length" value=${known.value} on=${measure} error=${wrong.value}
+          <${NumberField} label="Length between the two points" name="known-length" value=${knownLength.value} on=${measure} error=${wrong.value}
             above=${0} optional aside /></div>
         <div class="toolbar">
           <${Button} aria-pressed=${String(tool?.kind === "scale")} onClick=${() => editor.tool.take("scale")}>Set two points<//>

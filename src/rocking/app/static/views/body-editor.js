@@ -59,7 +59,7 @@ const changeUnits = (state, factor) => {
  * @param {App} app */
 export const createEditor = (app) => {
   const history = model.createHistory();
-  const [drawn, told] = [signal(0), signal("")];
+  const [drawn, boardText] = [signal(0), signal("")];
   // Photograph and tool are this browser's alone: they are no part of the body.
   /** @type {any} */
   const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
@@ -67,14 +67,14 @@ export const createEditor = (app) => {
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
   // Feet and depth are typed beside the board: a step takes them along only if it changed them itself.
-  const now = ({ whole = false } = {}) => {
+  const now = ({ whole: withSection = false } = {}) => {
     const { section, units: of } = body();
-    return { section, regions: regions(), units: of, whole };
+    return { section, regions: regions(), units: of, whole: withSection };
   };
   const step = () => state.grid ?? state.step ?? 0.05;
   /** @type {Editor} */
   const editor = {
-    state, history, regions, step, drawn, told, board: /** @type {any} */ (null), // until it is drawn
+    state, history, regions, step, drawn, told: boardText, board: /** @type {any} */ (null), // until it is drawn
     tool: /** @type {any} */ (null), // at the end
     shown: () => shapeOf(body()) === "section",
     section: () => body().section,
@@ -83,14 +83,14 @@ export const createEditor = (app) => {
     metres: () => METRES[body().units],
     refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
     refusalWords: () => app.body.error()?.message ?? "",
-    /** @param {Region[]} next @param {Place} [place] */
-    change: (next, place = state.place) => {
+    /** @param {Region[]} next @param {Place} [position] */
+    change: (next, position = state.place) => {
       history.keep(now());
-      editor.adjust(next, place);
+      editor.adjust(next, position);
     },
-    /** @param {Region[]} next @param {Place} [place] */
-    adjust: (next, place = state.place) => {
-      state.place = place;
+    /** @param {Region[]} next @param {Place} [position] */
+    adjust: (next, position = state.place) => {
+      state.place = position;
       app.inputs.set("body.section.region", weighed(next, /** @type {any} */ (body().section ?? {})));
       editor.tell();
     },
@@ -104,37 +104,37 @@ export const createEditor = (app) => {
       history.keep(now({ whole: true }));
       editor.show(section, { region: 0, ring: -1, vertex: 0 });
     },
-    /** @param {object} section @param {Place} place */
-    show: (section, place) => {
-      state.place = place;
+    /** @param {object} section @param {Place} position */
+    show: (section, position) => {
+      state.place = position;
       app.inputs.set("body.section", section);
       editor.tell();
     },
     keep: () => history.keep(now()),
-    /** @param {Place} place */
-    select: (place) => {
-      state.place = place;
+    /** @param {Place} position */
+    select: (position) => {
+      state.place = position;
       editor.tell();
     },
     /** @param {number[]} point */
     snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
     /** @param {"undo" | "redo"} direction */
     travel: (direction) => {
-      const found = history[direction](now);
-      if (!found) return;
-      const table = found.whole ? found.section : { region: found.regions };
-      const { section } = /** @type {any} */ (inUnits)({ units: found.units, section: table }, body().units);
-      const place = withinReach(found.regions, state.place);
-      if (found.whole) editor.show(section, place);
-      else editor.adjust(section.region, place);
+      const entry = history[direction](now);
+      if (!entry) return;
+      const table = entry.whole ? entry.section : { region: entry.regions };
+      const { section } = /** @type {any} */ (inUnits)({ units: entry.units, section: table }, body().units);
+      const position = withinReach(entry.regions, state.place);
+      if (entry.whole) editor.show(section, position);
+      else editor.adjust(section.region, position);
     },
     say: app.say,
     tell: () => {
       if (editor.shown()) {
         if (units !== body().units) changeUnits(state, METRES[units] / editor.metres());
         ({ units } = body());
-        const found = regions();
-        if (found.length) state.place = withinReach(found, state.place);
+        const current = regions();
+        if (current.length) state.place = withinReach(current, state.place);
         editor.board?.follow(); // first: it knows the step of its grid
       }
       drawn.value += 1;
@@ -144,16 +144,16 @@ export const createEditor = (app) => {
   return editor;
 };
 
-/** @param {Refusal["place"]} place @param {number} metres */
-const inUnitsOf = (place, metres) => place && {
-  ...place, x: place.x === undefined ? undefined : place.x / metres, y: place.y === undefined ? undefined : place.y / metres,
+/** @param {Refusal["place"]} fault @param {number} metres */
+const inUnitsOf = (fault, metres) => fault && {
+  ...fault, x: fault.x === undefined ? undefined : fault.x / metres, y: fault.y === undefined ? undefined : fault.y / metres,
 };
 
 // Regions written as text (WKT) become points as soon as someone draws on them.
 /** @param {any} section @param {Server.DescribedBody | null} facts @param {Unit} units @returns {Region[]} */
 const editable = (section, facts, units) => {
-  const given = section?.region ?? [];
-  return given.every((/** @type {Region} */ each) => each.outline) ? given : regionsOf(facts, units);
+  const stated = section?.region ?? [];
+  return stated.every((/** @type {Region} */ region) => region.outline) ? stated : regionsOf(facts, units);
 };
 
 /** The nearest place that exists after a change. @param {Region[]} regions @param {Place} place */

@@ -19,7 +19,7 @@ export const Facts = ({ app, facts: body }) => {
   /** @param {string} label @param {string} unit @param {(side: Server.SideFacts) => number} read */
   const row = (label, unit, read) => [label, ...sides.map(read), unit];
   /** @param {string} label @param {string} unit @param {number} value */
-  const whole = (label, unit, value) => [label, ...sides.map(() => value), unit];
+  const sameRow = (label, unit, value) => [label, ...sides.map(() => value), unit];
   const feet = body.foot_positions.map((foot) => settled(foot, body));
   const rows = [
     row("Slenderness h/b", "", (side) => side.slenderness_ratio),
@@ -30,10 +30,10 @@ export const Facts = ({ app, facts: body }) => {
     row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration),
     row("Uplift acceleration", "g", (side) => side.uplift_acceleration / body.gravity),
     ["Foot, x", ...(differ ? feet : [numbers(feet)]), "m"],
-    whole("Centre of mass, x", "m", settled(body.centre[0], body)),
-    whole("Centre of mass, y", "m", settled(body.centre[1], body)),
-    whole("Mass", "kg", body.mass),
-    whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia),
+    sameRow("Centre of mass, x", "m", settled(body.centre[0], body)),
+    sameRow("Centre of mass, y", "m", settled(body.centre[1], body)),
+    sameRow("Mass", "kg", body.mass),
+    sameRow("Moment of inertia", "kg m\u00b2", body.moment_of_inertia),
   ];
   return html`<${Table} columns=${columns} rows=${rows} testid="facts-table"
     caption=${differ ? "By foot of rotation" : "Both feet"}
@@ -47,12 +47,12 @@ const settled = (length, { sides }) =>
 
 /** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
-  ${warnings.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}
-  ${!warnings.length && html`<${Note} kind="good" words=${t("Uplift at a ground acceleration of {acceleration}.", { acceleration: upliftWords(body) })} />`}
-  ${assumed.map((words) => html`<${Note} key=${words} words=${words} />`)}`;
+  ${warnings.map((text) => html`<${Note} key=${text} kind="warning" text=${text} />`)}
+  ${!warnings.length && html`<${Note} kind="good" text=${t("Uplift at a ground acceleration of {acceleration}.", { acceleration: upliftWords(body) })} />`}
+  ${assumed.map((text) => html`<${Note} key=${text} text=${text} />`)}`;
 
 /** @param {Pick<Server.DescribedBody, "sides" | "gravity">} body */
 const upliftWords = ({ sides, gravity }) => {
-  const least = Math.min(sides.left.uplift_acceleration, sides.right.uplift_acceleration);
-  return `${quantity(least, "m/s2", 3)} (${quantity(least / gravity, "g", 3)})`;
+  const lowest = Math.min(sides.left.uplift_acceleration, sides.right.uplift_acceleration);
+  return `${quantity(lowest, "m/s2", 3)} (${quantity(lowest / gravity, "g", 3)})`;
 };

@@ -32,9 +32,9 @@ export const Form = ({ app, body, refusal }) => {
   const own = `${shape} ${units}`; // other fields, however alike
   return html`<div class="stack">
     <${Choice} label="Shape" value=${shape} on=${become}
-      options=${[...Object.entries(SHAPES).map(([key, { words }]) => [key, words]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
+      options=${[...Object.entries(SHAPES).map(([key, { words: text }]) => [key, text]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
     <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(app.inputs.get().body, next))} />
-    ${shape === "mass_points" ? html`<${Note} words="This body consists of mass points from a file." />`
+    ${shape === "mass_points" ? html`<${Note} text="This body consists of mass points from a file." />`
       : html`<${Sizes} key=${own} shape=${shape} units=${units} table=${tableOfShape(body)} put=${put} error=${error} />`}
     <${Field} label="Name" value=${body.name} placeholder=${t("optional")} maxlength="80" translate=${false}
       on=${(text) => app.inputs.set("body.name", text.trim() || undefined)} />
@@ -60,7 +60,7 @@ const Sizes = ({ shape, units, table, put, error }) => {
   const field = (key, label, more) => html`<${NumberField} key=${key} label=${label} value=${table[key]} on=${put(key)}
     error=${error(key)} ...${more} />`;
   /** @param {string} key @param {string} label @param {string} unit @param {string} help */
-  const known = (key, label, unit, help) => field(key, label, { unit, help, above: 0, optional: true });
+  const positive = (key, label, unit, help) => field(key, label, { unit, help, above: 0, optional: true });
   /** @param {string} key @param {string[]} labels @param {string} help @param {string} alone */
   const pair = (key, labels, help, alone) => html`<${Pair} key=${key} labels=${labels} unit=${units} help=${help} alone=${alone}
     value=${table[key]} on=${put(key)} error=${error(key)} />`;
@@ -68,10 +68,10 @@ const Sizes = ({ shape, units, table, put, error }) => {
     <div class="fields" data-testid="sizes">
       ${SHAPES[shape].fields.map(([key, label, more]) => field(key, label, { unit: units, ...(more?.min === undefined && limits), ...more }))}
       ${field("depth", "Depth", { unit: units, optional: true, ...limits, help: "Normal to the plane; affects the mass only. Empty: 1\u00a0m." })}
-      ${shape !== "section" && known("density", "Density", "kg/m3", "Empty: 2400\u00a0kg/m\u00b3.")}
-      ${known("mass", "Mass", "kg", "Replaces the density.")}
+      ${shape !== "section" && positive("density", "Density", "kg/m3", "Empty: 2400\u00a0kg/m\u00b3.")}
+      ${positive("mass", "Mass", "kg", "Replaces the density.")}
       ${pair("centre", ["Centre of mass x", "Centre of mass y"], "Both empty: homogeneous body.", "Enter both x and y.")}
-      ${known("moment_of_inertia", "Moment of inertia", "kg m2", "About the centre of mass. Empty: assumed.")}
+      ${positive("moment_of_inertia", "Moment of inertia", "kg m2", "About the centre of mass. Empty: assumed.")}
     </div>
     <div class="fields" data-testid="feet">
       ${pair("feet", ["Left foot", "Right foot"], "Both empty: the edges of the base.", "Enter both feet or neither.")}
@@ -91,8 +91,8 @@ const Pair = ({ labels, value, on, help, alone, error, ...more }) => {
   }
   const [, draw] = useState();
   /** @param {number} index */
-  const take = (index) => (/** @type {number | null} */ given) => {
-    const pair = typed.current.with(index, given);
+  const take = (index) => (/** @type {number | null} */ number) => {
+    const pair = typed.current.with(index, number);
     typed.current = pair;
     draw({});
     if (pair[0] === null && pair[1] === null) on(null);

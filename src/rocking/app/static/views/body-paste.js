@@ -15,29 +15,29 @@ const USES = [
 /** The part of the editor that takes pasted points. @param {{ editor: Editor }} props */
 export const PastePart = ({ editor }) => {
   const box = useRef(null);
-  const [text, told, fault] = ["", "", ""].map(useSignal);
-  /** @param {string} given */
-  const read = (given) => {
-    const { points, fault: wrong } = parsePoints(given);
-    text.value = given;
+  const [text, status, fault] = ["", "", ""].map(useSignal);
+  /** @param {string} typed */
+  const read = (typed) => {
+    const { points, fault: wrong } = parsePoints(typed);
+    text.value = typed;
     fault.value = wrong;
-    told.value = wrong ? "" : t("{count} points read, in {unit}.", { count: points.length, unit: editor.units() });
+    status.value = wrong ? "" : t("{count} points read, in {unit}.", { count: points.length, unit: editor.units() });
     return wrong ? null : points;
   };
   /** @param {(editor: Editor, points: Ring) => string | void} make */
   const use = (make) => {
     const points = read(text.value);
     if (!points) return toWrong(box.current);
-    told.value = make(editor, points) ?? told.value;
+    status.value = make(editor, points) ?? status.value;
     return undefined;
   };
   return html`
     <details ref=${box} class="paste"><summary>Paste points from Excel or a file</summary><div class="stack">
       <${Field} tag="textarea" label="Points: x and y per line" value=${text.value} on=${read} error=${fault.value}
         rows="5" spellcheck=${false} placeholder=${"0\t0\n0.6\t0\n0.4\t1.8"} />
-      <p class="field-help" role="status">${told.value}</p>
-      <div class="toolbar">${USES.map(([words, kind, make]) => html`
-        <${Button} key=${words} kind=${kind} onClick=${() => use(make)}>${words}<//>`)}</div>
+      <p class="field-help" role="status">${status.value}</p>
+      <div class="toolbar">${USES.map(([label, kind, make]) => html`
+        <${Button} key=${label} kind=${kind} onClick=${() => use(make)}>${label}<//>`)}</div>
     </div></details>`;
 };
 
@@ -45,8 +45,8 @@ export const PastePart = ({ editor }) => {
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
   editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
-  const words = t("The body now consists of these {count} points.", { count: points.length });
-  return lost ? `${words} ${lost}` : words;
+  const status = t("The body now consists of these {count} points.", { count: points.length });
+  return lost ? `${status} ${lost}` : status;
 };
 
 /** Points as one more region. @param {Editor} editor @param {Ring} points */
@@ -74,7 +74,7 @@ const replaced = ({ depth, mass }, { density }, outline) => ({
 /** What of the former body is gone, in words; nothing if it had no more than its outline.
  * @param {any} section @param {Region[]} regions */
 const lostWords = (section, regions) => {
-  const holes = regions.flatMap((each) => each.holes ?? []).length;
+  const holes = regions.flatMap((region) => region.holes ?? []).length;
   const others = regions.length - 1;
   const gone = [
     holes ? t(["{count} hole", "{count} holes"], { count: holes }) : "",

@@ -6,7 +6,7 @@ import { SHAPES } from "/app/shapes.js";
 import { fromMetres } from "/views/body-units.js";
 
 /** Which shape an Inputs body is. @param {any} body @returns {string} */
-export const shapeOf = (body) => Object.keys(SHAPES).find((each) => body[each]) ?? (
+export const shapeOf = (body) => Object.keys(SHAPES).find((shape) => body[shape]) ?? (
   body.mass_points ? "mass_points" : "block"
 );
 
@@ -18,14 +18,14 @@ export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
  * @param {any} body @param {string} key @param {any} value @param {{ [shape: string]: any }} replaced */
 export const withKey = (body, key, value, replaced) => {
   const shape = shapeOf(body);
-  const given = value ?? undefined;
+  const newValue = value ?? undefined;
   // feet of its own stand in a block's table; the short form has none
-  if (key === "feet" && given && !body[shape]) return withFeet(body, given);
+  if (key === "feet" && newValue && !body[shape]) return withFeet(body, newValue);
   const at = body[shape] ? [shape] : [];
-  const next = changedAt(body, [...at, key], given);
-  if (key === "density" && given) return changedAt(next, [...at, "mass"], undefined);
+  const next = changedAt(body, [...at, key], newValue);
+  if (key === "density" && newValue) return changedAt(next, [...at, "mass"], undefined);
   if (key !== "mass") return next;
-  if (given === undefined) return changedTable(next, (table) => withDensities(table, replaced[shape]));
+  if (newValue === undefined) return changedTable(next, (table) => withDensities(table, replaced[shape]));
   if (tableOfShape(body).mass === undefined) replaced[shape] = densitiesOf(tableOfShape(body));
   return changedTable(next, (table) => withDensities(table, []));
 };
@@ -37,13 +37,13 @@ const changedTable = (body, change) => {
 };
 
 /** @param {any} table */
-const densitiesOf = ({ density, region = [] }) => [density, ...region.map((/** @type {Region} */ each) => each.density)];
+const densitiesOf = ({ density, region = [] }) => [density, ...region.map((/** @type {Region} */ item) => item.density)];
 
 // A table's own density and those of its regions, as long as they are the same regions; of none of them none.
 /** @param {any} table @param {any[]} [densities] */
 const withDensities = (table, [density, ...others] = []) => {
   const same = others.length === table.region?.length ? others : [];
-  const region = table.region?.map((/** @type {Region} */ { density: _, ...each }, /** @type {number} */ k) => clean({ ...each, density: same[k] }));
+  const region = table.region?.map((/** @type {Region} */ { density: _, ...fields }, /** @type {number} */ k) => clean({ ...fields, density: same[k] }));
   return clean({ ...table, density, region });
 };
 
@@ -99,10 +99,10 @@ const rectangle = (width, height) => ({ outline: [[0, 0], [width, 0], [width, he
 // Before the first answer there are no facts: then the sizes that are typed.
 /** @param {Server.DescribedBody | null} facts @param {Unit} units @param {any} table */
 const spans = (facts, units, { width, height }) => {
-  const points = (facts?.outline ?? []).flatMap((each) => each.outline);
+  const points = (facts?.outline ?? []).flatMap((region) => region.outline);
   if (!points.length) return [width ?? fromMetres(0.5, units), height ?? fromMetres(2, units)];
   return [0, 1].map((axis) => {
-    const values = points.map((each) => each[axis]);
+    const values = points.map((point) => point[axis]);
     return round(fromMetres(spanOf(values), units));
   });
 };

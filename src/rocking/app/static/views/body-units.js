@@ -33,7 +33,7 @@ const rescaled = (table, factor) =>
 /** @param {any} value @param {number} factor @returns {any} */
 const nested = (value, factor) =>
   Array.isArray(value) ? value.map(
-    (each) => (isTable(each) ? rescaled(each, factor) : each)
+    (item) => (isTable(item) ? rescaled(item, factor) : item)
   ) : rescaled(value, factor);
 
 /** @param {unknown} value */
@@ -41,5 +41,5 @@ const isTable = (value) => typeof value === "object" && value !== null;
 
 /** @param {any} value @param {number} factor @returns {any} */
 const times = (value, factor) => (
-  Array.isArray(value) ? value.map((each) => times(each, factor)) : exact(value, factor)
+  Array.isArray(value) ? value.map((item) => times(item, factor)) : exact(value, factor)
 );

@@ -28,8 +28,8 @@ export const mount = (section, app) => {
   }));
   const look = () => (faulty.value = app.faults.sentence({ view: "body", but: app.body.error()?.message }));
   app.faults.subscribe(look);
-  app.body.subscribe((found, error) => batch(() => {
-    [facts.value, refusal.value] = [found, error];
+  app.body.subscribe((described, error) => batch(() => {
+    [facts.value, refusal.value] = [described, error];
     look();
     editor.tell();
   }));
@@ -59,8 +59,8 @@ const Results = ({ app, facts: { value: facts }, refusal: { value: refused }, fa
   return html`
     <${Card} title="To scale" kind=${kind}>
       <div class="refusal" role="alert" data-testid="body-refusal">
-        ${refused && html`<${Note} kind="error" words=${refused.message} />`}
-        ${faulty && html`<${Note} kind="warning" words=${`${faulty} ${t(OLDER)}`} />`}</div>
+        ${refused && html`<${Note} kind="error" text=${refused.message} />`}
+        ${faulty && html`<${Note} kind="warning" text=${`${faulty} ${t(OLDER)}`} />`}</div>
       <div ...${facts && aboutOf(facts)}><${Pictured} title="The body to scale"><${Drawn} draw=${drawn} of=${[facts]} /><//></div>
       <div class="stack" data-testid="body-warnings">${facts && html`<${Warnings} facts=${facts} />`}</div><//>
     <${Card} title="Numbers" kind=${kind}>

@@ -17,7 +17,7 @@ export const About = ({ app, label, onClose }) => {
   const heading = useRef(null);
   const { body, settings } = app.inputs.get();
   useEffect(() => void app.call("impact", { json: { body, ...(settings && { settings }) } })
-    .then((found) => (impact.value = found)).catch(() => (impact.value = null)), [body, settings]);
+    .then((answer) => (impact.value = answer)).catch(() => (impact.value = null)), [body, settings]);
   useEffect(() => heading.current?.focus(), [label]);
   const close = html`<${Button} onClick=${onClose}>Close<//>`;
   if (!model) return html`<section class="card"><h2 ref=${heading} tabindex="-1">${wordsOf(label)}</h2>
@@ -35,7 +35,7 @@ export const About = ({ app, label, onClose }) => {
 };
 
 /** @param {{ of: string[] }} props */
-const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((words) => html`<li key=${words}>${words}</li>`)}</ul>`
+const List = ({ of }) => (of.length ? html`<ul class="bullets">${of.map((text) => html`<li key=${text}>${text}</li>`)}</ul>`
   : html`<p>None known.</p>`);
 
 /** @type {{ [foot: string]: string }} */
@@ -45,17 +45,17 @@ const LANDS = {
 };
 
 /** @param {{ found: Server.ImpactAnswered | null, name: string }} props */
-const Evidence = ({ found, name }) => {
-  if (!found) return html`<p class="waiting">Computing</p>`;
-  const rows = Object.entries(found.coefficients)
+const Evidence = ({ found: impact, name }) => {
+  if (!impact) return html`<p class="waiting">Computing</p>`;
+  const rows = Object.entries(impact.coefficients)
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));
   if (!rows.length) return html`<p>No published measurement applies to this model.</p>`;
   return html`${rows.map(({ foot, row }) => html`<p key=${foot}>${t(LANDS[foot], {
         coefficient: number(row.coefficient, 4), low: number(row.coefficient_low, 4), high: number(row.coefficient_high, 4) })}${" "}
       ${row.admissible ? "" : "No single impulse on the base gives this coefficient without creating energy."}</p>
       <${Warnings} of=${row.warnings} />`)}
-    <p class="field-help">${t("{count} published measurements.", { count: found.measured.measurements.length })} ${found.measured.source}</p>`;
+    <p class="field-help">${t("{count} published measurements.", { count: impact.measured.measurements.length })} ${impact.measured.source}</p>`;
 };
 
 /** @param {{ of: string[] }} props */
-const Warnings = ({ of }) => of.map((words) => html`<${Note} key=${words} kind="warning" words=${words} />`);
+const Warnings = ({ of }) => of.map((text) => html`<${Note} key=${text} kind="warning" text=${text} />`);

@@ -1,4 +1,4 @@
-/** Studies that were asked with several models: their fragility, maps and spectra, and what the choice changes. */
+/** Studies that have several models: their fragility, maps and spectra, and what the choice changes. */
 
 import { html, useSignal } from "/parts/preact.js";
 import { Fetched } from "/charts/pictured.js";
@@ -10,10 +10,10 @@ const TABLES = [["flips", "Effect of the choice"], ["differences", "All differen
 const NOTHING = "Nothing to compare: the study has one model or more than six.";
 
 /** The picture of a study that compares its models, as the command line draws it, and its files.
- * @param {{ app: App, asked: { look: () => unknown } }} props */
-export const Studies = ({ app, asked }) => {
+ * @param {{ app: App, handle: { look: () => unknown } }} props */
+export const Studies = ({ app, handle }) => {
   const [all, chosen, drawn, refused] = [useSignal([]), useSignal(""), useSignal(""), useSignal("")];
-  asked.look = async () => {
+  handle.look = async () => {
     const { studies } = await app.call("studies").catch(() => ({ studies: [] }));
     const here = app.project.here.value.id;
     all.value = studies.filter(({ state, kind, project }) => state === "done" && KINDS.has(kind) && (!project || project === here));
@@ -27,12 +27,12 @@ export const Studies = ({ app, asked }) => {
       ${!study ? html`<p class="field-help">Finished maps, spectra and fragility studies with several models appear here.
           <${Button} onClick=${() => app.go("studies")}>Launch a study<//></p>` : html`
         <${Choice} label="Study" own value=${chosen} options=${all.value.map(({ id, name }) => [id, name])} />
-        ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" words=${NOTHING} />` : html`
+        ${refused.value === chosen.value ? html`<${Note} data-testid="not-compared" text=${NOTHING} />` : html`
           ${drawn.value !== chosen.value && html`<p class="waiting" role="status">Drawing the comparison</p>`}
           <${Fetched} key=${chosen.value} title=${t("Models compared: {name}", { name: userText(study.name) })} path=${path("svg")} onLoad=${() => (drawn.value = chosen.value)} alt=${t("{name}: comparison of models and effect of the choice", { name: userText(study.name) })}
             onError=${() => (refused.value = chosen.value)} />
           ${study.kind !== "minimum-acceleration" && html`<div class="toolbar" role="group" aria-label="Export the comparison">
-            ${TABLES.map(([what, words]) => html`<${Button} key=${what} aria-label=${t("{table} as CSV", { table: words })}
-              onClick=${() => app.download(`${path("csv")}?what=${what}`, undefined, `${what}.csv`)}>${t("{table}, CSV", { table: words })}<//>`)}</div>`}`}`}
+            ${TABLES.map(([table, label]) => html`<${Button} key=${table} aria-label=${t("{table} as CSV", { table: label })}
+              onClick=${() => app.download(`${path("csv")}?what=${table}`, undefined, `${table}.csv`)}>${t("{table}, CSV", { table: label })}<//>`)}</div>`}`}`}
     </section>`;
 };

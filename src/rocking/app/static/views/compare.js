@@ -25,26 +25,26 @@ export const mount = (section, app) => {
     const free = response?.initial_rotation ?? null;
     if (!motion && free === null) return null;
     const own = readRestitution(restitution);
-    const known = app.info.models.filter(complete).map(({ label }) => label);
+    const completeLabels = app.info.models.filter(complete).map(({ label }) => label);
     const typed = own.value === null ? {} : { values: [own.value] };
     return {
       body, motion: free === null ? motion : undefined, response, settings,
-      restitution: { models: [...new Set([...known, ...own.models])], ...typed }, points: dotsOf(section),
+      restitution: { models: [...new Set([...completeLabels, ...own.models])], ...typed }, points: dotsOf(section),
     };
   };
   /** @type {Asked<Server.ResponseAnswered>} */
-  const asked = createAnswer(app, "compare", ["body", "motion", "restitution", "response", "settings"], question);
+  const request = createAnswer(app, "compare", ["body", "motion", "restitution", "response", "settings"], question);
   const margins = createMargins(app);
-  const time = createTime(undefined, asked.look);
+  const time = createTime(undefined, request.look);
   const studies = { look: () => {} };
-  render(html`<${Compare} app=${app} asked=${asked} margins=${margins} time=${time} studies=${studies} faulty=${faultsOf(app, "body", "motion")} />`, section);
+  render(html`<${Compare} app=${app} request=${request} margins=${margins} time=${time} studies=${studies} faulty=${faultsOf(app, "body", "motion")} />`, section);
   return {
     shown: () => {
       app.faults.refresh();
-      asked.shown();
+      request.shown();
       studies.look();
     },
-    hidden: asked.hidden,
+    hidden: request.hidden,
   };
 };
 
@@ -57,17 +57,17 @@ const createMargins = (app) => {
   const [now, of] = [signal(keyOf(app.inputs.get())), signal("")];
   app.inputs.subscribe((inputs) => (now.value = keyOf(inputs)));
   const ended = signal(null);
-  // It is no question of Decide: what was found is kept here, and it is gone from the server.
-  questions.shown.subscribe((asked) => {
-    if (!asked || !["done", "refused", "stopped"].includes(asked.state)) return;
-    ended.value = asked;
-    questions.remove(asked.id);
+  // It is no question of Decide: the answer is kept here, and it is gone from the server.
+  questions.shown.subscribe((shownQuestion) => {
+    if (!shownQuestion || !["done", "refused", "stopped"].includes(shownQuestion.state)) return;
+    ended.value = shownQuestion;
+    questions.remove(shownQuestion.id);
   });
   const question = computed(() => (now.value === of.value ? questions.shown.value ?? ended.value : null));
   return {
     questions,
     question,
-    found: computed(() => question.value?.answer?.models ?? null),
+    answer: computed(() => question.value?.answer?.models ?? null),
     ask: () => {
       const inputs = app.inputs.get();
       const { tables, files } = /** @type {NonNullable<ReturnType<typeof motionOf>>} */ (motionOf(inputs));
@@ -78,13 +78,13 @@ const createMargins = (app) => {
   };
 };
 
-/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, margins: Margins, time: Time, studies: { look: () => unknown }, faulty: Signal<string> }} props */
-const Compare = ({ app, asked, margins, time, studies, faulty }) => {
+/** @param {{ app: App, request: Asked<Server.ResponseAnswered>, margins: Margins, time: Time, studies: { look: () => unknown }, faulty: Signal<string> }} props */
+const Compare = ({ app, request, margins, time, studies, faulty }) => {
   const hidden = useSignal(new Set());
   const opened = useSignal(null);
-  const { answer: found, refused, part } = asked;
-  const answers = found.value?.answers ?? [];
-  const there = useMemo(() => answers.filter((one) => "series" in one), [answers]);
+  const { answer, refused, closeup } = request;
+  const answers = answer.value?.answers ?? [];
+  const there = useMemo(() => answers.filter((answer) => "series" in answer), [answers]);
   const shown = useMemo(() => there.filter(({ label }) => !hidden.value.has(label)), [there, hidden.value]);
   const lead = shown.find(({ label }) => label === opened.value)?.label;
   /** @param {string} label */
@@ -97,14 +97,14 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
   return html`
     <header class="view-head"><h1>Comparison of models</h1>
       <p class="lead">The same body and motion with every restitution model.</p></header>
-    ${refused.value && html`<${Note} kind="error" role="alert" words=${refused.value.message} />`}
-    ${found.value && faulty.value && html`<${Note} kind="error" role="alert" words=${`${faulty.value} ${t(OLDER)}`} />`}
-    ${!found.value && !refused.value && html`<p class="note" data-testid="nothing-moves">No motion is selected, or the result is being computed.
+    ${refused.value && html`<${Note} kind="error" role="alert" text=${refused.value.message} />`}
+    ${answer.value && faulty.value && html`<${Note} kind="error" role="alert" text=${`${faulty.value} ${t(OLDER)}`} />`}
+    ${!answer.value && !refused.value && html`<p class="note" data-testid="nothing-moves">No motion is selected, or the result is being computed.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
       <div class=${`verdict-part ${old}`}>
-        <${Banner} kind=${verdictKind(there)} sentences=${found.value && sentencesOf(found.value, there)} testid="compare-verdict" /></div>
-      <div class=${`compare ${old}`} ...${found.value && aboutOf(found.value.body, found.value.motion, shown.length === 1 ? [wordsOf(shown[0].label)] : [])}>
+        <${Banner} kind=${verdictKind(there)} sentences=${answer.value && sentencesOf(answer.value, there)} testid="compare-verdict" /></div>
+      <div class=${`compare ${old}`} ...${answer.value && aboutOf(answer.value.body, answer.value.motion, shown.length === 1 ? [wordsOf(shown[0].label)] : [])}>
         <div class="compare-models">
           <section class="card" aria-labelledby="compare-models-title"><h2 id="compare-models-title">Models</h2>
             <${Models} answers=${answers} hidden=${hidden.value} opened=${opened} toggle=${toggle} margins=${margins} />
@@ -115,13 +115,13 @@ const Compare = ({ app, asked, margins, time, studies, faulty }) => {
           ${shown.length ? html`
             <div class="figures" data-testid="compare-figures">
               <${Figures} kinds=${["rotation", "velocity", "lost", "ground"]} answers=${shown} lead=${lead} ticked=${shown}
-                part=${part.value} friction=${0.5} time=${time} /></div>
+                closeup=${closeup.value} friction=${0.5} time=${time} /></div>
             <p class="field-help">${marksWords(shown, "each model in its colour")}</p>
-            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show the full duration<//>`}`
+            ${closeup.value && html`<${Button} onClick=${() => request.look(null)}>Show the full duration<//>`}`
           : html`<p class="field-help">No model is shown. Select a model.</p>`}
         </section>
       </div>`}
-    <${Studies} app=${app} asked=${studies} />`;
+    <${Studies} app=${app} handle=${studies} />`;
 };
 
 const VERDICTS = {
@@ -136,19 +136,19 @@ const VERDICTS = {
 };
 
 /** The answer in plain words, from what was computed: what most models say first.
- * @param {Server.ResponseAnswered} found @param {Server.ResponseFacts[]} there */
-const sentencesOf = (found, there) => {
+ * @param {Server.ResponseAnswered} responses @param {Server.ResponseFacts[]} there */
+const sentencesOf = (responses, there) => {
   /** @param {Server.ResponseFacts} answer */
   const falls = ({ outcome }) => outcome === "overturned";
-  const [fallen, standing] = [there.filter(falls), there.filter((one) => !falls(one))];
+  const [fallen, standing] = [there.filter(falls), there.filter((answer) => !falls(answer))];
   const [most, fewer] = fallen.length > standing.length ? [fallen, standing] : [standing, fallen];
   const text = VERDICTS[most === fallen ? "falls" : "stands"][fewer.length ? "but" : "all"];
   const counted = { count: most.length, total: there.length, models: fewer.map(({ label }) => wordsOf(label)).join(", ") };
-  const peaks = standing.map((one) => one.peak_ratio);
+  const peaks = standing.map((answer) => answer.peak_ratio);
   const [low, high] = [lowest(peaks), highest(peaks)].map((peak) => number(peak, 3));
   const ends = low === high ? low : t("{low} to {high}", { low, high });
   const lean = highest(peaks, 0) > 0 ? [t("Peak rotation: {angle} of the slenderness angle.", { angle: ends })] : [];
-  return [t(text, counted), ...lean, ...found.verdict.doubts.map((each) => inWords(each, there))];
+  return [t(text, counted), ...lean, ...responses.verdict.doubts.map((doubt) => inWords(doubt, there))];
 };
 
 /** @type {Words} */
@@ -159,7 +159,7 @@ const Models = ({ answers, hidden, opened, toggle, margins }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label="Table of the models">
     <table data-testid="compare-models">
       <thead><tr><th scope="col"><span class="visually-hidden">Shown</span></th>
-        ${["Model", "Outcome", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((words) => html`<th scope="col" key=${words}>${words}</th>`)}</tr></thead>
+        ${["Model", "Outcome", "Peak \u03b8/\u03b1", "Impacts", "r", "Margin"].map((label) => html`<th scope="col" key=${label}>${label}</th>`)}</tr></thead>
       <tbody>${answers.map((answer) => html`<${Model} key=${answer.label} answer=${answer} shown=${!hidden.has(answer.label)}
         opened=${opened} toggle=${toggle} margin=${marginOf(margins, answer.label)} />`)}</tbody>
     </table>
@@ -186,17 +186,17 @@ const Model = ({ answer, shown, opened, toggle, margin }) => {
 
 /** @param {{ left: number, right: number }} coefficient */
 const coefficients = ({ left, right }) => {
-  const [a, b] = [left, right].map((each) => number(each, 4));
+  const [a, b] = [left, right].map((value) => number(value, 4));
   return a === b ? b : `${a} | ${b}`;
 };
 
 /** @param {Margins} margins @param {string} label */
 const marginOf = (margins, label) => {
-  const found = margins.found.value;
-  if (!found) return "\u2013";
-  const key = Object.keys(found).find((each) => each === label || (each.split(":")[0] === label));
+  const margin = margins.answer.value;
+  if (!margin) return "\u2013";
+  const key = Object.keys(margin).find((name) => name === label || (name.split(":")[0] === label));
   if (!key) return "\u2013";
-  return found[key].min_factor === null ? "none found" : number(found[key].min_factor, 3);
+  return margin[key].min_factor === null ? "none found" : number(margin[key].min_factor, 3);
 };
 
 /** @param {{ app: App, margins: Margins }} props */
@@ -205,11 +205,11 @@ const Margins = ({ app, margins }) => {
   useEffect(() => void questions.look(), []);
   const inputs = app.inputs.get();
   if (!inputs.motion || inputs.response?.initial_rotation != null) return null;
-  const asked = margins.question.value;
-  const wrong = asked?.state === "refused" ? asked.message : "";
+  const question = margins.question.value;
+  const wrong = question?.state === "refused" ? question.message : "";
   return html`<div class="toolbar">
-      ${asked && questions.busy.value ? html`<progress aria-label="Computing the margins"></progress>`
-        : html`<${Button} disabled=${Boolean(margins.found.value)} onClick=${margins.ask}>Compute the margins<//>`}
+      ${question && questions.busy.value ? html`<progress aria-label="Computing the margins"></progress>`
+        : html`<${Button} disabled=${Boolean(margins.answer.value)} onClick=${margins.ask}>Compute the margins<//>`}
     </div>
     ${wrong && html`<p class="field-help field-error">${wrong}</p>`}
     <p class="field-help">Margin: smallest scale factor of this motion that overturns the body, both polarities. Details: Assessment.</p>`;

@@ -26,44 +26,44 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Decide = ({ app, questions }) => {
   const form = useForm(app, "decide", FIRST);
-  const [shaken, files, units, margin, author, date, pga, what] = Object.keys(FIRST).map((name) => form.at(name));
+  const [shaken, files, units, margin, author, date, pga, command] = Object.keys(FIRST).map((name) => form.at(name));
   const [range, unknown] = ["range", "unknown"].map((name) => ({ get value() { return form.at(name).value || {}; }, at: /** @param {string} key */ (key) => form.at(name, key) }));
   /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    if (what.value === "overturning-pga") {
+    if (command.value === "overturning-pga") {
       wrong.value = app.faults.sentence({ inputs: true }) || crossings(app, questions, range.value);
       return;
     }
     const inputs = app.inputs.get();
-    const asked = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value, own: optionsOf(form.value.by_file, files.value, app) });
+    const shaking = motions(inputs, shaken.value, files.value, { units: units.value, pga: pga.value, own: optionsOf(form.value.by_file, files.value, app) });
     const factor = Number(margin.value.replace(",", "."));
-    const predicts = what.value === "predict";
-    const faulty = app.faults.sentence({ inputs: true }) || asked.missing
-      || (predicts || factor > 0 ? "" : { key: "margin", words: "Enter a required margin above 0." });
+    const predicts = command.value === "predict";
+    const faulty = app.faults.sentence({ inputs: true }) || shaking.missing
+      || (predicts || factor > 0 ? "" : { key: "margin", text: "Enter a required margin above 0." });
     wrong.value = faulty || "";
     if (faulty) return;
     const name = inputs.body.name || app.project.here.value.name;
-    const known = { body: inputs.body, ...asked.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
+    const common = { body: inputs.body, ...shaking.tables, ...(inputs.settings ? { settings: inputs.settings } : {}) };
     if (predicts) {
-      const tables = { ...known, predict: filled(unknown.value, app.info.keys.predict) };
-      questions.ask(tables, asked.files ?? {}, t("Overturning probability of {name}", { name: userText(name) }), { command: "predict" });
+      const tables = { ...common, predict: filled(unknown.value, app.info.keys.predict) };
+      questions.ask(tables, shaking.files ?? {}, t("Overturning probability of {name}", { name: userText(name) }), { command: "predict" });
       return;
     }
     const signed = { project: app.project.here.value.name, author: author.value, date: date.value };
-    const told = Object.fromEntries(Object.entries(signed).filter(([, words]) => words.trim()));
-    questions.ask({ ...known, assess: { ...told, margin: factor } }, asked.files ?? {}, t("Assessment of {name}", { name: userText(name) }));
+    const header = Object.fromEntries(Object.entries(signed).filter(([, text]) => text.trim()));
+    questions.ask({ ...common, assess: { ...header, margin: factor } }, shaking.files ?? {}, t("Assessment of {name}", { name: userText(name) }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="Assessment"
       lead="Margin to overturning for all restitution models and both polarities, overturning probability and retrofit measures.">
-      <${Choice} label="Analysis" value=${what} options=${[["assess", "margin and retrofit measures"],
+      <${Choice} label="Analysis" value=${command} options=${[["assess", "margin and retrofit measures"],
         ["predict", "overturning probability and main uncertainties"],
         ["overturning-pga", "PGA intervals with overturning"]]} />
-      ${what.value === "overturning-pga" ? html`<div class="fields">${["min_pga", "max_pga", "samples", "bisections"].map((name) => html`
+      ${command.value === "overturning-pga" ? html`<div class="fields">${["min_pga", "max_pga", "samples", "bisections"].map((name) => html`
         <${KeyField} key=${name} name=${name} facts=${app.info.keys.minimum[name]} value=${range.at(name)} />`)}</div>
         <p class="field-help">Uses the scaled motion of this project and the first restitution model.</p>` : html`
       <${Choice} label="Ground motions" value=${shaken} options=${FAMILIES} />
@@ -75,7 +75,7 @@ const Decide = ({ app, questions }) => {
           reasons=${reasonsOf(questions.shown.value, files.value)} />`}`}
       ${["firm-ground", "soft-ground"].includes(shaken.value)
         && html`<${Field} label="Peak acceleration" name="pga" unit="g" value=${pga} inputmode="decimal" />`}
-      ${what.value === "predict" ? html`
+      ${command.value === "predict" ? html`
         <p class="field-help">Uncertain inputs: one number, two numbers as a range, or empty for the default.</p>
         <div class="fields">${Object.entries(app.info.keys.predict).map(([name, facts]) => html`
           <${KeyField} key=${name} name=${name} facts=${facts} value=${unknown.at(name)} />`)}</div>` : html`
@@ -90,13 +90,13 @@ const Decide = ({ app, questions }) => {
  * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string, own: object }} said @returns {Shaking} */
 const motions = (inputs, shaken, files, { units, pga, own }) => {
   if (shaken === "records") {
-    const motion = { records: files.map((one) => one.name), ...(units.trim() ? { units: units.trim() } : {}), ...own };
-    const hashes = Object.fromEntries(files.map((one) => [one.name, one.sha]));
-    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", words: "Add a record." } };
+    const motion = { records: files.map((file) => file.name), ...(units.trim() ? { units: units.trim() } : {}), ...own };
+    const hashes = Object.fromEntries(files.map((file) => [file.name, file.sha]));
+    return { tables: { motions: [motion] }, files: hashes, missing: files.length ? "" : { key: "files", text: "Add a record." } };
   }
   if (shaken) {
     const level = Number(pga.replace(",", "."));
-    const missing = level > 0 ? "" : { key: "pga", words: "Enter a peak acceleration above 0." };
+    const missing = level > 0 ? "" : { key: "pga", text: "Enter a peak acceleration above 0." };
     const motion = { synthetic: shaken, count: 20, seed: 1, pga: level * 9.80665 };
     return { tables: { motions: [motion] }, files: {}, missing };
   }
@@ -107,26 +107,26 @@ const motions = (inputs, shaken, files, { units, pga, own }) => {
  * @param {App} app @param {Questions} questions @param {any} range */
 const crossings = (app, questions, range) => {
   const { body, motion, restitution, settings } = app.inputs.get();
-  const known = motionOf({ body, motion });
-  if (!known) return "No motion is selected. Choose a motion first.";
-  const { record, pulse, scale, ...keys } = /** @type {Server.MotionInput} */ (known.tables.motion);
+  const shaking = motionOf({ body, motion });
+  if (!shaking) return "No motion is selected. Choose a motion first.";
+  const { record, pulse, scale, ...keys } = /** @type {Server.MotionInput} */ (shaking.tables.motion);
   if (!record && !pulse) return "This analysis needs one record or pulse. Choose it as the motion.";
   const named = record ? { records: [record], ...keys } : { pulse: [pulse], ...keys };
-  const { models, values, ...one } = restitution ?? {};
-  const first = models ? { model: models[0] } : values ? { value: values[0] } : one;
+  const { models, values, ...single } = restitution ?? {};
+  const first = models ? { model: models[0] } : values ? { value: values[0] } : single;
   const tables = {
     campaign: { name: "crossings", kind: "minimum-acceleration" }, body, motions: [named], restitution: first,
     minimum: filled(range, app.info.keys.minimum), ...(settings ? { settings } : {}),
   };
-  questions.ask(tables, known.files, t("Overturning accelerations of {name}", { name: userText(body.name || app.project.here.value.name) }), { command: "overturning-pga" });
+  questions.ask(tables, shaking.files, t("Overturning accelerations of {name}", { name: userText(body.name || app.project.here.value.name) }), { command: "overturning-pga" });
   return "";
 };
 
-/** @param {Given} given */
-const Found = (given) => html`<${FOUND[given.question.command] ?? Verdict} ...${given} />`;
+/** @param {Given} props */
+const Found = (props) => html`<${FOUND[props.question.command] ?? Verdict} ...${props} />`;
 
 /** @type {{ [command: string]: ((given: Given) => VNode) | undefined }} */
-const FOUND = { "overturning-pga": (given) => Crossings(given), predict: (given) => Forecast(given) };
+const FOUND = { "overturning-pga": (props) => Crossings(props), predict: (props) => Forecast(props) };
 
 const G = 9.80665;
 const MOST = 20; // crossings in the table
@@ -143,8 +143,8 @@ const Crossings = ({ answer, question }) => html`
   <p>${sentence(answer.sentence)}</p>
   <${Drawing} question=${question} alt="Overturning over ground acceleration" />
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times uplift", "below", "above"]}
-    rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ each) => [number(each.peak_ground_acceleration / G, 6), number(each.scale, 6), number(each.uplift_ratio, 4),
-      modeOf(each.mode_below), modeOf(each.mode_above)])} />
+    rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ crossing) => [number(crossing.peak_ground_acceleration / G, 6), number(crossing.scale, 6), number(crossing.uplift_ratio, 4),
+      modeOf(crossing.mode_below), modeOf(crossing.mode_above)])} />
   <p class="field-help">${t("Restitution: {model}.", { model: modelWords(answer.restitution) })}
     ${answer.crossings.length > MOST && ` ${t("First {shown} of {count} crossings. The CSV file contains all crossings.", { shown: MOST, count: answer.crossings.length })}`}</p>`;
 
@@ -152,17 +152,17 @@ const MARKS = { overturning: "bad", uplift: "fair" };
 
 /** @param {Given} given */
 const Verdict = ({ answer, question }) => {
-  /** @param {any} each */
-  const fallen = (each) => each.overturned.filter((/** @type {number} */ one) => one === 1).length;
-  const rows = Object.entries(answer.models).map(([name, each]) => [
-    modelWords(name), number(each.coefficient.left), number(each.coefficient.right),
-    [t("{number} of {count}", { number: fallen(each), count: each.overturned.length }), fallen(each) ? "bad" : "good"],
-    each.min_factor === null ? "none found" : number(each.min_factor, 3),
+  /** @param {any} model */
+  const fallen = (model) => model.overturned.filter((/** @type {number} */ overturned) => overturned === 1).length;
+  const rows = Object.entries(answer.models).map(([name, model]) => [
+    modelWords(name), number(model.coefficient.left), number(model.coefficient.right),
+    [t("{number} of {count}", { number: fallen(model), count: model.overturned.length }), fallen(model) ? "bad" : "good"],
+    model.min_factor === null ? "none found" : number(model.min_factor, 3),
   ]);
-  const some = Object.values(answer.models).some(fallen);
+  const isOverturned = Object.values(answer.models).some(fallen);
   return html`
-    <p class=${`verdict ${some ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
-    ${answer.sentences.slice(1).map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
+    <p class=${`verdict ${isOverturned ? MARKS.overturning : "good"}`} data-testid="verdict">${answer.sentences[0]}</p>
+    ${answer.sentences.slice(1).map((/** @type {string} */ line) => html`<p key=${line}>${line}</p>`)}
     <${Drawing} question=${question} alt="Smallest overturning scale factor of each motion, by model" />
     <h3>By restitution model</h3>
     <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns in", "smallest factor"]} rows=${rows} />
@@ -170,7 +170,7 @@ const Verdict = ({ answer, question }) => {
     <${Chances} of=${answer.prediction} />
     <${Sources} of=${answer.prediction} />
     ${Object.keys(answer.refused).length > 0 && html`<p class="field-help">${t("Models not applicable to this body: {reasons}", {
-      reasons: Object.entries(answer.refused).map(([name, why]) => `${modelWords(name)}: ${t(why)}`).join("; ") })}</p>`}`;
+      reasons: Object.entries(answer.refused).map(([name, reason]) => `${modelWords(name)}: ${t(reason)}`).join("; ") })}</p>`}`;
 };
 
 /** @type {Words} */
@@ -182,25 +182,25 @@ const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", {
  * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}
-    rows=${[...Object.entries(probability).map(([what, each]) => [WHAT[what], each]),
-      ...Object.entries(beside).map(([model, each]) => [t("overturns, with {model} and otherwise equal inputs", { model: modelWords(model) }), each])].map(([words, each]) => [
-      words, percent(each.value), between(each.low, each.high), between(each.wide_low, each.wide_high)])} />`;
+    rows=${[...Object.entries(probability).map(([outcome, chance]) => [WHAT[outcome], chance]),
+      ...Object.entries(beside).map(([model, chance]) => [t("overturns, with {model} and otherwise equal inputs", { model: modelWords(model) }), chance])].map(([label, chance]) => [
+      label, percent(chance.value), between(chance.low, chance.high), between(chance.wide_low, chance.wide_high)])} />`;
 
 /** Source and processing of the motions, and the scale of the words for probabilities.
  * @param {{ of: any }} props */
 const Sources = ({ of: { motions, likelihood_scale, not_sampled, repairs } }) => html`
   <details><summary>Source and processing of the ground motions</summary>
-    <ul translate="no">${motions.map((/** @type {any} */ each) => html`<li key=${each.name} translate="no">${each.name}: ${each.provenance.join("; ")}</li>`)}</ul></details>
+    <ul translate="no">${motions.map((/** @type {any} */ motion) => html`<li key=${motion.name} translate="no">${motion.name}: ${motion.provenance.join("; ")}</li>`)}</ul></details>
   <details><summary>Likelihood terms</summary><p>${likelihood_scale}</p></details>
   <details><summary>Not sampled</summary>
-    <ul>${not_sampled.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
+    <ul>${not_sampled.map((/** @type {string} */ input) => html`<li key=${input}>${input}</li>`)}</ul></details>
   ${repairs.length > 0 && html`<details><summary>Mesh repairs</summary>
-    <ul>${repairs.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>`}`;
+    <ul>${repairs.map((/** @type {string} */ repair) => html`<li key=${repair}>${repair}</li>`)}</ul></details>`}`;
 
 /** @param {Given} given */
 const Forecast = ({ answer, question }) => {
   const { high } = answer.probability.overturning;
-  const shares = Object.entries(answer.shares).sort(([, one], [, other]) => other.total - one.total);
+  const shares = Object.entries(answer.shares).sort(([, first], [, other]) => other.total - first.total);
   /** @param {number} low @param {number} at @param {number} high */
   const share = (low, at, high) => t("{value} ({low} to {high})", { value: number(at, 2), low: number(low, 2), high: number(high, 2) });
   return html`
@@ -210,7 +210,7 @@ const Forecast = ({ answer, question }) => {
     <h3>Probabilities</h3>
     <${Chances} of=${answer} />
     ${answer.decides && html`<p>${answer.decides}</p>`}
-    ${shares.some(([, each]) => each.total) && html`<h3>Main uncertainties</h3>
+    ${shares.some(([, indices]) => indices.total) && html`<h3>Main uncertainties</h3>
       <${Rows} caption="Contributions to variance" head=${["uncertain input", "alone", "with interactions"]}
         rows=${shares.map(([name, s]) => [name, share(s.first_low, s.first, s.first_high), share(s.total_low, s.total, s.total_high)])} />
       <p class="field-help">Contributions to the variance of overturning (Sobol indices), with 95 % intervals.</p>
@@ -218,7 +218,7 @@ const Forecast = ({ answer, question }) => {
         rows=${Object.entries(answer.ends).map(([name, e]) => [name, `${percent(e.probability_low)} (${number(e.input_low, 3)})`,
           `${percent(e.probability_high)} (${number(e.input_high, 3)})`])} />`}
     <details><summary>Assumptions</summary>
-      <ul>${answer.assumed.map((/** @type {string} */ words) => html`<li key=${words}>${words}</li>`)}</ul></details>
+      <ul>${answer.assumed.map((/** @type {string} */ assumption) => html`<li key=${assumption}>${assumption}</li>`)}</ul></details>
     <${Sources} of=${answer} />`;
 };
 

@@ -23,14 +23,14 @@ export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;
   const form = useForm(app, "bed", {});
   const varied = useSignal("slenderness");
-  const [found, refused, busy] = [null, {}, false].map(useSignal);
+  const [result, refused, busy] = [null, {}, false].map(useSignal);
   /** @param {any} event */
   const compute = async (event) => {
     event.preventDefault();
     busy.value = true;
     try {
       const json = { ...body, ...filled(form.value, keys), varied: varied.value };
-      found.value = await app.call("contact-bed", { json });
+      result.value = await app.call("contact-bed", { json });
       refused.value = {};
     } catch (error) {
       refused.value = refusedOf({ message: error.message, refusal: error.text ? error : undefined });
@@ -47,10 +47,10 @@ export const Laboratory = ({ app, body }) => {
       <${Choice} label="Varied parameter" value=${varied} options=${Object.entries(VARIED)} />
       <details><summary>Range and bed parameters</summary>
         <div class="fields"><${Refused.Provider} value=${refused.value}>${[...RANGE, ...others].map(field)}<//></div></details>
-      ${refused.value.words && html`<${Note} kind="error" role="alert" words=${refused.value.words} />`}
+      ${refused.value.text && html`<${Note} kind="error" role="alert" text=${refused.value.text} />`}
       <div class="toolbar"><${Button} type="submit" disabled=${busy.value}>Compute<//></div>
     </form>
-    ${found.value && html`<${Emerged} found=${found.value} />`}</div>`;
+    ${result.value && html`<${Emerged} found=${result.value} />`}</div>`;
 };
 
 /** @param {{ found: Server.ContactBedAnswered }} props */
@@ -60,16 +60,16 @@ const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
   const { unit: of, values: curve } = results[shown.value];
   const beside = shown.value === "coefficient" ? Object.entries(rigid) : [];
   const log = values[0] > 0 && values[values.length - 1] / values[0] > 8;
-  const words = shown.value.replaceAll("_", " ");
+  const quantity = shown.value.replaceAll("_", " ");
   const shape = {
-    title: t("Contact bed: {quantity}", { quantity: words }), x: { label: VARIED[varied], unit, log }, y: { label: words, unit: of },
+    title: t("Contact bed: {quantity}", { quantity }), x: { label: VARIED[varied], unit, log }, y: { label: quantity, unit: of },
     series: [BED, ...beside.map(([name]) => ({ ...modelStyle(name), label: modelWords(name) }))], height: 300,
   };
-  const data = useMemo(() => [values, curve, ...beside.map(([, each]) => each)], [values, shown.value]);
+  const data = useMemo(() => [values, curve, ...beside.map(([, coefficients]) => coefficients)], [values, shown.value]);
   return html`
     <div class="stack" data-testid="bed-results">
       <${Choice} label="Show" value=${shown} help=${results[shown.value].words && sentence(results[shown.value].words)}
         options=${Object.keys(results).map((name) => [name, name.replaceAll("_", " ")])} />
-      <${Figure} shape=${shape} data=${data} part=${null} marks=${NOTHING} time=${time} testid="bed-chart" />
+      <${Figure} shape=${shape} data=${data} interval=${null} marks=${NOTHING} time=${time} testid="bed-chart" />
     </div>`;
 };

@@ -35,11 +35,11 @@ export const Coefficients = ({ app, answer, foot }) => {
  * @param {{ answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Warnings = ({ answer, foot }) => {
   const models = answer.coefficients[foot];
-  const found = new Map();
+  const modelsByWarning = new Map();
   for (const { model, warnings } of models) {
-    for (const words of warnings) found.set(words, [...(found.get(words) ?? []), model]);
+    for (const warning of warnings) modelsByWarning.set(warning, [...(modelsByWarning.get(warning) ?? []), model]);
   }
-  return html`<div class="stack" data-testid="impact-warnings">${[...found].map(([words, whose]) => html`
-    <${Note} key=${words} kind="warning"
-      words=${sentence(whose.length === models.length ? words : `${whose.map((/** @type {string} */ model) => t(wordsOf(model))).join(", ")}: ${t(words)}`)} />`)}</div>`;
+  return html`<div class="stack" data-testid="impact-warnings">${[...modelsByWarning].map(([warning, whose]) => html`
+    <${Note} key=${warning} kind="warning"
+      text=${sentence(whose.length === models.length ? warning : `${whose.map((/** @type {string} */ model) => t(wordsOf(model))).join(", ")}: ${t(warning)}`)} />`)}</div>`;
 };

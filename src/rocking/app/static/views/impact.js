@@ -23,29 +23,29 @@ export const mount = (section, app) => {
     const { body, settings } = app.inputs.get();
     return { body, settings };
   };
-  const asked = createAnswer(app, "impact", ["body", "settings"], question, { path: "impact", keeps: true });
+  const request = createAnswer(app, "impact", ["body", "settings"], question, { path: "impact", keeps: true });
   const faulty = faultsOf(app, "body");
-  render(html`<${Impact} app=${app} asked=${asked} faulty=${faulty} />`, section);
+  render(html`<${Impact} app=${app} request=${request} faulty=${faulty} />`, section);
   return {
     shown: () => {
       app.faults.refresh();
-      asked.shown();
+      request.shown();
     },
-    hidden: asked.hidden,
+    hidden: request.hidden,
   };
 };
 
 const FEET = [["left", "left foot"], ["right", "right foot"]];
 
-/** @param {{ app: App, asked: Asked<Server.ImpactAnswered>, faulty: Signal<string> }} props */
-const Impact = ({ app, asked, faulty }) => {
-  const { answer: { value: answer }, refused } = asked;
+/** @param {{ app: App, request: Asked<Server.ImpactAnswered>, faulty: Signal<string> }} props */
+const Impact = ({ app, request, faulty }) => {
+  const { answer: { value: answer }, refused } = request;
   const wrong = refused.value?.message ?? faulty.value;
   return html`
     <header class="view-head"><h1>Impact</h1>
       <p class="lead">The body loses energy at each impact. Each model gives a coefficient of restitution. Published measurements give its accuracy.</p></header>
     <div class="refusal" role="alert" data-testid="impact-refusal">
-      ${wrong && html`<${Note} kind="error" words=${`${sentence(wrong)}${answer ? ` ${t(OLDER)}` : ""}`} />`}</div>
+      ${wrong && html`<${Note} kind="error" text=${`${sentence(wrong)}${answer ? ` ${t(OLDER)}` : ""}`} />`}</div>
     ${!answer && !wrong && html`<p class="waiting">Computing</p>`}
     <div class=${`stack results ${wrong ? "stale" : ""}`} data-testid="impact-results" hidden=${!answer} ...${answer && aboutOf(answer.body)}>
       ${answer && html`<${Results} app=${app} answer=${answer} />`}</div>`;
@@ -53,9 +53,9 @@ const Impact = ({ app, asked, faulty }) => {
 
 /** @param {{ app: App, answer: Server.ImpactAnswered }} props */
 const Results = ({ app, answer }) => {
-  const wanted = useSignal("right");
+  const chosenFoot = useSignal("right");
   const feet = /** @type {Foot[]} */ (Object.keys(answer.coefficients));
-  const foot = feet.find((each) => each === wanted.value) ?? feet[0];
+  const foot = feet.find((candidate) => candidate === chosenFoot.value) ?? feet[0];
   const of = [answer, foot];
   const about = ONTO[foot];
   /** @param {string} title @param {(answer: Server.ImpactAnswered, foot: Foot, width: number) => Child} draw @param {string} [lead] */
@@ -63,7 +63,7 @@ const Results = ({ app, answer }) => {
     ${lead && html`<p class="lead">${lead}</p>`}<${Drawn} draw=${draw} of=${of} /><//>`;
   return html`
     ${feet.length > 1 && html`<${Segmented} label="Impact on the" options=${FEET} value=${foot}
-      on=${(next) => (wanted.value = next)} />`}
+      on=${(next) => (chosenFoot.value = next)} />`}
     <${Card} title="Coefficient of restitution">
       <${Coefficients} app=${app} answer=${answer} foot=${foot} /><${Warnings} answer=${answer} foot=${foot} /><//>
     <${Card} title="Comparison with published measurements">

@@ -40,9 +40,9 @@ const Inventory = ({ app, questions }) => {
     event.preventDefault();
     const strength = Number(level.value.replace(",", "."));
     const many = Number(count.value);
-    wrong.value = !files.value.length ? { key: "files", words: "Add a list." }
-      : !(strength > 0) ? { key: "level", words: "Enter an intensity level above 0." }
-        : !(Number.isInteger(many) && many > 0) ? { key: "count", words: "Enter a whole number of motions above 0." } : "";
+    wrong.value = !files.value.length ? { key: "files", text: "Add a list." }
+      : !(strength > 0) ? { key: "level", text: "Enter an intensity level above 0." }
+        : !(Number.isInteger(many) && many > 0) ? { key: "count", text: "Enter a whole number of motions above 0." } : "";
     if (wrong.value) return;
     const list = await corrected(files.value[0]).catch((error) => app.say(error.message, "error"));
     if (!list) return;
@@ -90,9 +90,9 @@ const MOST = 20; // rows that are corrected at a time
 /** @param {SentFile} list @param {string} source */
 const linesOf = async ({ name, sha }, source) => {
   if (/\.(xlsx|ods)$/i.test(name)) return null;
-  const told = / \(([\w-]+)\)$/.exec(source)?.[1] ?? "utf-8";
+  const encoding = / \(([\w-]+)\)$/.exec(source)?.[1] ?? "utf-8";
   try {
-    const reader = new TextDecoder(NAMES[told] ?? told, { fatal: true });
+    const reader = new TextDecoder(NAMES[encoding] ?? encoding, { fatal: true });
     return reader.decode(await fileAtHand(sha).arrayBuffer()).split(/\r\n|\r|\n/);
   } catch {
     return null;
@@ -113,8 +113,8 @@ const Corrections = ({ answer, text, fixed }) => {
   return rows.length > 0 && html`
     <fieldset><legend>Correct rows, then compute again</legend>
       <pre tabindex="0" aria-label=${t("Header of the list")}>${answer.header_lines.map((/** @type {number} */ row) => text.lines[row - 1]).join("\n")}</pre>
-      ${rows.slice(0, MOST).map((/** @type {any} */ each) => html`<${Field} key=${`${text.id} ${each.row}`} label=${t("Line {number}", { number: each.row })} help=${each.reason}
-        value=${at(each)} />`)}</fieldset>`;
+      ${rows.slice(0, MOST).map((/** @type {any} */ row) => html`<${Field} key=${`${text.id} ${row.row}`} label=${t("Line {number}", { number: row.row })} help=${row.reason}
+        value=${at(row)} />`)}</fieldset>`;
 };
 
 /** Inventory number and name of a row. @param {{ number: string, name: string }} row */
@@ -126,11 +126,11 @@ const between = ([low, high]) => t("{low} to {high}", { low, high });
 /** @param {Given} given */
 const Ranking = ({ answer }) => {
     const missing = answer.not_assessed.length;
-  const noted = answer.objects.some((/** @type {any} */ each) => each.note || each.noted);
-  const rows = answer.objects.map((/** @type {any} */ each) => [
-    [`${label(each)}${each.count > 1 ? ` (${each.count})` : ""}`, "own"], [each.light.toUpperCase(), LIGHTS[each.light]],
-    between(each.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2))), each.in_words, each.what_to_do,
-    ...(noted ? [[[each.note, each.noted].filter(Boolean).join(". "), "own"]] : []),
+  const noted = answer.objects.some((/** @type {any} */ object) => object.note || object.noted);
+  const rows = answer.objects.map((/** @type {any} */ object) => [
+    [`${label(object)}${object.count > 1 ? ` (${object.count})` : ""}`, "own"], [object.light.toUpperCase(), LIGHTS[object.light]],
+    between(object.overturned_interval.map((/** @type {number} */ end) => number(100 * end, 2))), object.in_words, object.what_to_do,
+    ...(noted ? [[[object.note, object.noted].filter(Boolean).join(". "), "own"]] : []),
   ]);
   return html`
     <p class="verdict" data-testid="verdict">${missing
@@ -139,11 +139,11 @@ const Ranking = ({ answer }) => {
     ${rows.length > 0 && html`<${Rows} caption="Objects, highest risk first"
       head=${["object", "rating", "overturns [%]", "result", "recommendation", ...(noted ? ["note"] : [])]} rows=${rows} />`}
     ${missing > 0 && html`<h3>Not assessed</h3><${Rows} caption="Rows without a rating" head=${["object", "line", "reason"]}
-      rows=${answer.not_assessed.map((/** @type {any} */ each) => [label(each) ? [label(each), "own"] : "no name", String(each.row), each.reason])} />`}
+      rows=${answer.not_assessed.map((/** @type {any} */ row) => [label(row) ? [label(row), "own"] : "no name", String(row.row), row.reason])} />`}
     ${answer.not_objects.length > 0 && html`<details><summary>Lines that are not objects</summary>
       <${Rows} caption="List lines that are not objects" head=${["text", "line", "reason"]}
-        rows=${answer.not_objects.map((/** @type {any} */ each) => [[each.text, "own"], String(each.row), each.reason])} /></details>`}
-    ${answer.stated.map((/** @type {string} */ each) => html`<p key=${each} class="field-help">${each}</p>`)}
+        rows=${answer.not_objects.map((/** @type {any} */ row) => [[row.text, "own"], String(row.row), row.reason])} /></details>`}
+    ${answer.stated.map((/** @type {string} */ note) => html`<p key=${note} class="field-help">${note}</p>`)}
     ${answer.columns_not_read.length > 0 && html`<p class="field-help">${t("Ignored columns: {names}", { names: answer.columns_not_read.join(", ") })}</p>
       <p class="field-help">Assign columns under \u201cList format\u201d.</p>`}`;
 };

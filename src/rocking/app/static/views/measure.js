@@ -27,7 +27,7 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Measure = ({ app, questions }) => {
   const form = useForm(app, "measure", FIRST);
-  const [files, kind, column, unit, known, what, trend] = Object.keys(FIRST).map((name) => form.at(name));
+  const [files, kind, column, unit, knownBody, command, trend] = Object.keys(FIRST).map((name) => form.at(name));
   /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const recording = useSignal(null);
@@ -47,27 +47,27 @@ const Measure = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    if (what.value === "reproduce") {
+    if (command.value === "reproduce") {
       wrong.value = "";
       questions.ask({}, {}, "Published measurements", { command: "reproduce" });
       return;
     }
     const inputs = app.inputs.get();
-    wrong.value = (known.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : { key: "files", words: "Add a recording." });
+    wrong.value = (knownBody.value === "yes" && app.faults.sentence({ inputs: true })) || (files.value.length ? "" : { key: "files", text: "Add a recording." });
     if (wrong.value) return;
     const [file] = files.value;
     const table = { file: file.name, kind: kind.value, column: column.value.trim(), unit: unit.value.trim() };
-    const measurement = Object.fromEntries(Object.entries(table).filter(([, words]) => words));
-    const tables = { measurement, ...(trend.value ? { identify: { trend: true } } : {}), ...(known.value === "yes" ? { body: inputs.body } : {}) };
+    const measurement = Object.fromEntries(Object.entries(table).filter(([, text]) => text));
+    const tables = { measurement, ...(trend.value ? { identify: { trend: true } } : {}), ...(knownBody.value === "yes" ? { body: inputs.body } : {}) };
     questions.ask(tables, { [file.name]: file.sha }, t("Identification from {name}", { name: file.name }));
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Found}
       title="Identification"
       lead="Release the tilted body and record its impacts. The impacts give the coefficient of restitution.">
-      <${Choice} label="Analysis" value=${what} options=${[["identify", "my recording"],
+      <${Choice} label="Analysis" value=${command} options=${[["identify", "my recording"],
         ["reproduce", "published measurements"]]} />
-      ${what.value === "reproduce" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
+      ${command.value === "reproduce" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
       <${Button} aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
@@ -75,13 +75,13 @@ const Measure = ({ app, questions }) => {
       <${Choice} label="Recorded quantity" value=${kind} options=${KINDS} help="For tables only." />
       <${Field} label="Column" value=${column} help="For tables with several columns." />
       <${Field} label="Unit" value=${unit} help="For tables without a unit." />
-      <${Choice} label="The body" value=${known} options=${[["yes", "body of this project"], ["no", "unknown"]]} />
+      <${Choice} label="The body" value=${knownBody} options=${[["yes", "body of this project"], ["no", "unknown"]]} />
       <${Choice} label="Coefficient of restitution" value=${trend} options=${[["", "constant"], ["yes", "with a trend"]]} />`}
     <//>`;
 };
 
-/** @param {Given} given */
-const Found = (given) => (given.question.command === "reproduce" ? html`<${Published} ...${given} />` : html`<${Recording} ...${given} />`);
+/** @param {Given} props */
+const Found = (props) => (props.question.command === "reproduce" ? html`<${Published} ...${props} />` : html`<${Recording} ...${props} />`);
 
 /** @type {Words} */
 const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
@@ -89,15 +89,15 @@ const MARK = { holds: "good", "holds in part": "fair", "does not hold": "bad" };
 /** @param {Given} given */
 const Published = ({ answer }) => html`
   <p class="verdict" data-testid="verdict">
-    ${t("{number} of {count} claims confirmed", { number: answer.claims.filter((/** @type {any} */ one) => one.verdict === "holds").length, count: answer.claims.length })}</p>
-  ${answer.verdict.map((/** @type {string} */ words) => html`<p key=${words}>${words}</p>`)}
+    ${t("{number} of {count} claims confirmed", { number: answer.claims.filter((/** @type {any} */ claim) => claim.verdict === "holds").length, count: answer.claims.length })}</p>
+  ${answer.verdict.map((/** @type {string} */ line) => html`<p key=${line}>${line}</p>`)}
   <h3>Models compared with measurements</h3>
   <${Rows} caption="Models" head=${["model", "RMSE of r", "95 % interval", "bias"]}
-    rows=${answer.league.map((/** @type {any} */ one) => [one.name, number(one.rmse, 3), t("{low} to {high}", { low: number(one.rmse_low, 3), high: number(one.rmse_high, 3) }),
-      number(one.bias, 2)])} />
+    rows=${answer.league.map((/** @type {any} */ model) => [model.name, number(model.rmse, 3), t("{low} to {high}", { low: number(model.rmse_low, 3), high: number(model.rmse_high, 3) }),
+      number(model.bias, 2)])} />
   <h3>Claims</h3>
   <${Rows} caption="Claims" head=${["claim", "verdict"]}
-    rows=${answer.claims.map((/** @type {any} */ one) => [`${t(one.section)}: ${t(one.claim)}`, [one.verdict, MARK[one.verdict]]])} />`;
+    rows=${answer.claims.map((/** @type {any} */ claim) => [`${t(claim.section)}: ${t(claim.claim)}`, [claim.verdict, MARK[claim.verdict]]])} />`;
 
 /** @type {Words} */
 const HEADS = { within: "within the interval", bias: "model minus measured" };
@@ -109,8 +109,8 @@ const Recording = ({ answer, question }) => {
   const models = answer.models ?? [];
   return html`
     <p class="verdict" data-testid="verdict">${answer.verdict}</p>
-    ${answer.doubts.map((/** @type {string} */ doubt) => spelt(answer.messages?.[doubt] ?? { text: doubt, facts: {} })).map((/** @type {string} */ words) => html`<${Note} kind="warning" key=${words} words=${words} />`)}
+    ${answer.doubts.map((/** @type {string} */ doubt) => spelt(answer.messages?.[doubt] ?? { text: doubt, facts: {} })).map((/** @type {string} */ text) => html`<${Note} kind="warning" key=${text} text=${text} />`)}
     <${Drawing} question=${question} alt="Measurements, fit and residuals" />
     ${models.length > 0 && html`<h3>Comparison with models</h3><${Rows} caption="Models" head=${Object.keys(models[0]).map((key) => HEADS[key] ?? key)}
-      rows=${models.map((/** @type {object} */ each) => Object.values(each).map(shown))} />`}`;
+      rows=${models.map((/** @type {object} */ model) => Object.values(model).map(shown))} />`}`;
 };

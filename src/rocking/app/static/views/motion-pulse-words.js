@@ -1,9 +1,9 @@
 /** Pulses as the API writes them: `sine:amplitude=3,period=0.8`. */
 
 /** Returns [name, parameters] of the words of a pulse.
- * @param {string} words @returns {[string, { [key: string]: number }]} */
-export const readPulse = (words) => {
-  const [name, tail = ""] = words.split(/:(.*)/s);
+ * @param {string} text @returns {[string, { [key: string]: number }]} */
+export const readPulse = (text) => {
+  const [name, tail = ""] = text.split(/:(.*)/s);
   const pairs = tail.split(",").filter(Boolean).map((item) => item.split("="));
   return [name.trim(), Object.fromEntries(pairs.map(([key, value]) => [key.trim(), Number(value)]))];
 };

@@ -35,8 +35,8 @@ export const Pulse = ({ app, motion, blamed, onChange }) => {
       </fieldset>
       <div class="pulse-fields" data-testid="pulse-parameters">
         ${shown && html`<p class="field-help">${aboutOf(shown)}</p>
-          ${shown.parameters.map((one) => html`<${Parameter} key=${`${name} ${one.name}`} ...${one}
-            value=${parameters[one.name] ?? one.usual} error=${blamed?.key === one.name && blamed.words} on=${(value) => turn(one.name, value)} />`)}`}
+          ${shown.parameters.map((parameter) => html`<${Parameter} key=${`${name} ${parameter.name}`} ...${parameter}
+            value=${parameters[parameter.name] ?? parameter.usual} error=${blamed?.key === parameter.name && blamed.text} on=${(value) => turn(parameter.name, value)} />`)}`}
       </div>
     </div>`;
 };
@@ -56,10 +56,10 @@ const borrowed = (pulse, before) => Object.fromEntries((pulse?.parameters ?? [])
   .filter(({ needed, name }) => needed || name in before).map(({ name, usual }) => [name, before[name] ?? usual]));
 
 /** @param {any} props */
-const Parameter = ({ label, unit, low, high, whole, log, limits, value, error, on }) => html`
+const Parameter = ({ label, unit, low, high, integer, log, limits, value, error, on }) => html`
   <div class="parameter">
-    <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${whole ? 1 : (high - low) / 200} log=${log}
+    <${Slider} label=${label} unit=${unit} min=${low} max=${high} step=${integer ? 1 : (high - low) / 200} log=${log}
       value=${Math.min(Math.max(Math.abs(value), low), high)} on=${on} />
-    <${NumberField} kind="exact" label=${t("{name}, exactly", { name: label })} unit=${unit} step=${whole ? 1 : undefined} ...${limits} value=${value}
+    <${NumberField} kind="exact" label=${t("{name}, exactly", { name: label })} unit=${unit} step=${integer ? 1 : undefined} ...${limits} value=${value}
       error=${error} on=${on} />
   </div>`;

@@ -1,6 +1,6 @@
 /** The pulses that the server knows, as the form shows them. */
 
-/** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, limits?: Limits, whole?: boolean, usual: number } | undefined }} */
+/** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, limits?: Limits, integer?: boolean, usual: number } | undefined }} */
 const RANGES = {
   amplitude: { label: "Peak acceleration", low: 0.1, high: 20, log: true, usual: 3, limits: { min: -1e6, max: 1e6, moves: true } },
   velocity: { label: "Velocity", low: 0.05, high: 3, log: true, usual: 0.6, limits: { moves: true } },
@@ -8,7 +8,7 @@ const RANGES = {
   duration: { label: "Duration", low: 0.05, high: 5, log: true, usual: 0.4, limits: { above: 0 } },
   cycles: { label: "Cycles", low: 1, high: 20, log: false, usual: 2 },
   phase: { label: "Phase", low: 0, high: 6.2832, log: false, usual: 0 },
-  n: { label: "Main cycles", low: 1, high: 10, log: false, whole: true, usual: 1, limits: { min: 1, max: 1000, whole: true } },
+  n: { label: "Main cycles", low: 1, high: 10, log: false, integer: true, usual: 1, limits: { min: 1, max: 1000, integer: true } },
 };
 /** @type {Words} */
 const TITLES = {
@@ -30,11 +30,11 @@ const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.lengt
 const titleOf = (name) => TITLES[name] || name.replaceAll("-", " ");
 
 /** @param {[string, Server.ParameterFacts]} parameter */
-const parameterOf = ([name, { unit, words, default: usual }]) => {
-  const range = RANGES[name] || { label: words || name, low: 0.01, high: 100, log: true, usual: 1 };
+const parameterOf = ([name, { unit, words: text, default: usual }]) => {
+  const range = RANGES[name] || { label: text || name, low: 0.01, high: 100, log: true, usual: 1 };
   return { name, unit: unit === "-" ? "" : unit, needed: usual === null, ...range, usual: typeof usual === "number" ? usual : range.usual };
 };
 
 /** The pulses by name: {title, summary, parameters: [{name, label, unit, usual, low, high, ...}]}. @param {Pick<Server.Info, "pulses">} info */
-export const pulsesOf = ({ pulses }) => new Map(Object.entries(pulses).sort(([one], [other]) => rank(one) - rank(other))
+export const pulsesOf = ({ pulses }) => new Map(Object.entries(pulses).sort(([first], [other]) => rank(first) - rank(other))
   .map(([name, { summary, parameters }]) => [name, { title: titleOf(name), summary, parameters: Object.entries(parameters).map(parameterOf) }]));

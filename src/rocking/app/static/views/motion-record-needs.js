@@ -28,30 +28,30 @@ const MISSING = {
 const choicesOf = (name, { choices = {}, components = [] }, info) => {
   if (choices[name]) return choices[name];
   if (name === "units") return info.units.acceleration;
-  return (name === "format" ? info.formats : components).map((one) => one.name);
+  return (name === "format" ? info.formats : components).map((option) => option.name);
 };
 
 /** The need that a refusal of the server is about, with its sentence; null if it is about none.
- * @param {Need[]} needs @param {any} refusal @param {string} words */
-export const blamedOf = (needs, refusal, words) => {
+ * @param {Need[]} needs @param {any} refusal @param {string} text */
+export const blamedOf = (needs, refusal, text) => {
   const name = needs.find((need) => need === (refusal.parameter && keyOf(refusal)));
-  return name ? { name, words } : null;
+  return name ? { name, text } : null;
 };
 
 /** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong.
  * @param {{ answer: LeftOpen, info: Server.Info, given: Told, blamed?: ReturnType<typeof blamedOf>, take: (given: Told) => unknown, button?: object, [more: string]: any }} props */
-export const Needs = ({ answer, info, given, blamed, take, button, ...more }) => {
-  const place = useRef(null);
-  const [answers, wrong, pressed] = [useSignal(given), useSignal({}), useSignal(0)];
+export const Needs = ({ answer, info, given: initial, blamed, take, button, ...more }) => {
+  const form = useRef(null);
+  const [answers, wrong, pressed] = [useSignal(initial), useSignal({}), useSignal(0)];
   /** @type {[Need, string[]][]} */
   const fields = answer.needs.map((name) => [name, choicesOf(name, answer, info)]);
   useLayoutEffect(() => {
-    wrong.value = blamed ? { [blamed.name]: blamed.words } : {};
-    if (blamed) toWrong(place.current);
+    wrong.value = blamed ? { [blamed.name]: blamed.text } : {};
+    if (blamed) toWrong(form.current);
   }, [blamed]);
   useLayoutEffect(() => {
     if (!pressed.value) return;
-    const first = wrongIn(place.current);
+    const first = wrongIn(form.current);
     if (first) first.focus();
     else take(answers.value);
   }, [pressed.value]);
@@ -79,6 +79,6 @@ export const Needs = ({ answer, info, given, blamed, take, button, ...more }) =>
     return name === "time_step" ? html`<${NumberField} key=${name} ...${about} unit="s" min=${1e-6} max=${10} step=${0.005} />`
       : html`<${Choice} key=${name} ...${about} options=${[["", "Choose"], ...choices.map((/** @type {string} */ value) => [value, value])]} />`;
   };
-  return html`<div ref=${place} onKeyDown=${entered} ...${more}>${fields.map(field)}
+  return html`<div ref=${form} onKeyDown=${entered} ...${more}>${fields.map(field)}
     <${Button} onClick=${press} ...${button}>Apply<//></div>`;
 };

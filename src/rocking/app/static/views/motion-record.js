@@ -23,58 +23,58 @@ const isStations = (name) => /\.xml$/i.test(name);
 /** What stands of the files that were given last: `take(files)` sends them, `onChange(motion)` hears when it is read.
  * @param {App} app @param {(motion: Server.MotionInput) => unknown} onChange */
 export const createRecord = (app, onChange) => {
-  const [said, asked, blamed, waiting, answer] = [null, null, null, false, null].map(signal);
+  const [status, openNeeds, blamed, waiting, answer] = [null, null, null, false, null].map(signal);
   /** @type {any} */
   let held = null; // the file, its content, and what was answered about it
 
-  /** @param {object} [given] */
-  const send = async (given) => {
+  /** @param {object} [statement] */
+  const send = async (statement) => {
     const sent = held;
-    Object.assign(sent.given, given);
-    said.value = { words: t("Reading {name}", { name: sent.file.name }) };
+    Object.assign(sent.given, statement);
+    status.value = { text: t("Reading {name}", { name: sent.file.name }) };
     try {
       sent.content ??= await contentOf(sent.file);
       const query = { name: sent.file.name, ...picked(sent.given, TOLD) };
-      const found = await app.call("records", { method: "POST", body: sent.content, query });
-      if (sent === held) batch(() => took(found));
+      const facts = await app.call("records", { method: "POST", body: sent.content, query });
+      if (sent === held) batch(() => took(facts));
     } catch (error) {
       if (sent === held) batch(() => refuse(error));
     }
   };
   // the components are chosen here, the server is not asked again
   /** @param {Need[]} needs */
-  const enough = (needs) => needs.every((one) => one === "component") && held.given.component !== undefined;
-  /** @param {Server.RecordFacts} found */
-  const took = (found) => {
-    if (found.needs.length && !enough(found.needs)) {
-      said.value = { words: sentence(found.message), kind: "warning" };
-      return ask(found);
+  const enough = (needs) => needs.every((need) => need === "component") && held.given.component !== undefined;
+  /** @param {Server.RecordFacts} facts */
+  const took = (facts) => {
+    if (facts.needs.length && !enough(facts.needs)) {
+      status.value = { text: sentence(facts.message), kind: "warning" };
+      return ask(facts);
     }
-    answer.value = found;
-    end(found.doubts ? { words: t("Check the input: {doubts}.", { doubts: found.doubts }), kind: "warning" } : {}, "read");
-    onChange({ record: found.record, file_name: found.file_name, ...picked(held.given, [...TOLD, "component"]) });
-    return app.say(t("{name} is read.", { name: found.file_name }));
+    answer.value = facts;
+    end(facts.doubts ? { text: t("Check the input: {doubts}.", { doubts: facts.doubts }), kind: "warning" } : {}, "read");
+    onChange({ record: facts.record, file_name: facts.file_name, ...picked(held.given, [...TOLD, "component"]) });
+    return app.say(t("{name} is read.", { name: facts.file_name }));
   };
-  /** @param {LeftOpen} found */
-  const ask = (found) => ([asked.value, blamed.value, waiting.value] = [{ answer: found, given: { ...held.given } }, null, true]);
-  /** @param {object} words @param {string} as */
-  const end = (words, as) => ([said.value, asked.value, waiting.value] = [{ ...words, as }, null, false]);
-  /** @param {string} words @param {any[]} [places] */
-  const why = (words, places = []) => {
+  /** @param {LeftOpen} facts */
+  const ask = (facts) => ([openNeeds.value, blamed.value, waiting.value] = [{ answer: facts, given: { ...held.given } }, null, true]);
+  /** @param {object} note @param {string} as */
+  const end = (note, as) => ([status.value, openNeeds.value, waiting.value] = [{ ...note, as }, null, false]);
+  /** @param {string} text @param {any[]} [places] */
+  const reasonNote = (text, places = []) => {
     const stays = app.inputs.get().motion ? ` ${t("The motion is unchanged.")}` : "";
-    const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: words }) : words;
-    return { words: `${sentence(named)}${stays}`, kind: "error" };
+    const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: text }) : text;
+    return { text: `${sentence(named)}${stays}`, kind: "error" };
   };
   // What was answered stays as it was typed, with the refusal beside the field that it is about.
   /** @param {any} error */
   const refuse = ({ message, ...error }) => {
-    if (!asked.value || error.needs?.length) {
-      end(why(message, error.places), "unread");
+    if (!openNeeds.value || error.needs?.length) {
+      end(reasonNote(message, error.places), "unread");
       if (error.needs?.length) ask({ message, ...error });
       return;
     }
-    blamed.value = blamedOf(asked.value.answer.needs, error, message);
-    said.value = blamed.value ? null : why(message, error.places);
+    blamed.value = blamedOf(openNeeds.value.answer.needs, error, message);
+    status.value = blamed.value ? null : reasonNote(message, error.places);
   };
   // Counts are no accelerations without their StationXML: both go to the step that reads them together.
   /** @param {File[]} files */
@@ -84,7 +84,7 @@ export const createRecord = (app, onChange) => {
       const [stations, records] = [true, false].map((are) => sent.filter(({ name }) => isStations(name) === are));
       const form = app.forms.of("records", { files: [], steps: [] });
       const { files: before, steps } = form.value;
-      form.at("files").value = [...before.filter((/** @type {SentFile} */ { sha, name }) => sent.every((one) => one.sha !== sha && one.name !== name)), ...sent];
+      form.at("files").value = [...before.filter((/** @type {SentFile} */ { sha, name }) => sent.every((file) => file.sha !== sha && file.name !== name)), ...sent];
       form.at("steps").value = [{ name: "response", id: freshId("step"), keys: { stations: stations[0].name } },
         ...steps.filter((/** @type {RecordStep} */ { name }) => name !== "response")];
       form.at("shown").value = records[0].name;
@@ -103,57 +103,57 @@ export const createRecord = (app, onChange) => {
       return together(files);
     }
     held = { file, content: null, given: {} };
-    if (files.length > 1) return end({ words: "A motion is one record. Add several records in the step Records.", kind: "error" }, "unread");
-    [asked.value, waiting.value] = [null, true];
+    if (files.length > 1) return end({ text: "A motion is one record. Add several records in the step Records.", kind: "error" }, "unread");
+    [openNeeds.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
     if (!most || file.size <= most) return send();
-    return end(why(t("{name} exceeds the limit of {size} MiB.", { name: file.name, size: Math.round(most / 2 ** 20) })), "unread");
+    return end(reasonNote(t("{name} exceeds the limit of {size} MiB.", { name: file.name, size: Math.round(most / 2 ** 20) })), "unread");
   };
   const forget = () => batch(() => {
     held = null;
-    [said.value, asked.value, blamed.value, waiting.value] = [null, null, null, false];
+    [status.value, openNeeds.value, blamed.value, waiting.value] = [null, null, null, false];
   });
-  return { said, asked, blamed, waiting, answer, take, send, forget };
+  return { said: status, asked: openNeeds, blamed, waiting, answer, take, send, forget };
 };
 
 /** The editor of a record; `lost`: the server no longer has the file.
  * @param {{ app: App, record: ReturnType<typeof createRecord>, motion: Server.MotionInput | null, lost: boolean, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Record = ({ app, record, motion, lost, onChange }) => {
-  const { said, asked, blamed, answer } = record;
-  const place = useRef(null);
+  const { said: status, asked: openNeeds, blamed, answer } = record;
+  const editor = useRef(null);
   /** @param {string} selector */
-  const focus = (selector) => place.current.querySelector(selector)?.focus();
-  const before = useRef([said.value, asked.value]);
+  const focus = (selector) => editor.current.querySelector(selector)?.focus();
+  const before = useRef([status.value, openNeeds.value]);
   useLayoutEffect(() => {
-    const [words, form] = before.current;
-    before.current = [said.value, asked.value];
-    if (asked.value && asked.value !== form) return focus(".record-form :is(input, select)");
-    if (said.value === words || document.activeElement !== document.body) return undefined;
-    return focus(FOCUSED[said.value?.as] ?? "none"); // what was pressed is gone
-  }, [said.value, asked.value]);
+    const [note, form] = before.current;
+    before.current = [status.value, openNeeds.value];
+    if (openNeeds.value && openNeeds.value !== form) return focus(".record-form :is(input, select)");
+    if (status.value === note || document.activeElement !== document.body) return undefined;
+    return focus(FOCUSED[status.value?.as] ?? "none"); // what was pressed is gone
+  }, [status.value, openNeeds.value]);
   const formats = app.info.formats.map(({ name }) => name).join(", ");
-  const known = answer.value?.record === motion?.record;
+  const isAnswered = answer.value?.record === motion?.record;
   useEffect(() => void (motion && rememberTold(motion)), [motion]);
   useEffect(() => {
-    if (known || !motion) return;
+    if (isAnswered || !motion) return;
     // what a file holds that was sent before this page was loaded; a motion that is refused says so itself
-    /** @param {Server.RecordFacts} found */
-    const learn = (found) => app.inputs.get().motion?.record === motion.record && (answer.value = found);
+    /** @param {Server.RecordFacts} facts */
+    const learn = (facts) => app.inputs.get().motion?.record === motion.record && (answer.value = facts);
     app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then(learn, () => {});
   }, [motion?.record]);
   return html`
-    <div ref=${place} class="record-editor">
+    <div ref=${editor} class="record-editor">
       <${Drop} label="Drop a record here, or" name="Record file" many folders=${false} on=${record.take} testid="record-file" data-testid="record-drop">
         <p class="field-help">${t("Formats: {formats}. For counts (miniSEED), add the StationXML file.", { formats })}</p><//>
       <div aria-live="polite" data-testid="record-answer">
-        ${said.value?.words && html`<${Note} ...${said.value} />`}
-        ${lost && html`<${Note} kind="warning" words="The server no longer has this file. Add the file again." />`}</div>
+        ${status.value?.text && html`<${Note} ...${status.value} />`}
+        ${lost && html`<${Note} kind="warning" text="The server no longer has this file. Add the file again." />`}</div>
       <div data-testid="record-needs">
-        ${asked.value && html`<${Needs} key=${asked.value} ...${asked.value} class="record-form" info=${app.info} blamed=${blamed.value}
+        ${openNeeds.value && html`<${Needs} key=${openNeeds.value} ...${openNeeds.value} class="record-form" info=${app.info} blamed=${blamed.value}
           button=${{ kind: "primary" }} take=${record.send} />`}</div>
       <div class="record-held" data-testid="record-held">${motion && html`
         <p class="record-name" tabindex="-1" translate=${!motion.file_name}>${motion.file_name || t("record {number}", { number: motion.record?.slice(0, 12) })}</p>
-        <${Components} names=${known ? (answer.value.components ?? []).map((/** @type {any} */ one) => one.name) : []} motion=${motion} onChange=${onChange} />`}
+        <${Components} names=${isAnswered ? (answer.value.components ?? []).map((/** @type {any} */ component) => component.name) : []} motion=${motion} onChange=${onChange} />`}
       </div>
     </div>`;
 };

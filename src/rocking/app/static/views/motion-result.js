@@ -23,13 +23,13 @@ const MEASURE = ["Measure", { label: "Value", digits: 4 }, { label: "Unit", nume
 /** @param {string} text */
 const titled = (text) => text[0].toUpperCase() + text.slice(1);
 
-/** The part of the view that shows the answer of the server; `part` is what of the time is looked into.
- * @param {{ app: App, answer: Server.MotionAnswered, part: any, time: Time, stale: boolean }} props */
-export const Result = ({ app, answer, part, time, stale }) => {
+/** The results of the server; `closeup` has the visible interval with its detailed curves.
+ * @param {{ app: App, answer: Server.MotionAnswered, closeup: any, time: Time, stale: boolean }} props */
+export const Result = ({ app, answer, closeup, time, stale }) => {
   const { samples_shown: shown, samples: of } = answer.series;
   /** @type {any} */
-  const series = useMemo(() => (part?.series ? detailed(answer.series, part.series) : answer.series), [answer, part]);
-  const measures = answer.measures.map(({ name, words }) => [words, answer.intensity[name], answer.units[name] === "1" ? "" : pretty(answer.units[name])]);
+  const series = useMemo(() => (closeup?.series ? detailed(answer.series, closeup.series) : answer.series), [answer, closeup]);
+  const measures = answer.measures.map(({ name, words: text }) => [text, answer.intensity[name], answer.units[name] === "1" ? "" : pretty(answer.units[name])]);
   /** @param {string} path @param {string} [name] */
   const save = (path, name = path.replaceAll("/", "-")) => app.download(path, app.inputs.get(), name);
   /** @param {string} text @param {string} path @param {string} label */
@@ -41,8 +41,8 @@ export const Result = ({ app, answer, part, time, stale }) => {
           ${factsOf(answer).map(([word, text]) => html`<dt key=${word}>${word}</dt><dd>${text}</dd>`)}</dl><//>
       <${Card} title="Acceleration, velocity, displacement">
         <div class="motion-traces" data-testid="motion-traces">
-          ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((one) => html`
-            <${Trace} key=${one.key} trace=${one} series=${series} part=${part?.window ?? null} time=${time} />`)}</div>
+          ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((trace) => html`
+            <${Trace} key=${trace.key} trace=${trace} series=${series} interval=${closeup?.window ?? null} time=${time} />`)}</div>
         <p class="field-help">${of > shown && t("{shown} of {count} samples are drawn: the extremes of each pixel. {hint}", { shown, count: of, hint: LOOK })}</p>
         <div class="toolbar">${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
       <${Card} title="Response spectrum"><${Spectrum} spectrum=${answer.spectrum} />
@@ -53,30 +53,30 @@ export const Result = ({ app, answer, part, time, stale }) => {
     </div>`;
 };
 
-/** @param {{ trace: typeof TRACES[number], series: any, part: Point | null, time: Time }} props */
-const Trace = ({ trace: { key, label, unit, colour }, series, part, time }) => {
+/** @param {{ trace: typeof TRACES[number], series: any, interval: Point | null, time: Time }} props */
+const Trace = ({ trace: { key, label, unit, colour }, series, interval, time }) => {
   const data = useMemo(() => [series.time, series[key]], [series]);
   const shape = {
     title: titled(t(label)), x: { label: "time", unit: "s" }, y: { label: "", unit }, series: [{ label, colour, width: 1.4 }],
     height: 180,
   };
-  return html`<${Figure} shape=${shape} data=${data} part=${part} time=${time} />`;
+  return html`<${Figure} shape=${shape} data=${data} interval=${interval} time=${time} />`;
 };
 
 /** @param {Server.MotionAnswered} answer */
 const factsOf = (answer) => {
   const peak = answer.peak_ground_acceleration;
-  const found = [
+  const rows = [
     ["Peak acceleration", `${quantity(peak, "m/s2", 4)} (${quantity(peak / G, "g", 3)})`],
     ["Duration", quantity(answer.duration, "s", 5)],
   ];
-  if (answer.time_step) found.push(["Time step", quantity(answer.time_step, "s", 5)]);
-  if (answer.samples) found.push(["Samples", String(answer.samples)]);
+  if (answer.time_step) rows.push(["Time step", quantity(answer.time_step, "s", 5)]);
+  if (answer.samples) rows.push(["Samples", String(answer.samples)]);
   for (const key of /** @type {const} */ (["event", "station", "component", "format", "file_unit"])) {
-    if (answer[key]) found.push([titled(t(key.replace("_", " "))), String(answer[key])]);
+    if (answer[key]) rows.push([titled(t(key.replace("_", " "))), String(answer[key])]);
   }
   if (answer.peak_vertical_acceleration) {
-    found.push(["Peak vertical acceleration", quantity(answer.peak_vertical_acceleration, "m/s2", 4)]);
+    rows.push(["Peak vertical acceleration", quantity(answer.peak_vertical_acceleration, "m/s2", 4)]);
   }
-  return found;
+  return rows;
 };

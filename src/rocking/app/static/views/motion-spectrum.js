@@ -35,5 +35,5 @@ export const Spectrum = ({ spectrum }) => {
   };
   return html`
     <div class="motion-spectrum"><${Segmented} label="Spectrum of" options=${WORDS} value=${kind} />
-      <${Figure} shape=${shape} data=${data} part=${null} testid="motion-spectrum" /></div>`;
+      <${Figure} shape=${shape} data=${data} interval=${null} testid="motion-spectrum" /></div>`;
 };

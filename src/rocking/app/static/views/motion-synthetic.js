@@ -25,19 +25,19 @@ export const Synthetic = ({ app, motion, onChange }) => {
   /** @param {Partial<Server.MotionInput>} changes */
   const change = (changes) => onChange({ ...motion, ...changes });
   /** @param {string} label @param {"seed" | "member"} key @param {string} help */
-  const whole = (label, key, help) => html`<${NumberField} label=${label} help=${help} min=${0} step=${1} whole
+  const wholeField = (label, key, help) => html`<${NumberField} label=${label} help=${help} min=${0} step=${1} integer
     value=${motion[key] ?? 0} on=${(value) => change({ [key]: value })} />`;
   return html`
     <div class="synthetic-editor">
       <${Choice} label="Family" options=${families.map(({ name }) => [name, name.replaceAll("-", " ")])} value=${motion.synthetic}
         on=${(synthetic) => change({ synthetic })} />
       <p class="field-help">${family && t("{sentence}; {more}", { sentence: family.title, more: family.origin })}</p>
-      <div class="fields">${whole("Seed", "seed", "The same seed gives the same motions on every computer.")}
-        ${whole("Realization", "member", "Index of the motion: 0, 1, 2, ...")}</div>
+      <div class="fields">${wholeField("Seed", "seed", "The same seed gives the same motions on every computer.")}
+        ${wholeField("Realization", "member", "Index of the motion: 0, 1, 2, ...")}</div>
       <${Button} onClick=${() => change({ member: (motion.member ?? 0) + 1 })}>Next realization<//>
       <${Segmented} label="Level" options=${LEVELS} value=${kind}
         on=${(/** @type {"" | "pga" | "pgv"} */ next) => onChange(next ? { ...drawn, [next]: LEVEL[next].usual } : drawn)} />
       ${kind && html`<${NumberField} key=${kind} label=${LEVEL[kind].label} unit=${LEVEL[kind].unit} min=${1e-6} step=${0.1}
-        value=${motion[kind]} on=${(given) => change({ [kind]: given })} />`}
+        value=${motion[kind]} on=${(level) => change({ [kind]: level })} />`}
     </div>`;
 };

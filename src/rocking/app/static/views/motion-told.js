@@ -29,9 +29,9 @@ export const toldOf = (record) => all()[record] ?? {};
 
 /** Keeps what a motion says about its record. @param {any} motion */
 export const rememberTold = ({ record, ...motion }) => {
-  const given = KEYS.filter((key) => motion[key] !== undefined);
-  const told = Object.fromEntries(given.map((key) => [key, motion[key]]));
-  if (record) write([...others(record), [record, told]]);
+  const stated = KEYS.filter((key) => motion[key] !== undefined);
+  const options = Object.fromEntries(stated.map((key) => [key, motion[key]]));
+  if (record) write([...others(record), [record, options]]);
 };
 
 /** Forgets a record that was deleted. @param {string} record */

@@ -32,11 +32,11 @@ export const mount = (section, app) => {
   /** @type {{ [way: string]: Server.MotionInput | undefined }} */
   let kept = {};
   const question = () => {
-    const { motion: given, settings } = inputs.get();
-    if (!given) return null;
-    return { motion: given, settings, points: dotsOf(section.querySelector("[data-testid=motion-traces]") ?? section) };
+    const { motion: current, settings } = inputs.get();
+    if (!current) return null;
+    return { motion: current, settings, points: dotsOf(section.querySelector("[data-testid=motion-traces]") ?? section) };
   };
-  const asked = createAnswer(app, "motion", ["motion", "settings"], question, { path: "motion", detail: { spectrum: false } });
+  const request = createAnswer(app, "motion", ["motion", "settings"], question, { path: "motion", detail: { spectrum: false } });
   inputs.subscribe((now, changed) => {
     if (!changed.has("motion")) return;
     rememberMotion(app, now.motion);
@@ -67,14 +67,14 @@ export const mount = (section, app) => {
     record.forget();
     way.value = wayOf(inputs.get().motion);
   }));
-  render(html`<${Motion} app=${app} asked=${asked} motion=${motion} way=${way} faulty=${faulty} record=${record} set=${set}
-    choose=${choose} time=${createTime(undefined, asked.look)} />`, section);
-  return asked;
+  render(html`<${Motion} app=${app} request=${request} motion=${motion} way=${way} faulty=${faulty} record=${record} set=${set}
+    choose=${choose} time=${createTime(undefined, request.look)} />`, section);
+  return request;
 };
 
 /** @param {any} props */
-const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, set, choose, time }) => {
-  const { answer: { value: answer }, refused: { value: refused }, part } = asked;
+const Motion = ({ app, request, motion: { value: motion }, way, faulty, record, set, choose, time }) => {
+  const { answer: { value: answer }, refused: { value: refused }, closeup } = request;
   const Editor = /** @type {any} */ (EDITORS)[way.value];
   const waits = way.value === "record" && record.waiting.value;
   // what is measured is not what the form shows: another way, a file that waits, an error
@@ -90,13 +90,13 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
         ${motion && html`<${Scale} value=${motion.scale ?? 1} on=${(scale) => app.inputs.set("motion", { ...motion, scale })} />`}<//></div>
       <div class="motion-right">
         <div aria-live="polite" data-testid="motion-refusal">
-          ${!motion && html`<${Note} words=${LEAN} /><div class="toolbar">
+          ${!motion && html`<${Note} text=${LEAN} /><div class="toolbar">
             <${Button} onClick=${() => set(motionBefore(app))}>Restore the previous motion<//></div>`}
-          ${refused && html`<${Note} kind="error" words=${refused.message} />`}
-          ${(answer?.warnings ?? []).map((/** @type {string} */ words) => html`<${Note} key=${words} kind="warning" words=${words} />`)}</div>
+          ${refused && html`<${Note} kind="error" text=${refused.message} />`}
+          ${(answer?.warnings ?? []).map((/** @type {string} */ warning) => html`<${Note} key=${warning} kind="warning" text=${warning} />`)}</div>
         <div aria-live="polite" data-testid="motion-pending">
-          ${stale && html`<${Note} kind="warning" words=${pendingWords(motion, faulty.value, waits)} />`}</div>
-        ${answer && html`<${Result} app=${app} answer=${answer} part=${part.value} time=${time} stale=${stale} />`}
+          ${stale && html`<${Note} kind="warning" text=${pendingWords(motion, faulty.value, waits)} />`}</div>
+        ${answer && html`<${Result} app=${app} answer=${answer} closeup=${closeup.value} time=${time} stale=${stale} />`}
       </div>
     </div>`;
 };
@@ -105,12 +105,12 @@ const Motion = ({ app, asked, motion: { value: motion }, way, faulty, record, se
 /** @param {any} refused */
 const blamedOf = (refused) => {
   const key = refused.parameter ? keyOf(refused) : undefined;
-  return key === "energy" ? { key: "amplitude", words: "Enter a value other than 0." } : { key, words: sentence(refused.message) };
+  return key === "energy" ? { key: "amplitude", text: "Enter a value other than 0." } : { key, text: sentence(refused.message) };
 };
 
 /** @param {Server.MotionInput} motion @param {boolean} faulty @param {boolean} waits */
 const pendingWords = (motion, faulty, waits) => {
   const file = waits ? "The new file is not read yet" : "No file is selected";
-  const why = faulty && !waits ? "An input is invalid" : file;
-  return t("{reason}. The results below and the response still use {motion}.", { reason: why, motion: motion.file_name ?? "the previous motion" });
+  const reason = faulty && !waits ? "An input is invalid" : file;
+  return t("{reason}. The results below and the response still use {motion}.", { reason, motion: motion.file_name ?? "the previous motion" });
 };

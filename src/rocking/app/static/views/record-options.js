@@ -28,8 +28,8 @@ export const reasonsOf = (question, records) => {
   /** @param {string} name */
   const reasonOf = (name) => leftOut.find(({ file }) => last(file) === name)?.why
     ?? (last(String(refusal?.facts?.file ?? "")) === name ? refusal?.facts?.cause : undefined)
-    ?? ((refusal?.places ?? []).some((/** @type {any} */ place) => place.kind === "file" && last(place.name) === name) ? spelt(refusal) : "");
-  return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, why]) => why).slice(0, MOST_REASONS));
+    ?? ((refusal?.places ?? []).some((/** @type {any} */ location) => location.kind === "file" && last(location.name) === name) ? spelt(refusal) : "");
+  return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, reason]) => reason).slice(0, MOST_REASONS));
 };
 
 /** Fields of the files that have options of their own or were not read; `reasons` are why they were not.
@@ -55,7 +55,7 @@ export const FileOptions = ({ app, form, names, reasons }) => {
         <div class="toolbar"><strong translate=${false}>${name}</strong>
           ${name in byFile && html`<${Button} kind="quiet" aria-label=${t("Remove the options of {name}", { name })}
             onClick=${() => (form.at("by_file").value = without(name))}>remove<//>`}</div>
-        ${reasons[name] && html`<${Note} kind="error" words=${sentence(reasons[name])} />`}
+        ${reasons[name] && html`<${Note} kind="error" text=${sentence(reasons[name])} />`}
         <div class="fields">${KEYS.map((key) => field(name, key))}</div></li>`)}</ul>`}
       ${others.length > 0 && html`<${Choice} label="Add a file with other options" value=${added}
         help="The unit, time step, format and skipped lines of a file replace the common options."

@@ -30,9 +30,9 @@ const Records = ({ app, questions }) => {
   const wrong = useSignal("");
   /** @type {{ files: SentFile[], curve: SentFile[], steps: RecordStep[] }} */
   const { files, curve, steps } = form.value;
-  const records = files.filter((one) => !isStations(one));
+  const records = files.filter((file) => !isStations(file));
   const shown = shownOf(form.value, records);
-  const lists = records.filter((one) => /\.csv$/i.test(one.name));
+  const lists = records.filter((record) => /\.csv$/i.test(record.name));
   const single = shown !== "all" && shown !== "target";
   const reasons = reasonsOf(questions.shown.value, records);
   /** @type {{ [key: string]: string[] | undefined }} */
@@ -43,14 +43,14 @@ const Records = ({ app, questions }) => {
   /** @param {Event} event */
   const ask = (event) => {
     event.preventDefault();
-    wrong.value = !records.length ? { key: "files", words: "Add a record." }
+    wrong.value = !records.length ? { key: "files", text: "Add a record." }
       : shown === "target" && form.value.code === "file" && !curve.length
-        ? { key: "curve", words: "Add a spectrum file." }
-        : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), words: "Enter a number." } : "";
+        ? { key: "curve", text: "Add a spectrum file." }
+        : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), text: "Enter a number." } : "";
     if (wrong.value) return;
     form.at("asked").value = chainOf(steps).join("; ");
-    const asked = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((one) => one.name === shown))) : setOf(form.value, app, shown);
-    questions.ask(asked.tables, asked.files, asked.name, { command: single ? "record convert" : "record batch", format: single ? form.value.format : "" });
+    const job = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((record) => record.name === shown))) : setOf(form.value, app, shown);
+    questions.ask(job.tables, job.files, job.name, { command: single ? "record convert" : "record batch", format: single ? form.value.format : "" });
   };
   return html`
     <${QuestionView} questions=${questions} wrong=${wrong.value} onSubmit=${ask} answer=${Answer}
@@ -94,8 +94,8 @@ const missingOf = ({ code, of }, app) => Object.entries(app.info.targets[code]?.
 
 /** The steps as job files and the command line have them. @param {RecordStep[]} steps */
 const chainOf = (steps) => steps.map(({ name, keys }) => {
-  const given = Object.entries(keys).filter(([, text]) => text.trim());
-  return given.length ? `${name}:${given.map(([key, text]) => `${key}=${written(text)}`).join(",")}` : name;
+  const stated = Object.entries(keys).filter(([, text]) => text.trim());
+  return stated.length ? `${name}:${stated.map(([key, text]) => `${key}=${written(text)}`).join(",")}` : name;
 });
 /** @param {string} text */
 const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " ").trim() : String(parseNumber(text)));
@@ -106,70 +106,70 @@ const faultyOf = (questions, { steps, asked }) => {
   const refusal = questions.shown.value?.state === "refused" ? questions.shown.value.refusal : null;
   const step = refusal?.places?.find((/** @type {any} */ { kind }) => kind === "step");
   if (!step || asked !== chainOf(steps).join("; ")) return null;
-  return { place: step.number - 1, words: sentence(spelt(refusal)) };
+  return { place: step.number - 1, text: sentence(spelt(refusal)) };
 };
 
-/** @param {{ app: App, form: Form, stations: SentFile[], faulty: { place: number, words: string } | null }} props */
+/** @param {{ app: App, form: Form, stations: SentFile[], faulty: { place: number, text: string } | null }} props */
 const Chain = ({ app, form, stations, faulty }) => {
-  const known = app.info.steps;
+  const stepFacts = app.info.steps;
   /** @type {{ steps: RecordStep[] }} */
   const { steps } = form.value;
   const heading = useRef(freshId("steps")).current;
   /** @param {RecordStep[]} next */
   const set = (next) => (form.at("steps").value = next);
-  /** @param {number} place @param {string} key */
-  const keyed = (place, key) => ({
-    get value() { return steps[place].keys[key] ?? ""; },
-    set value(text) { set(steps.map((one, k) => (k === place ? { ...one, keys: { ...one.keys, [key]: text } } : one))); },
+  /** @param {number} index @param {string} key */
+  const keyed = (index, key) => ({
+    get value() { return steps[index].keys[key] ?? ""; },
+    set value(text) { set(steps.map((step, k) => (k === index ? { ...step, keys: { ...step.keys, [key]: text } } : step))); },
   });
-  /** @param {number} place */
-  const by = (place) => ({
-    get value() { return Object.keys(steps[place].keys)[0] ?? ""; },
-    set value(key) { set(steps.map((one, k) => (k === place ? { ...one, keys: { [key]: "" } } : one))); },
+  /** @param {number} index */
+  const by = (index) => ({
+    get value() { return Object.keys(steps[index].keys)[0] ?? ""; },
+    set value(key) { set(steps.map((step, k) => (k === index ? { ...step, keys: { [key]: "" } } : step))); },
   });
   const added = {
     get value() { return ""; },
     set value(name) { if (name) set([...steps, { name, id: freshId("step"), keys: {} }]); },
   };
-  /** @param {number} place @param {number} by */
-  const moved = (place, by) => {
+  /** @param {number} index @param {number} by */
+  const moved = (index, by) => {
     const next = [...steps];
-    next.splice(place + by, 0, ...next.splice(place, 1));
+    next.splice(index + by, 0, ...next.splice(index, 1));
     set(next);
   };
   return html`
     <div class="chain" role="group" aria-labelledby=${heading}>
       <h2 id=${heading}>Processing steps</h2>
-      <ol>${steps.map(({ name, id }, place) => html`<li key=${id} aria-label=${t("Step {number}, {name}", { number: place + 1, name })}>
+      <ol>${steps.map(({ name, id }, index) => html`<li key=${id} aria-label=${t("Step {number}, {name}", { number: index + 1, name })}>
         <div class="toolbar"><strong>${name}</strong>
-          <${Button} kind="quiet" aria-label=${t("Move {name} earlier", { name })} disabled=${!place} onClick=${() => moved(place, -1)}>\u2191<//>
-          <${Button} kind="quiet" aria-label=${t("Move {name} later", { name })} disabled=${place === steps.length - 1} onClick=${() => moved(place, 1)}>\u2193<//>
-          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== place))}>remove<//>
+          <${Button} kind="quiet" aria-label=${t("Move {name} earlier", { name })} disabled=${!index} onClick=${() => moved(index, -1)}>\u2191<//>
+          <${Button} kind="quiet" aria-label=${t("Move {name} later", { name })} disabled=${index === steps.length - 1} onClick=${() => moved(index, 1)}>\u2193<//>
+          <${Button} kind="quiet" aria-label=${t("Remove {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== index))}>remove<//>
         </div>
-        <p class="field-help">${sentence(known[name].words)}</p>
+        <p class="field-help">${sentence(stepFacts[name].words)}</p>
         <div class="fields">
-          ${known[name].one && html`<${Choice} label="parameter" value=${by(place)} options=${Object.keys(known[name].keys).map((key) => [key, key])} />`}
-          ${keysOf(steps[place], known[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
-            facts=${key === "stations" ? { ...facts, choices: stations.map((one) => one.name) } : facts} value=${keyed(place, key)} />`)}
+          ${stepFacts[name].one && html`<${Choice} label="parameter" value=${by(index)} options=${Object.keys(stepFacts[name].keys).map((key) => [key, key])} />`}
+          ${keysOf(steps[index], stepFacts[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
+            facts=${key === "stations" ? { ...facts, choices: stations.map((station) => station.name) } : facts} value=${keyed(index, key)} />`)}
         </div>
-        ${faulty?.place === place && html`<${Note} kind="error" role="alert" words=${faulty?.words} />`}
+        ${faulty?.place === index && html`<${Note} kind="error" role="alert" text=${faulty?.text} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
-        options=${[["", "\u2013"], ...Object.entries(known).map(([name, { words }]) => [name, `${name}: ${t(words)}`])]} />
+        options=${[["", "\u2013"], ...Object.entries(stepFacts).map(([name, { words: text }]) => [name, `${name}: ${t(text)}`])]} />
     </div>`;
 };
 
 // All keys of a step; of one that takes a single one, that which was chosen.
 /** @param {{ keys: object }} step @param {Server.StepFacts} known */
-const keysOf = ({ keys }, { one, keys: known }) => {
-  const all = Object.entries(known);
-  return one ? [all.find(([key]) => key in keys) ?? all[0]] : all;
+const keysOf = ({ keys }, { one: single, keys: facts }) => {
+  const all = Object.entries(facts);
+  return single ? [all.find(([key]) => key in keys) ?? all[0]] : all;
 };
 
 /** @param {{ app: App, form: Form, questions: Questions }} props */
 const Target = ({ app, form, questions }) => {
   const { code } = form.value;
-  const codes = Object.entries(app.info.targets).map(([name, { words }]) => [name, `${name}: ${t(words)}`]);
+  const codes = Object.entries(app.info.targets).map(([name, { words: text }]) => [name, `${name}: ${t(text)}`]);
   return html`
     <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
     ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" name="curve" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}
@@ -181,7 +181,7 @@ const Target = ({ app, form, questions }) => {
 };
 
 /** @param {SentFile[]} files @param {string} [folder] */
-const shas = (files, folder = "") => Object.fromEntries(files.map((one) => [`${folder}${one.name}`, one.sha]));
+const shas = (files, folder = "") => Object.fromEntries(files.map((file) => [`${folder}${file.name}`, file.sha]));
 
 /** @param {any} form @param {App} app @param {SentFile} record */
 const oneOf = ({ files, steps, motion, by_file: byFile }, app, record) => ({
@@ -192,18 +192,18 @@ const oneOf = ({ files, steps, motion, by_file: byFile }, app, record) => ({
 
 /** @param {any} form @param {App} app @param {string} shown */
 const setOf = ({ files, curve, steps, motion, by_file: byFile, set, of, code, list }, app, shown) => {
-  const records = files.filter((/** @type {SentFile} */ one) => !isStations(one));
+  const records = files.filter((/** @type {SentFile} */ file) => !isStations(file));
   const { component, ...keys } = motion;
   const { mirrored, ...chosen } = filled(set, app.info.keys.motions);
   const spectrum = `${code}:${Object.entries(of[code] ?? {}).filter(([, text]) => text.trim()).map(([key, text]) => `${key}=${written(text)}`).join(",")}`;
   /** @type {{ target?: string }} */
-  const wanted = shown === "target" ? { target: code === "file" ? curve[0].name : spectrum, ...chosen } : {};
+  const selection = shown === "target" ? { target: code === "file" ? curve[0].name : spectrum, ...chosen } : {};
   const named = records.some((/** @type {SentFile} */ { name }) => name === list) ? `records/${list}` : "records";
   return {
     tables: { motions: [{ records: [named], ...filled(keys, app.info.keys.motions), ...optionsOf(byFile, records, app),
-      ...processOf(steps), ...wanted, ...(mirrored ? { mirrored } : {}) }] },
+      ...processOf(steps), ...selection, ...(mirrored ? { mirrored } : {}) }] },
     files: { ...shas(records, "records/"), ...shas(files.filter(isStations)), ...shas(shown === "target" && code === "file" ? curve : []) },
-    name: wanted.target ? t(["{count} record for {target}", "{count} records for {target}"], { count: records.length, target: wanted.target })
+    name: selection.target ? t(["{count} record for {target}", "{count} records for {target}"], { count: records.length, target: selection.target })
       : t(["{count} record", "{count} records"], { count: records.length }),
   };
 };
@@ -211,28 +211,28 @@ const setOf = ({ files, curve, steps, motion, by_file: byFile, set, of, code, li
 /** @param {RecordStep[]} steps */
 const processOf = (steps) => (steps.length ? { process: chainOf(steps) } : {});
 
-/** @param {Given} given */
-const Answer = (given) => (given.question.command === "record convert" ? html`<${Corrected} ...${given} />` : html`<${Chosen} ...${given} />`);
+/** @param {Given} props */
+const Answer = (props) => (props.question.command === "record convert" ? html`<${Corrected} ...${props} />` : html`<${Chosen} ...${props} />`);
 
 const HEAD = [["samples", "samples"], ["time_step", "step [s]"], ["peak_ground_acceleration", "PGA [m/s\u00b2]"], ["peak_ground_velocity", "PGV [m/s]"],
   ["peak_ground_displacement", "PGD [m]"], ["end_velocity", "final velocity [m/s]"]];
 
 /** @param {Given} given */
 const Corrected = ({ answer, question, questions }) => {
-  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ words) => `${t(when)}: ${t(words)}`));
-  const said = Object.entries(answer.metadata).filter(([key]) => key !== "header");
+  const doubts = ["before", "after"].flatMap((when) => answer[when].warnings.map((/** @type {string} */ warning) => `${t(when)}: ${t(warning)}`));
+  const header = Object.entries(answer.metadata).filter(([key]) => key !== "header");
   return html`
     <p class="verdict" data-testid="verdict">${t("{name}: PGA {before} g before, {after} g after.", {
       name: answer.name, before: number(answer.before.peak_ground_acceleration / G, 4), after: number(answer.after.peak_ground_acceleration / G, 4) })}</p>
-    ${doubts.map((words) => html`<${Note} kind="warning" key=${words} words=${sentence(words)} />`)}
+    ${doubts.map((doubt) => html`<${Note} kind="warning" key=${doubt} text=${sentence(doubt)} />`)}
     <${Drawing} question=${question} alt="Acceleration, velocity, displacement, Fourier amplitudes and response spectrum, before and after" />
     <div class="toolbar"><${Button} kind="primary" onClick=${() => use(questions, question)}>Use as motion<//></div>
-    <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, words]) => words)]} rows=${["before", "after"].map((when) =>
+    <${Rows} caption="Before and after" head=${["record", ...HEAD.map(([, label]) => label)]} rows=${["before", "after"].map((when) =>
       [when, ...HEAD.map(([key]) => (key === "samples" ? String(answer[when][key]) : number(answer[when][key])))])} />
     <h3>Processing</h3>
-    <ul aria-label="Processing">${answer.provenance.map((/** @type {string} */ words) => html`<li key=${words} class="provenance">${words}</li>`)}</ul>
+    <ul aria-label="Processing">${answer.provenance.map((/** @type {string} */ step) => html`<li key=${step} class="provenance">${step}</li>`)}</ul>
     <details><summary>File header</summary>
-      <dl class="facts">${said.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
+      <dl class="facts">${header.map(([key, text]) => html`<dt key=${key}>${key}</dt><dd>${text}</dd>`)}</dl>
       ${answer.metadata.header && html`<pre tabindex="0">${answer.metadata.header}</pre>`}
     </details>`;
 };
@@ -270,10 +270,10 @@ const Chosen = ({ answer, question }) => {
       ? t("{count} records, {left} files ignored.", { count: records.length, left: left.length }) : t(["{count} record.", "{count} records."], { count: records.length })}</p>
     <${Drawing} question=${question} alt=${selection ? "Spectra of the scaled records, their mean and the target" : "Spectra of the records"} />
     <${Rows} caption="Records" rows=${rows}
-      head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, words]) => words), "components"]} />
+      head=${["record", ...(scaled ? ["factor", "misfit"] : []), ...SHOWN.map(([, text]) => text), "components"]} />
     <p class="field-help">The table shows the component with the largest peak. The files contain all components and their spectra.</p>
     ${records.some((/** @type {any} */ row) => row.doubts) && html`<h3>Warnings</h3><${Rows} caption="Warnings" head=${["record", "warning"]}
       rows=${records.filter((/** @type {any} */ row) => row.doubts).map((/** @type {any} */ row) => [row.record, row.doubts])} />`}
     ${left.length > 0 && html`<h3>Ignored files</h3><${Rows} caption="Ignored files" head=${["file", "reason"]}
-      rows=${left.map((/** @type {any} */ each) => [each.file, whyLeftOut(each)])} />`}`;
+      rows=${left.map((/** @type {any} */ file) => [file.file, whyLeftOut(file)])} />`}`;
 };

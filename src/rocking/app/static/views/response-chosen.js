@@ -4,7 +4,7 @@ import { curveKey } from "/views/response-labels.js";
 import { readRestitution } from "/views/response-restitution.js";
 import { t } from "/app/words.js";
 
-const wanted = signal(null);
+const chosenKey = signal(null);
 
 /** Returns the labels of a restitution table in the order of its answers.
  * @param {Server.RestitutionTable} [table] @returns {string[]} */
@@ -16,15 +16,15 @@ export const labelsOf = (table) => {
 
 /** Returns which of some labels is looked at; the first, which is the main model, unless another was chosen.
  * @param {string[]} labels */
-export const chosenOf = (labels) => labels.find((label) => curveKey(label) === wanted.value) ?? labels[0] ?? null;
+export const chosenOf = (labels) => labels.find((label) => curveKey(label) === chosenKey.value) ?? labels[0] ?? null;
 
 /** Looks at a model; null goes back to the main one. @param {string | null} label */
-export const look = (label) => (wanted.value = label === null ? null : curveKey(label));
+export const look = (label) => (chosenKey.value = label === null ? null : curveKey(label));
 
 /** Returns the address of a file about the model that is looked at.
  * @param {string} path @param {Server.RestitutionTable} [table] */
 export const pathOfChosen = (path, table) => {
   const labels = labelsOf(table);
-  const place = labels.indexOf(chosenOf(labels));
-  return place > 0 ? `${path}?restitution=${place}` : path;
+  const index = labels.indexOf(chosenOf(labels));
+  return index > 0 ? `${path}?restitution=${index}` : path;
 };

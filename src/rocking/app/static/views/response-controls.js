@@ -65,7 +65,7 @@ const Size = ({ app, body }) => {
 };
 
 /** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */
-export const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
+export const complete = ({ parameters }) => Object.values(parameters).every((parameter) => parameter.default !== null);
 
 /** Which models of the impact are compared, with a coefficient of one's own beside them.
  * @param {{ app: App, table?: Server.RestitutionTable }} props */
@@ -81,21 +81,21 @@ const Models = ({ app, table }) => {
     return app.say("Select at least one model or coefficient.", "warning");
   };
   /** @param {string} label */
-  const others = (label) => models.filter((one) => one !== label);
+  const others = (label) => models.filter((model) => model !== label);
   /** @param {string} label */
   const lead = (label) => {
     change({ models: [label, ...others(label)] });
     look(label);
   };
-  /** @param {string} words @param {number} index */
-  const foot = (words, index) => html`<${NumberField} label=${words} min=${0} max=${10} step=${0.01} value=${feet?.[index]}
-    on=${(given) => change({ feet: feet?.map((one, k) => (k === index ? given : one)) })} />`;
-  const known = app.info.models.filter(complete).map(({ label }) => label);
+  /** @param {string} label @param {number} index */
+  const foot = (label, index) => html`<${NumberField} label=${label} min=${0} max=${10} step=${0.01} value=${feet?.[index]}
+    on=${(coefficient) => change({ feet: feet?.map((old, k) => (k === index ? coefficient : old)) })} />`;
+  const completeLabels = app.info.models.filter(complete).map(({ label }) => label);
   return html`
     <div class="models" data-refused=${refused.value}>
       <fieldset class="model-list"><legend class="visually-hidden">Models</legend>
-        ${[...new Set([...known, ...models])].map((label) => html`
-          <label class="model-row" key=${label} title=${app.info.models.find((one) => one.label === label)?.title}>
+        ${[...new Set([...completeLabels, ...models])].map((label) => html`
+          <label class="model-row" key=${label} title=${app.info.models.find((model) => model.label === label)?.title}>
             <input type="checkbox" value=${label} checked=${models.includes(label)} disabled=${feet !== null}
               onChange=${(event) => change({ models: event.target.checked ? [...others(label), label] : others(label) })} />
             <${Swatch} label=${label} /><span>${wordsOf(label)}</span></label>`)}
@@ -106,7 +106,7 @@ const Models = ({ app, table }) => {
       <${Switch} label="Own coefficient" hidden=${feet !== null} value=${value !== null}
         on=${(yes) => change({ value: yes ? USUAL : null })} />
       ${value !== null && !feet && html`<${Slider} label="Coefficient of restitution r" min=${0} max=${1} step=${0.005}
-        value=${Math.min(value, 1)} on=${(given) => change({ value: given })} />`}
+        value=${Math.min(value, 1)} on=${(coefficient) => change({ value: coefficient })} />`}
       <p class="field-help">${CALIBRATED}</p>
       <${Switch} label="One coefficient for each foot" help="Replaces all models." value=${feet !== null}
         on=${(yes) => change({ feet: yes ? [USUAL, USUAL] : null })} />

@@ -93,26 +93,26 @@ export const marksWords = (answers, whose) => [
   t("Drag across a chart to zoom in. Double-click to show the full duration."),
 ].join(" ");
 
-/** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `part` is what is looked into.
- * @param {{ kinds: string[], answers: Server.ResponseFacts[], lead?: string, ticked: Server.ResponseFacts[], part: any, friction: number, time: Time }} props */
-export const Figures = ({ kinds, answers, lead, ticked, part, friction, time }) => {
+/** Figures of some kinds; `lead` has the energy, `ticked` the impacts, `closeup` has the visible interval with its detailed curves.
+ * @param {{ kinds: string[], answers: Server.ResponseFacts[], lead?: string, ticked: Server.ResponseFacts[], closeup: any, friction: number, time: Time }} props */
+export const Figures = ({ kinds, answers, lead, ticked, closeup, friction, time }) => {
   const shown = useMemo(() => answers.map((answer) => {
-    const found = part?.answers?.find((/** @type {any} */ { label }) => label === answer.label)?.series;
-    return found ? { ...answer, series: detailed(answer.series, found) } : answer;
-  }), [answers, part]);
+    const detail = closeup?.answers?.find((/** @type {any} */ { label }) => label === answer.label)?.series;
+    return detail ? { ...answer, series: detailed(answer.series, detail) } : answer;
+  }), [answers, closeup]);
   const first = shown.find(({ label }) => label === lead) ?? shown[0];
   const rows = useMemo(() => ticked.map(({ label, impacts }) =>
     ({ colour: styleOf(label).colour, at: impacts.map(({ time: at }) => at) })), [ticked]);
   return kinds.map((kind) => html`<${OneFigure} key=${kind} kind=${kind} answers=${shown} lead=${first} rows=${rows}
     ticked=${ticked.length === 1 ? wordsOf(ticked[0].label) : "each model in its colour"}
-    part=${part?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);
+    interval=${closeup?.window ?? null} friction=${friction} time=${time} height=${innerHeight > 1300 ? 320 : 220} />`);
 };
 
 /** @type {Words} */
 const DASHED = { rotation: "Dashed: the slenderness angles.", friction: "Dashed: the assumed friction." };
 
-/** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], ticked: string, part: Point | null, friction: number, time: Time, height: number }} props */
-const OneFigure = ({ kind, answers, lead, rows, ticked, part, friction, time, height }) => {
+/** @param {{ kind: string, answers: Server.ResponseFacts[], lead: Server.ResponseFacts, rows: Ticks[], ticked: string, interval: Point | null, friction: number, time: Time, height: number }} props */
+const OneFigure = ({ kind, answers, lead, rows, ticked, interval, friction, time, height }) => {
   const { title, y, series, data } = KINDS[kind];
   // the friction that is given stays in sight
   const held = kind === "friction" && { range: (/** @type {unknown} */ _, /** @type {number} */ low, /** @type {number | null} */ high) => [0, 1.1 * Math.max(high ?? 0, friction)], of: friction };
@@ -125,5 +125,5 @@ const OneFigure = ({ kind, answers, lead, rows, ticked, part, friction, time, he
     horizontal: kind === "rotation" ? [-1, 1] : kind === "friction" ? [friction] : [],
     words: [rows.some(({ at }) => at.length) && t("Ticks on the axis: impacts of {model}.", { model: ticked }), t(DASHED[kind] ?? "")].filter(Boolean).join(" "),
   }), [rows, friction, ticked]);
-  return html`<${Figure} shape=${shape} data=${columns} part=${part} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
+  return html`<${Figure} shape=${shape} data=${columns} interval=${interval} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
 };

@@ -14,10 +14,10 @@ import { t } from "/app/words.js";
 export const Cards = ({ answers, lead }) => html`
   <fieldset class="outcomes" data-testid="outcomes">
     <legend class="visually-hidden">Model drawn solid in the animation</legend>
-    ${answers.map((one) => (one.error ? html`
-      <div key=${one.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${one.label} />
-        <span class="outcome-facts">${one.error}</span></div>`
-    : html`<${Verdict} key=${curveKey(one.label)} answer=${one} checked=${one.label === lead} />`))}
+    ${answers.map((answer) => (answer.error ? html`
+      <div key=${answer.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${answer.label} />
+        <span class="outcome-facts">${answer.error}</span></div>`
+    : html`<${Verdict} key=${curveKey(answer.label)} answer=${answer} checked=${answer.label === lead} />`))}
   </fieldset>`;
 
 /** @param {{ label: string }} props */
@@ -32,7 +32,7 @@ const Verdict = ({ answer, checked }) => {
       <${Head} label=${answer.label} />
       <span class="outcome-word"><span class="outcome-sign" aria-hidden="true">${sign}</span>${word}</span>
       <span class="outcome-facts">${factsOf(answer)}</span>
-      ${answer.warnings.map((words) => html`<span class="outcome-warning" key=${words}>${words}</span>`)}
+      ${answer.warnings.map((warning) => html`<span class="outcome-warning" key=${warning}>${warning}</span>`)}
     </label>`;
 };
 
@@ -57,8 +57,8 @@ const MOST = 200;
 
 /** @param {Server.Impact[]} impacts */
 const rowsOf = (impacts) =>
-  impacts.map((one, k) => [
-    k + 1, one.time, one.velocity_before, one.velocity_after, one.coefficient, one.foot,
+  impacts.map((impact, k) => [
+    k + 1, impact.time, impact.velocity_before, impact.velocity_after, impact.coefficient, impact.foot,
   ]);
 
 /** The impacts of the model that is looked at.
@@ -83,7 +83,7 @@ export const TakeAway = ({ app, restitution }) => {
   const save = (path) => app.download(pathOfChosen(path, restitution), app.inputs.get(), path.replaceAll("/", "-"));
   const labels = labelsOf(restitution);
   return html`<${Card} title="Export">
-    <div class="toolbar">${FILES.map(([words, path]) => html`<${Button} key=${path} onClick=${() => save(path)}>${words}<//>`)}
+    <div class="toolbar">${FILES.map(([label, path]) => html`<${Button} key=${path} onClick=${() => save(path)}>${label}<//>`)}
       <${Film} app=${app}>Animation, GIF<//></div>
     <p class="field-help" data-testid="files-model">${labels.length > 1
       && t("Curves and animation: {model}.", { model: wordsOf(chosenOf(labels)) })}</p><//>`;

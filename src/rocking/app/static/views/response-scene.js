@@ -33,13 +33,13 @@ export const Scene = ({ player, body, answers, lead, stale }) => {
     const names = () => (player.play?.actors ?? []).map(({ label }) => wordsOf(label));
     return chartFiles("The body at this instant", () => player.still(names()), "picture");
   }, [player]);
-  const actors = useMemo(() => answers.map((one) => actorOf(one, styleOf(one.label))), [answers]);
+  const actors = useMemo(() => answers.map((answer) => actorOf(answer, styleOf(answer.label))), [answers]);
   useLayoutEffect(() => {
     if (!actors.length) return;
-    const place = Math.max(0, actors.findIndex(({ label }) => label === lead));
+    const leadIndex = Math.max(0, actors.findIndex(({ label }) => label === lead));
     const { time, ground_displacement: moved } = longest(answers).series;
-    const about = { rest: restOf(actors[place]), words: sceneWords(answers), end: highest(actors.map(lastOf)) };
-    player.show({ shape: shapeOf(body), actors, ground: new Track(time, moved), ...about }, place);
+    const about = { rest: restOf(actors[leadIndex]), words: sceneWords(answers), end: highest(actors.map(lastOf)) };
+    player.show({ shape: shapeOf(body), actors, ground: new Track(time, moved), ...about }, leadIndex);
   }, [actors, lead]);
   return html`<div class=${`scene-holder ${stale ? "stale" : ""}`} hidden=${!answers.length}>
     <${Made} node=${player.element} />

@@ -2,21 +2,21 @@
  * @param {number[]} time @param {(number | null)[]} values @param {number[]} grid */
 
 const straight = (time, values, grid) => {
-  const found = new Array(grid.length);
+  const interpolated = new Array(grid.length);
   let k = 0;
   for (let j = 0; j < grid.length; j += 1) {
     const instant = grid[j];
     if (instant > time[time.length - 1]) {
-      found[j] = null;
+      interpolated[j] = null;
       continue;
     }
     while (k < time.length - 2 && time[k + 1] < instant) k += 1;
     const width = time[k + 1] - time[k];
     const share = width > 0 ? (instant - time[k]) / width : 1;
     const [first, second] = [values[k], values[k + 1]];
-    found[j] = first === null || second === null ? null : first + (second - first) * share;
+    interpolated[j] = first === null || second === null ? null : first + (second - first) * share;
   }
-  return found;
+  return interpolated;
 };
 
 /** Returns every instant of several histories once, in order [s]. @param {number[][]} histories */

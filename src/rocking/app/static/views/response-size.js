@@ -9,22 +9,22 @@ const HOLDERS = new Set(["block", "trapezoid", "ellipse", "regular_polygon", "se
 /** @param {number} value */
 const rounded = (value) => Number(value.toPrecision(7));
 
-/** @param {any} given @param {number} factor @returns {any} */
-const times = (given, factor) =>
-  Array.isArray(given) ? given.map((one) => times(one, factor)) : rounded(given * factor);
+/** @param {any} sizes @param {number} factor @returns {any} */
+const times = (sizes, factor) =>
+  Array.isArray(sizes) ? sizes.map((item) => times(item, factor)) : rounded(sizes * factor);
 
-/** @param {string} key @param {any} given @param {number} factor */
-const scaledValue = (key, given, factor) => {
-  if (key in POWERS) return rounded(given * factor ** POWERS[key]);
-  return LENGTHS.has(key) ? times(given, factor) : given;
+/** @param {string} key @param {any} value @param {number} factor */
+const scaledValue = (key, value, factor) => {
+  if (key in POWERS) return rounded(value * factor ** POWERS[key]);
+  return LENGTHS.has(key) ? times(value, factor) : value;
 };
 
 /** @param {any} table @param {number} factor @returns {any} */
 const scaledTable = (table, factor) => {
-  const entries = Object.entries(table).map(([key, given]) => {
-    if (key === "region") return [key, given.map((/** @type {any} */ one) => scaledTable(one, factor))];
-    if (key === "masses") return [key, given.map((/** @type {number} */ mass) => rounded(mass * factor ** 3))];
-    return [key, scaledValue(key, given, factor)];
+  const entries = Object.entries(table).map(([key, value]) => {
+    if (key === "region") return [key, value.map((/** @type {any} */ region) => scaledTable(region, factor))];
+    if (key === "masses") return [key, value.map((/** @type {number} */ mass) => rounded(mass * factor ** 3))];
+    return [key, scaledValue(key, value, factor)];
   });
   return Object.fromEntries(entries);
 };
@@ -37,9 +37,9 @@ export const canBeScaled = (body) => (body.section?.region || []).every(({ outli
  * @param {Server.BodyInput} body @param {number} factor @returns {any} */
 export const scaledBody = (body, factor) => {
   if (factor === 1) return body;
-  const entries = Object.entries(body).map(([key, given]) => [
+  const entries = Object.entries(body).map(([key, value]) => [
     key,
-    HOLDERS.has(key) ? scaledTable(given, factor) : scaledValue(key, given, factor),
+    HOLDERS.has(key) ? scaledTable(value, factor) : scaledValue(key, value, factor),
   ]);
   return Object.fromEntries(entries);
 };

@@ -28,7 +28,7 @@ export const verdictKind = (answers) => {
 export const Banner = ({ kind, sentences, testid = "verdict" }) => html`
   <div class=${`verdict verdict-${kind}`} role="status" data-testid=${testid} data-kind=${kind}>
     <span class="verdict-sign" aria-hidden="true">${SIGNS[kind]}</span>
-    <div>${sentences.map((words) => html`<p key=${words}>${words}</p>`)}</div>
+    <div>${sentences.map((line) => html`<p key=${line}>${line}</p>`)}</div>
   </div>`;
 
 /** A sentence of the server with the models by their titles; numbers stay as they are.
@@ -44,6 +44,6 @@ const wordOf = (label) => new RegExp(`(?<![\\w-])${label.replace(/[.*+?^${}()|[\
 
 /** Returns the sentence for the screen reader that stands for the animation. @param {Server.ResponseFacts[]} answers */
 export const sceneWords = (answers) => {
-  const each = answers.map((answer) => `${t(wordsOf(answer.label))}: ${t(answer.summary || outcomeOf(answer).word)}`);
-  return t("Rocking body on the moving ground. {outcomes}.", { outcomes: each.join("; ") });
+  const lines = answers.map((answer) => `${t(wordsOf(answer.label))}: ${t(answer.summary || outcomeOf(answer).word)}`);
+  return t("Rocking body on the moving ground. {outcomes}.", { outcomes: lines.join("; ") });
 };

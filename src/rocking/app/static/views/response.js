@@ -28,14 +28,14 @@ export const mount = (section, app) => {
     return { body, motion: free === null ? motion : undefined, restitution, response, settings, points };
   };
   /** @type {Asked<Server.ResponseAnswered>} */
-  const asked = createAnswer(app, "response", KEYS, question);
-  const time = createTime((instant) => player.glance(instant), asked.look);
+  const request = createAnswer(app, "response", KEYS, question);
+  const time = createTime((instant) => player.glance(instant), request.look);
   const player = new Player(time.show);
   const inputs = signal(app.inputs.get());
   const stale = signal(false);
   const faulty = faultsOf(app, "body", "motion");
   app.inputs.subscribe((now) => (inputs.value = now));
-  render(html`<${Response} app=${app} asked=${asked} inputs=${inputs} player=${player} time=${time} stale=${stale} faulty=${faulty} />`, section);
+  render(html`<${Response} app=${app} request=${request} inputs=${inputs} player=${player} time=${time} stale=${stale} faulty=${faulty} />`, section);
   // what is drawn belongs to the last good numbers while a field is in error
   const look = () => (stale.value = section.querySelector(".response-controls [aria-invalid=true]") !== null);
   for (const kind of ["input", "change"]) section.addEventListener(kind, look);
@@ -43,10 +43,10 @@ export const mount = (section, app) => {
   return {
     shown: () => {
       app.faults.refresh();
-      asked.shown();
+      request.shown();
     },
     hidden: () => {
-      asked.hidden();
+      request.hidden();
       player.pause();
     },
   };
@@ -66,12 +66,12 @@ const NONE = [];
 const falls = ({ outcome }) => outcome === "overturned";
 const FALL = "The animation shows the fall until a corner touches the ground. Motion after this contact is not computed.";
 
-/** @param {{ app: App, asked: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean>, faulty: Signal<string> }} props */
-const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }) => {
-  const { answer: found, refused, part } = asked;
+/** @param {{ app: App, request: Asked<Server.ResponseAnswered>, inputs: Signal<Server.Inputs>, player: Player, time: Time, stale: Signal<boolean>, faulty: Signal<string> }} props */
+const Response = ({ app, request, inputs, player, time, stale: wrongHere, faulty }) => {
+  const { answer, refused, closeup } = request;
   const results = useRef(null);
-  const answers = found.value?.answers ?? NONE;
-  const there = useMemo(() => answers.filter((one) => one.series), [answers]);
+  const answers = answer.value?.answers ?? NONE;
+  const there = useMemo(() => answers.filter((answer) => answer.series), [answers]);
   const lead = chosenOf(there.map(({ label }) => label));
   const followed = there.find(({ label }) => label === lead);
   const ticked = useMemo(() => (followed ? [followed] : NONE), [followed]);
@@ -80,28 +80,28 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
   const stale = wrongHere.value || faulty.value !== "";
   const old = stale ? "stale" : "";
   useLayoutEffect(() => {
-    if (found.value) results.current.dataset.drawn = String(Number(results.current.dataset.drawn || 0) + 1);
-  }, [found.value]);
+    if (answer.value) results.current.dataset.drawn = String(Number(results.current.dataset.drawn || 0) + 1);
+  }, [answer.value]);
   return html`
     <header class="view-head"><h1>Response</h1>
       <p class="lead">Response of one body to one motion, with several restitution models.</p></header>
     <div aria-live="polite" data-testid="response-refusal">
-      ${refused.value && html`<${Note} kind="error" words=${refused.value.message} />`}
-      ${found.value && faulty.value && html`<${Note} kind="error" words=${`${faulty.value} ${t(OLDER)}`} />`}
+      ${refused.value && html`<${Note} kind="error" text=${refused.value.message} />`}
+      ${answer.value && faulty.value && html`<${Note} kind="error" text=${`${faulty.value} ${t(OLDER)}`} />`}
       ${!motion && response?.initial_rotation == null && html`<${NothingMoves} app=${app} />`}</div>
-    ${found.value && html`<div class=${`verdict-part ${old}`}>
-      <${Banner} kind=${found.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[found.value.verdict.sentence, ...found.value.verdict.doubts, found.value.verdict.headline].map((each) => inWords(each, answers))} />
+    ${answer.value && html`<div class=${`verdict-part ${old}`}>
+      <${Banner} kind=${answer.value.verdict.decides ? "differs" : verdictKind(there)} sentences=${[answer.value.verdict.sentence, ...answer.value.verdict.doubts, answer.value.verdict.headline].map((line) => inWords(line, answers))} />
       <${Cards} answers=${answers} lead=${lead} /></div>`}
-    <div class="response" ...${found.value && aboutOf(found.value.body, found.value.motion, there.length === 1 ? [wordsOf(there[0].label)] : [])}>
+    <div class="response" ...${answer.value && aboutOf(answer.value.body, answer.value.motion, there.length === 1 ? [wordsOf(there[0].label)] : [])}>
       <div class="response-stage">
         <section class="card stage-scene" aria-label="The body on the ground"><h2>The body on the ground</h2>
-          <${Scene} player=${player} body=${found.value?.body} answers=${there} lead=${lead} stale=${stale} /></section>
+          <${Scene} player=${player} body=${answer.value?.body} answers=${there} lead=${lead} stale=${stale} /></section>
         ${followed && html`<section class=${`card stage-figures ${old}`} aria-label="Over time"><h2>Over time</h2>
-          <div data-window=${part.value?.window.join(" ") ?? ""}>
+          <div data-window=${closeup.value?.window.join(" ") ?? ""}>
             <div class="figures" data-testid="response-charts">
-              <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} part=${part.value} friction=${friction} time=${time} /></div>
+              <${Figures} kinds=${FIGURES} answers=${there} lead=${lead} ticked=${ticked} closeup=${closeup.value} friction=${friction} time=${time} /></div>
             <p class="field-help">${marksWords(there, wordsOf(lead))} ${there.some(falls) && t(FALL)}</p>
-            ${part.value && html`<${Button} onClick=${() => asked.look(null)}>Show the full duration<//>`}
+            ${closeup.value && html`<${Button} onClick=${() => request.look(null)}>Show the full duration<//>`}
           </div></section>`}
       </div>
       <${Controls} app=${app} inputs=${inputs.value} />
@@ -112,6 +112,6 @@ const Response = ({ app, asked, inputs, player, time, stale: wrongHere, faulty }
 
 /** @param {{ app: App }} props */
 const NothingMoves = ({ app }) => html`
-  <${Note} words="No motion is selected. Choose a motion, or start from an initial rotation." />
+  <${Note} text="No motion is selected. Choose a motion, or start from an initial rotation." />
   <div class="toolbar"><${Button} kind="primary" onClick=${() => app.go("motion")}>Choose a motion<//>
     <${Button} onClick=${() => lean(app)}>Start from an initial rotation<//></div>`;

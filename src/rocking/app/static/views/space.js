@@ -49,7 +49,7 @@ export const mount = (section, app) => {
 /** @param {{ app: App, questions: Questions }} props */
 const Space = ({ app, questions }) => {
   const form = useForm(app, "space", FIRST);
-  const [files, chosen, asked, units, up, repair, surface, inner, density] = BODY.map((name) => form.at(name));
+  const [files, chosen, command, units, up, repair, surface, inner, density] = BODY.map((name) => form.at(name));
   const [shaken, friction, law, coefficient, times, recordUnits] = MOVES.map((name) => form.at(name));
   const records = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, form.at(`along_${axis}`)]));
   const pose = form.at("pose"); // {number, up}: which way up it shall stand, in the axes of the file
@@ -64,7 +64,7 @@ const Space = ({ app, questions }) => {
   const scans = {
     get value() { return files.value; },
     set value(next) {
-      const added = next.filter((/** @type {SentFile} */ { sha }) => files.value.every((/** @type {SentFile} */ one) => one.sha !== sha));
+      const added = next.filter((/** @type {SentFile} */ { sha }) => files.value.every((/** @type {SentFile} */ file) => file.sha !== sha));
       files.value = next;
       if (added.length) choose(added.at(-1).sha);
     },
@@ -77,12 +77,12 @@ const Space = ({ app, questions }) => {
       units: units.value, up: pose.value?.up ?? AXES[up.value] ?? up.value, repair: repair.value, surface: surface.value,
       inner_parts: inner.value, density: density.value.trim(),
     });
-    const moves = asked.value === "simulate";
+    const moves = command.value === "simulate";
     const motion = moves ? shakenBy(app, shaken.value, records, recordUnits.value.trim(), times.value) : { tables: {}, files: {} };
     const held = parseNumber(friction.value) ?? NaN;
     const kept = parseNumber(coefficient.value) ?? NaN;
-    wrong.value = body.missing || (moves && !(held > 0) && { key: "friction", words: "Enter a friction above 0." })
-      || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", words: "Enter a coefficient from 0 to 1." }) || motion.missing || "";
+    wrong.value = body.missing || (moves && !(held > 0) && { key: "friction", text: "Enter a friction above 0." })
+      || (moves && !law.value && !(kept >= 0 && kept <= 1) && { key: "value", text: "Enter a coefficient from 0 to 1." }) || motion.missing || "";
     if (wrong.value) return;
     const name = scan?.name ?? (inputs.body.name || app.project.here.value.name);
     const tables = {
@@ -92,7 +92,7 @@ const Space = ({ app, questions }) => {
       ...(inputs.settings ? { settings: inputs.settings } : {}),
     };
     const sent = scan ? { [scan.name]: scan.sha } : {};
-    questions.ask(tables, { ...sent, ...motion.files }, t(TITLES[asked.value], { name: userText(name) }), { command: asked.value });
+    questions.ask(tables, { ...sent, ...motion.files }, t(TITLES[command.value], { name: userText(name) }), { command: command.value });
   };
   /** @param {number} number_ @param {number[]} direction */
   const goOn = (number_, direction) => {
@@ -121,8 +121,8 @@ const Space = ({ app, questions }) => {
         <${Choice} label="Surface" value=${surface} options=${SURFACES} />
         <${Choice} label="Inner closed parts" value=${inner} options=${INNER} help="Inner parts with the same winding as the outer part." />
       </details>`}
-      <${Choice} label="Analysis" value=${asked} options=${ASKED} />
-      ${asked.value === "simulate" && html`
+      <${Choice} label="Analysis" value=${command} options=${ASKED} />
+      ${command.value === "simulate" && html`
         <${Choice} label="Ground motions" value=${shaken} options=${SHAKEN} />
         ${shaken.value === "records" && html`
           ${Object.entries(records).map(([axis, sent]) => html`<${FileDrop} key=${axis} name=${axis} label=${t("A record along {axis}, or", { axis })}
@@ -136,14 +136,14 @@ const Space = ({ app, questions }) => {
 };
 
 /** The table of the body, with what was said alone; missing: what has to be said first.
- * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} said @returns {{ table?: any, missing?: Wrong }} */
-const bodyOf = (scan, said) => {
-  if (!scan) return { missing: { key: "files", words: "Add a scan." } };
+ * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} options @returns {{ table?: any, missing?: Wrong }} */
+const bodyOf = (scan, options) => {
+  if (!scan) return { missing: { key: "files", text: "Add a scan." } };
   const kind = scan.name.replace(/^.*\./s, "").toLowerCase();
-  if (!said.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", words: t("{format} files contain no unit. Choose the unit.", { format: kind.toUpperCase() }) } };
-  const density = said.density ? parseNumber(said.density) : null;
-  if (said.density && !(Number(density) > 0)) return { missing: { key: "density", words: "Enter a density above 0." } };
-  const stated = Object.entries({ ...said, density }).filter(([, value]) => value !== null && value !== "");
+  if (!options.units && !["glb", "toml"].includes(kind)) return { missing: { key: "units", text: t("{format} files contain no unit. Choose the unit.", { format: kind.toUpperCase() }) } };
+  const density = options.density ? parseNumber(options.density) : null;
+  if (options.density && !(Number(density) > 0)) return { missing: { key: "density", text: "Enter a density above 0." } };
+  const stated = Object.entries({ ...options, density }).filter(([, value]) => value !== null && value !== "");
   return { table: { file: scan.name, ...Object.fromEntries(stated) } };
 };
 
@@ -151,7 +151,7 @@ const bodyOf = (scan, said) => {
  * @param {App} app @param {string} shaken @param {{ [axis: string]: { value: SentFile[] } }} records @param {string} units @param {string} times @returns {Shaking} */
 const shakenBy = (app, shaken, records, units, times) => {
   const scale = parseNumber(times);
-  if (scale === null || scale === 0) return { missing: { key: "times", words: "Enter a scale factor other than 0." } };
+  if (scale === null || scale === 0) return { missing: { key: "times", text: "Enter a scale factor other than 0." } };
   if (shaken !== "records") {
     const motion = motionOf(app.inputs.get());
     const missing = app.faults.sentence({ inputs: true }) || (motion ? "" : "This project has no motion. Choose a motion, or add records.");
@@ -160,10 +160,10 @@ const shakenBy = (app, shaken, records, units, times) => {
   }
   const sent = Object.entries(records).filter(([, signal]) => signal.value.length)
     .map(/** @returns {[string, SentFile]} */ ([axis, signal]) => [axis, signal.value[0]]);
-  const along = Object.fromEntries(sent.map(([axis, one]) => [axis, { record: one.name, ...(units ? { units } : {}) }]));
+  const along = Object.fromEntries(sent.map(([axis, file]) => [axis, { record: file.name, ...(units ? { units } : {}) }]));
   return {
-    tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, one]) => [one.name, one.sha])),
-    missing: sent.length ? "" : { key: "x", words: "Add a record." },
+    tables: { motion: { ...along, scale } }, files: Object.fromEntries(sent.map(([, file]) => [file.name, file.sha])),
+    missing: sent.length ? "" : { key: "x", text: "Add a record." },
   };
 };
 
@@ -182,12 +182,12 @@ const Answer = ({ answer, question, onPose }) => {
 
 /** @param {{ body: any, repairs: string[], own: boolean }} props */
 const Taken = ({ body, repairs, own }) => {
-  const size = body.size.map((/** @type {number} */ each) => number(1000 * each, 4)).join(" \u00d7 ");
+  const size = body.size.map((/** @type {number} */ length) => number(1000 * length, 4)).join(" \u00d7 ");
   return html`
   <h3>${own ? "The body" : "The scan"}</h3>
   <p>${t("{size} mm, {mass} kg, centre of mass {height} mm above the ground.", { size, mass: number(body.mass, 4), height: number(1000 * body.centre_height, 4) })}</p>
   <ul class="space-repairs" aria-label="Repairs">
-    ${repairs.length ? repairs.map((words) => html`<li key=${words}>${sentence(words)}</li>`) : html`<li>No repairs were needed.</li>`}
-    ${[...body.assumed, ...body.warnings].map((/** @type {string} */ words) => html`<li key=${words}>${sentence(words)}</li>`)}
+    ${repairs.length ? repairs.map((repair) => html`<li key=${repair}>${sentence(repair)}</li>`) : html`<li>No repairs were needed.</li>`}
+    ${[...body.assumed, ...body.warnings].map((/** @type {string} */ note) => html`<li key=${note}>${sentence(note)}</li>`)}
   </ul>`;
 };

@@ -18,7 +18,7 @@ const SHAPE = {
 /** What is known of a cell: show(aim, k, kept) asks for it, open() takes a cell that is kept to the step Response.
  * @param {App} app @param {Server.StudyFacts} study */
 export const createCell = (app, study) => {
-  const words = signal("Click a cell of the map.");
+  const summary = signal("Click a cell of the map.");
   const data = signal(null); // of the curve that was drawn last
   const curve = signal(false);
   const opens = signal(false);
@@ -36,13 +36,13 @@ export const createCell = (app, study) => {
     app.inputs.lend(cell, t("a cell of \u201c{study}\u201d", { study: userText(study.name) }));
     app.go("response");
   };
-  /** @param {Server.HistoryAnswer} found @param {boolean} kept */
-  const took = (found, kept) => {
-    ({ inputs } = found);
+  /** @param {Server.HistoryAnswer} history @param {boolean} kept */
+  const took = (history, kept) => {
+    ({ inputs } = history);
     opens.value = Boolean(inputs) && kept && next === null;
-    words.value = kept ? wordsOf(found) : `${wordsOf(found)} ${t("Click the cell or press Enter to keep its time history.")}`;
-    curve.value = Boolean(found.answer);
-    if (found.answer) data.value = [found.answer.series.time, shareOf(found.answer).map((share) => (Math.abs(share) > MOST ? null : share))];
+    summary.value = kept ? wordsOf(history) : `${wordsOf(history)} ${t("Click the cell or press Enter to keep its time history.")}`;
+    curve.value = Boolean(history.answer);
+    if (history.answer) data.value = [history.answer.series.time, shareOf(history.answer).map((share) => (Math.abs(share) > MOST ? null : share))];
   };
   const ask = async () => {
     if (busy || !next) return;
@@ -52,10 +52,10 @@ export const createCell = (app, study) => {
     opens.value = false;
     try {
       const query = { x: aim.ix, y: aim.iy, restitution: k };
-      const found = await app.call(`/api/studies/${study.id}/cell`, { method: "GET", query });
-      batch(() => took(found, kept));
+      const history = await app.call(`/api/studies/${study.id}/cell`, { method: "GET", query });
+      batch(() => took(history, kept));
     } catch (error) {
-      words.value = error.message;
+      summary.value = error.message;
     }
     busy = false;
     ask();
@@ -66,14 +66,14 @@ export const createCell = (app, study) => {
     opens.value = false;
     ask();
   };
-  return { words, data, curve, opens, show, open };
+  return { words: summary, data, curve, opens, show, open };
 };
 
 /** The panel of a cell. @param {{ cell: ReturnType<typeof createCell> }} props */
-export const Cell = ({ cell: { words, data, curve, opens, open } }) => html`
+export const Cell = ({ cell: { words: text, data, curve, opens, open } }) => html`
   <div class="cell-history" data-testid="cell-history">
     <h3>Time history of a cell</h3>
-    <p class="quiet" data-testid="cell-words">${words.value}</p>
+    <p class="quiet" data-testid="cell-words">${text.value}</p>
     <div hidden=${!curve.value}>${data.value && html`<${Figure} shape=${SHAPE} data=${data.value} />`}</div>
     <div class="toolbar"><${Button} kind="primary" disabled=${!opens.value} onClick=${open}>Open in Response<//></div>
   </div>`;

@@ -7,21 +7,21 @@ import { t } from "/app/words.js";
 
 const MOST = 500;
 
-/** Counts of outcomes, and the tables of a study. @param {{ found: any }} props */
-export const Counts = ({ found }) => {
-  const several = found.restitutions?.length > 1;
+/** Counts of outcomes, and the tables of a study. @param {{ result: any }} props */
+export const Counts = ({ result }) => {
+  const several = result.restitutions?.length > 1;
   return html`
-    ${(found.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "simulations", "fraction"]} testid="study-counts"
+    ${(result.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "simulations", "fraction"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
-      caption=${several ? t("Outcomes with {model}", { model: modelWords(found.restitutions[k]) }) : "Outcomes"} />`)}
-    ${Object.entries(found.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
+      caption=${several ? t("Outcomes with {model}", { model: modelWords(result.restitutions[k]) }) : "Outcomes"} />`)}
+    ${Object.entries(result.tables ?? {}).map(([name, columns]) => html`<${Columns} key=${name} name=${name} columns=${columns} />`)}`;
 };
 
 /** @param {{ name: string, columns: any[] }} props */
 const Columns = ({ name, columns }) => {
   const count = columns[0]?.values.length ?? 0;
   const rows = Array.from({ length: Math.min(count, MOST) }, (_, k) => columns.map(({ values }) => values[k] ?? "\u2013"));
-  const heads = columns.map((each) => ({ label: each.name.replaceAll("_", " "), unit: each.unit === "1" ? "" : each.unit }));
+  const heads = columns.map((column) => ({ label: column.name.replaceAll("_", " "), unit: column.unit === "1" ? "" : column.unit }));
   return html`<div><${Table} columns=${heads} rows=${rows} caption=${name} testid=${`sheet-${name}`} />
     ${count > MOST && html`<p class="quiet">${t("The files contain {count} more rows.", { count: count - MOST })}</p>`}</div>`;
 };

@@ -34,11 +34,11 @@ export const FragilityQuestion = ({ app, question, visits }) => {
     <div class="fields" hidden=${source !== "synthetic"}>
       ${choice("family", "Family", families.map(({ name, title }) => [name, title ?? name]))}
       ${field(NumberField, "count", "Motions", { ...limitsOf(motions.count), max: app.info.limits.study_motions, step: 1 })}
-      ${field(NumberField, "seed", "Seed", { ...limitsOf(motions.seed), step: 1, whole: true })}
+      ${field(NumberField, "seed", "Seed", { ...limitsOf(motions.seed), step: 1, integer: true })}
     </div>
     <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
-    ${choice("measure", "Intensity measure", measures.map(({ name, words, unit }) =>
-      [name, unit === "1" ? words : `${words} [${pretty(unit)}]`]))}
+    ${choice("measure", "Intensity measure", measures.map(({ name, words: text, unit }) =>
+      [name, unit === "1" ? text : `${text} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
     ${field(NumberField, "state", "Rocking limit state", {
       unit: "\u03b1", above: 0, step: 0.05,

@@ -17,8 +17,8 @@ export const MapQuestion = ({ app, question }) => {
   const pulse = Boolean(app.inputs.get().motion?.pulse);
   const offered = app.info.axes.filter(({ name }) => pulse || !OF_PULSES.has(name));
   const first = pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
-  const wanted = { ...first, ...own.value };
-  const chosen = Object.values(wanted).every((axis) => offered.some(({ name }) => name === axis)) ? wanted : first;
+  const preferred = { ...first, ...own.value };
+  const chosen = Object.values(preferred).every((axis) => offered.some(({ name }) => name === axis)) ? preferred : first;
   const [x, y] = [chosen.x, chosen.y].map((axis) => useMemo(() => usualRange(app, axis, 50), [axis]));
   question.current = {
     name: "overturning map",
@@ -30,7 +30,7 @@ export const MapQuestion = ({ app, question }) => {
   };
   /** @param {"x" | "y"} which @param {any} range */
   const side = (which, range) => html`
-    <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words }) => [name, greek(words)])}
+    <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words: text }) => [name, greek(text)])}
       value=${chosen[which]} on=${(name) => (own.value = { ...own.value, [which]: name })} />
     <${Range} key=${which + chosen[which]} name=${t("{quantity}, values", { quantity: SIDES[which] })} range=${range}
       unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;

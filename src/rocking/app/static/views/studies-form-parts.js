@@ -7,7 +7,7 @@ import { NumberField } from "/parts/fields.js";
 export const Range = ({ name, unit = "", range }) => {
   /** @param {string} key @param {string} label @param {object} more */
   const field = (key, label, more) => html`<${NumberField} label=${label} value=${range[key]}
-    on=${(given) => (range[key] = given)} ...${more} />`;
+    on=${(number) => (range[key] = number)} ...${more} />`;
   return html`<fieldset class="range-fields"><legend>${name}</legend>
     ${field("from", "from", { unit })}${field("to", "to", { unit })}${field("count", "number", { min: 1, step: 1 })}
   </fieldset>`;
@@ -32,14 +32,14 @@ export const unitOf = ({ unit } = { unit: "" }) => (unit === "1" ? "" : unit);
 export const motionsOf = (inputs) => {
   const motion = inputs.motion;
   if (!motion) throw new Error("A study needs a motion. Choose a motion in the step Motion.");
-  const { pulse, record, synthetic, scale, file_name: _name, member = 0, seed = 0, ...told } = motion;
+  const { pulse, record, synthetic, scale, file_name: _name, member = 0, seed = 0, ...options } = motion;
   const factor = scale == null || scale === 1 ? {} : { scale };
   if (pulse) return [{ pulse: [pulse], ...factor }];
-  if (record) return [{ records: [record], ...told, ...factor }];
+  if (record) return [{ records: [record], ...options, ...factor }];
   if (member !== 0 || factor.scale) {
     throw new Error(
       "A study needs an unscaled synthetic motion. Set its realization to 0 and its scale to 1.",
     );
   }
-  return [{ synthetic, seed, count: 1, ...told }];
+  return [{ synthetic, seed, count: 1, ...options }];
 };

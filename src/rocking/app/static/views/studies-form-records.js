@@ -14,10 +14,10 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   const [stored, looked, left, refused] = [useSignal([]), useSignal({}), useSignal(new Set()), useSignal("")];
   /** @param {string} record */
   const look = async (record) => {
-    const told = toldOf(record);
-    const { format, units, time_step } = told;
+    const options = toldOf(record);
+    const { format, units, time_step } = options;
     const seen = await app.call(`records/${record}`, { query: { format, units, time_step } }).then(
-      (found) => ({ found, told, missing: found.needs.filter((one) => told[one] === undefined) }),
+      (found) => ({ found, told: options, missing: found.needs.filter((need) => options[need] === undefined) }),
       (error) => ({ refused: error.message }),
     );
     looked.value = { ...looked.value, [record]: seen };
@@ -51,26 +51,26 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
   /** @param {string} record */
   const gone = (record) => {
     forgetTold(record);
-    stored.value = stored.value.filter((one) => one.record !== record);
+    stored.value = stored.value.filter((entry) => entry.record !== record);
   };
   return html`
     <div class="question" data-testid="record-choice" hidden=${hidden}>
       <p class="quiet" aria-live="polite">${refused.value
         || (stored.value.length ? t("{number} of {count} records are selected.", { number: ticked.length, count: stored.value.length }) : EMPTY)}</p>
-      <ul class="record-list" aria-label="Uploaded records">${stored.value.map((one) => html`
-        <${Row} key=${one.record} app=${app} record=${one.record} name=${one.file_name} seen=${looked.value[one.record]}
-          ticked=${isTicked(one)} tick=${tick} look=${look} gone=${gone} />`)}</ul>
+      <ul class="record-list" aria-label="Uploaded records">${stored.value.map((entry) => html`
+        <${Row} key=${entry.record} app=${app} record=${entry.record} name=${entry.file_name} seen=${looked.value[entry.record]}
+          ticked=${isTicked(entry)} tick=${tick} look=${look} gone=${gone} />`)}</ul>
     </div>`;
 };
 
 /** Records that were told the same stand in one table. @param {any[]} tables */
 const together = (tables) => {
-  const found = new Map();
-  for (const { records, ...told } of tables) {
-    const key = JSON.stringify(told);
-    found.set(key, { records: [...(found.get(key)?.records ?? []), ...records], ...told });
+  const byOptions = new Map();
+  for (const { records, ...options } of tables) {
+    const key = JSON.stringify(options);
+    byOptions.set(key, { records: [...(byOptions.get(key)?.records ?? []), ...records], ...options });
   }
-  return [...found.values()];
+  return [...byOptions.values()];
 };
 
 const NOT_SEEN = {};
@@ -85,9 +85,9 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
     if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
     answered.current = false;
   }, [seen]);
-  /** @param {Told} given */
-  const take = (given) => {
-    rememberTold({ record, ...told, ...given });
+  /** @param {Told} statement */
+  const take = (statement) => {
+    rememberTold({ record, ...told, ...statement });
     answered.current = true;
     look(record);
   };

@@ -21,9 +21,9 @@ const kindsOf = ({ study_kinds: kinds }) => {
 
 /** A name that no study has yet. @param {string} name @param {Set<string>} taken */
 const fresh = (name, taken) => {
-  let found = name;
-  for (let k = 2; taken.has(found); k += 1) found = `${name} ${k}`;
-  return found;
+  let candidate = name;
+  for (let k = 2; taken.has(candidate); k += 1) candidate = `${name} ${k}`;
+  return candidate;
 };
 
 /** Form with one question at a time; calls onLaunched(id); `taken` says which names there are.

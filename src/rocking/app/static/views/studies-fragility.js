@@ -10,36 +10,36 @@ import { greek, plainWords } from "/views/studies-words.js";
 import { t } from "/app/words.js";
 
 /** Fragility curves, of one restitution at a time.
- * @param {{ study: Server.StudyFacts, found: Server.FragilityResult, chosen: { restitution: number } }} props */
-export const Fragility = ({ study, found, chosen }) => {
+ * @param {{ study: Server.StudyFacts, result: Server.FragilityResult, chosen: { restitution: number } }} props */
+export const Fragility = ({ study, result, chosen }) => {
   const k = useSignal("0");
   chosen.restitution = Number(k.value);
-  const options = found.analyses.map(({ restitution }, value) => [String(value), modelWords(restitution)]);
+  const options = result.analyses.map(({ restitution }, value) => [String(value), modelWords(restitution)]);
   return html`
     ${options.length > 1 && html`<${Choice} label="Restitution" options=${options} value=${k} />`}
     <div data-about=${options[chosen.restitution][1]}>
-      <${Analysis} key=${k.value} found=${found} analysis=${found.analyses[chosen.restitution]} />
+      <${Analysis} key=${k.value} result=${result} analysis=${result.analyses[chosen.restitution]} />
       ${study.kind === "incremental" && html`<h3>Curves of the incremental analysis</h3><${Fetched} key=${`curves ${k.value}`} title="Curves of the incremental analysis"
         path=${`studies/${study.id}/export.svg?restitution=${k.value}`} alt="Peak rotation of each motion over its intensity level" />`}</div>`;
 };
 
-/** @param {{ found: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
-const Analysis = ({ found, analysis }) => {
-  const unit = found.im.unit === "1" ? "" : found.im.unit;
-  const x = { label: found.im.words, unit };
-  // without a curve the points still show what was found; the reason stands under them, and not once more below
+/** @param {{ result: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
+const Analysis = ({ result, analysis }) => {
+  const unit = result.im.unit === "1" ? "" : result.im.unit;
+  const x = { label: result.im.words, unit };
+  // without a curve the points still show the results; the reason is below them once
   const isDrawn = (/** @type {string} */ state) => state in analysis.curves;
   const fitted = Object.entries(analysis.verdicts).filter(([state]) => isDrawn(state) || !(state in analysis.points));
   return html`<div class="study-result">
     ${Object.entries(analysis.points).map(([state, points], index) => html`
       <${Curve} key=${state} state=${state} curve=${analysis.curves[state] ?? NO_CURVE} points=${points} index=${index} x=${x} />
       ${!isDrawn(state) && html`<div data-testid="no-curve">
-        <${Note} words=${whyNone(analysis.verdicts[state], found.uplift_threshold, unit)} /></div>`}`)}
-    ${analysis.adjusted && html`<div data-testid="adjusted"><${Note} words=${plainWords(t(analysis.adjusted))} /></div>`}
-    ${analysis.resurrection && html`<${Note} words=${analysis.resurrection} />`}
-    ${fitted.map(([state, verdict]) => html`<${Note} key=${state} words=${plainWords(t(analysis.common.includes(state)
+        <${Note} text=${whyNone(analysis.verdicts[state], result.uplift_threshold, unit)} /></div>`}`)}
+    ${analysis.adjusted && html`<div data-testid="adjusted"><${Note} text=${plainWords(t(analysis.adjusted))} /></div>`}
+    ${analysis.resurrection && html`<${Note} text=${analysis.resurrection} />`}
+    ${fitted.map(([state, verdict]) => html`<${Note} key=${state} text=${plainWords(t(analysis.common.includes(state)
       ? "{state} alone: {verdict}" : "{state}: {verdict}", { state, verdict }))} />`)}
-    ${found.definition && html`<p class="quiet">${plainWords(found.definition)}</p>`}
+    ${result.definition && html`<p class="quiet">${plainWords(result.definition)}</p>`}
     <${Table} columns=${columnsOf(unit)} rows=${Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit))}
       caption="Lognormal fits" testid="fragility-fits" />
   </div>`;

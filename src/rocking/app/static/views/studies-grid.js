@@ -24,20 +24,20 @@ const isGeometric = (values) => {
 /** @param {number[]} places */
 const edgesOf = (places) => {
   if (places.length === 1) return [places[0] - 0.5, places[0] + 0.5];
-  const inner = places.slice(1).map((place, k) => 0.5 * (place + places[k]));
+  const inner = places.slice(1).map((position, k) => 0.5 * (position + places[k]));
   return [1.5 * places[0] - 0.5 * places[1], ...inner, 1.5 * places[places.length - 1] - 0.5 * places[places.length - 2]];
 };
 
 /** Places of an axis: value to share of its length, and edges of its cells. @param {{ values: number[] }} axis */
 export const axisOf = ({ values }) => {
   const log = isGeometric(values);
-  const place = log ? Math.log : Number;
-  const edges = edgesOf(values.map(place));
+  const positionOf = log ? Math.log : Number;
+  const edges = edgesOf(values.map(positionOf));
   const span = edges[edges.length - 1] - edges[0] || 1;
   return {
     log,
     /** @param {number} value */
-    share: (/** @type {number} */ value) => (place(value) - edges[0]) / span,
+    share: (/** @type {number} */ value) => (positionOf(value) - edges[0]) / span,
     edges: edges.map((edge) => (edge - edges[0]) / span),
     value: (/** @type {number} */ share) => (log ? Math.exp : Number)(edges[0] + share * span),
   };
@@ -74,9 +74,9 @@ const cellsOf = (edges, dots, [from, to]) => {
 const WHOLE = [0, 1];
 const LEAST = 4; // cells across, however close one looks
 
-/** Some length of an axis around a place, within it. @param {number} place @param {number} length */
-const around = (place, length) => {
-  const from = Math.min(Math.max(place - length / 2, 0), 1 - length);
+/** Some length of an axis around a place, within it. @param {number} position @param {number} length */
+const around = (position, length) => {
+  const from = Math.min(Math.max(position - length / 2, 0), 1 - length);
   return [from, from + length];
 };
 
@@ -103,24 +103,24 @@ export const createGrid = (canvas, x, y) => {
     size = { width, height: Math.round(Math.min(0.78 * width, 520)) };
     ratio = window.devicePixelRatio || 1;
     painted = {};
-    for (const each of [canvas, still]) {
-      each.width = Math.round(size.width * ratio);
-      each.height = Math.round(size.height * ratio);
-      each.getContext("2d")?.setTransform(ratio, 0, 0, ratio, 0, 0);
+    for (const board of [canvas, still]) {
+      board.width = Math.round(size.width * ratio);
+      board.height = Math.round(size.height * ratio);
+      board.getContext("2d")?.setTransform(ratio, 0, 0, ratio, 0, 0);
     }
     canvas.style.height = `${size.height}px`;
   };
   const inner = () => ({ w: size.width - LEFT - RIGHT, h: size.height - TOP - BOTTOM });
   /** @param {number} share @param {number[]} range */
-  const part = (share, [from, to]) => (share - from) / (to - from);
+  const shareIn = (share, [from, to]) => (share - from) / (to - from);
   /** @param {number} share */
-  const xAt = (share) => LEFT + part(share, seen[0]) * inner().w;
+  const xAt = (share) => LEFT + shareIn(share, seen[0]) * inner().w;
   /** @param {number} share */
-  const yAt = (share) => TOP + (1 - part(share, seen[1])) * inner().h;
+  const yAt = (share) => TOP + (1 - shareIn(share, seen[1])) * inner().h;
   /** @param {...number[]} parts */
   const look = (...parts) => {
-    const least = [across, up].map(({ edges }) => Math.min(1, LEAST / (edges.length - 1)));
-    seen = parts.map(([from, to], k) => around((from + to) / 2, Math.min(1, Math.max(least[k], to - from))));
+    const shortest = [across, up].map(({ edges }) => Math.min(1, LEAST / (edges.length - 1)));
+    seen = parts.map(([from, to], k) => around((from + to) / 2, Math.min(1, Math.max(shortest[k], to - from))));
     painted = {};
   };
   /** @param {GridAxis} axis @param {number} k */
@@ -173,7 +173,7 @@ export const createGrid = (canvas, x, y) => {
       pen.fillRect(xAt(across.share(value)), TOP + inner().h, 1, 4);
       pen.fillText(number(value), xAt(across.share(value)), TOP + inner().h + 7);
     }
-    pen.fillText(words(x, size.width), LEFT + inner().w / 2, size.height - 20);
+    pen.fillText(axisText(x, size.width), LEFT + inner().w / 2, size.height - 20);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
     for (const value of ticks(up, seen[1])) {
@@ -184,7 +184,7 @@ export const createGrid = (canvas, x, y) => {
     pen.translate(14, TOP + inner().h / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = "center";
-    pen.fillText(words(y, size.height), 0, 0);
+    pen.fillText(axisText(y, size.height), 0, 0);
     pen.restore();
   };
 
@@ -285,20 +285,20 @@ export const createGrid = (canvas, x, y) => {
    * @param {Cell | null} aim @param {number} factor */
   const closer = (aim, factor) => {
     const places = aim ? placeOf(aim) : seen.map(([from, to]) => (from + to) / 2);
-    look(...places.map((place, k) => around(place, Math.min(1, (seen[k][1] - seen[k][0]) / factor))));
+    look(...places.map((position, k) => around(position, Math.min(1, (seen[k][1] - seen[k][0]) / factor))));
   };
   /** Move what is seen so far that a cell is in it. @param {Cell} aim */
   const reveal = (aim) => {
     const places = placeOf(aim);
-    if (places.every((place, k) => place >= seen[k][0] && place <= seen[k][1])) return;
-    look(...places.map((place, k) => around(place, seen[k][1] - seen[k][0])));
+    if (places.every((position, k) => position >= seen[k][0] && position <= seen[k][1])) return;
+    look(...places.map((position, k) => around(position, seen[k][1] - seen[k][0])));
   };
   const isWhole = () => seen.every(([from, to]) => to - from > 1 - 1e-9);
   return { fit, draw, asSvg, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
 };
 
 /** @param {MapAxis} axis @param {number} room */
-const words = (axis, room) => {
+const axisText = (axis, room) => {
   const unit = axis.unit && axis.unit !== "1" ? ` [${pretty(axis.unit)}]` : "";
   const all = t(greek(axis.words));
   return (7 * all.length > room ? all.split(/[,;，；]/)[0] : all) + unit;

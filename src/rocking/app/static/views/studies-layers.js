@@ -27,11 +27,11 @@ const verdictOf = (outcome, impacts) => {
 const ramp = (share) => RAMP[Math.min(RAMP.length - 1, Math.max(0, Math.floor((share || 0) * RAMP.length)))];
 
 /** The layers of one result: {value, text, paint(ix, iy), legend}.
- * @param {MapFound} found @param {number} k @param {number | null} other @returns {Layer[]} */
-export const layersOf = (found, k, other) => {
-  const outcome = found.outcome[k];
-  const impacts = found.impacts[k];
-  const peak = found.peak[k];
+ * @param {MapFound} result @param {number} k @param {number | null} other @returns {Layer[]} */
+export const layersOf = (result, k, other) => {
+  const outcome = result.outcome[k];
+  const impacts = result.impacts[k];
+  const peak = result.peak[k];
   const most = highest(impacts.map((row) => highest(row)), 1);
   const layers = [
     {
@@ -68,14 +68,14 @@ export const layersOf = (found, k, other) => {
       paint: (ix, iy) => (outcome[iy][ix] > 2 ? FAILED : ramp(impacts[iy][ix] / (most + 1))),
     },
   ];
-  if (other !== null) layers.push(difference(found, k, other));
+  if (other !== null) layers.push(difference(result, k, other));
   return layers;
 };
 
-/** @param {MapFound} found @param {number} k @param {number} other @returns {Layer} */
-const difference = (found, k, other) => {
-  const [mine, theirs] = [found.outcome[k], found.outcome[other]];
-  const names = [k, other].map((place) => modelWords(found.restitutions[place]));
+/** @param {MapFound} result @param {number} k @param {number} other @returns {Layer} */
+const difference = (result, k, other) => {
+  const [mine, theirs] = [result.outcome[k], result.outcome[other]];
+  const names = [k, other].map((index) => modelWords(result.restitutions[index]));
   const legend = [
     { paint: "#F2F0E8", words: "same outcome" },
     { paint: "#D96C00", words: t("overturns only with {model}", { model: names[0] }) },
@@ -89,14 +89,14 @@ const difference = (found, k, other) => {
   return { value: "difference", text: t("Difference to {model}", { model: names[1] }), legend, paint };
 };
 
-/** One cell in words. @param {MapFound} found @param {number} k @param {Cell} cell */
-export const cellWords = (found, k, { ix, iy }) => {
-  const outcome = found.outcome[k][iy][ix];
-  const impacts = found.impacts[k][iy][ix];
-  /** @param {Server.Coordinate} axis @param {number} place */
-  const named = ({ words, values, unit }, place) => `${t(greek(words))} = ${quantity(Number(values[place]), unit)}`;
-  const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
-  const verdict = outcome === 1 ? t("rocks, does not overturn, peak {rotation} \u03b1", { rotation: number(found.peak[k][iy][ix]) })
+/** One cell in words. @param {MapFound} result @param {number} k @param {Cell} cell */
+export const cellWords = (result, k, { ix, iy }) => {
+  const outcome = result.outcome[k][iy][ix];
+  const impacts = result.impacts[k][iy][ix];
+  /** @param {Server.Coordinate} axis @param {number} index */
+  const named = ({ words: label, values, unit }, index) => `${t(greek(label))} = ${quantity(Number(values[index]), unit)}`;
+  const where = `${named(result.x, ix)}; ${named(result.y, iy)}`;
+  const verdict = outcome === 1 ? t("rocks, does not overturn, peak {rotation} \u03b1", { rotation: number(result.peak[k][iy][ix]) })
     : t(VERDICTS[verdictOf(outcome, impacts)].words);
   return `${where}: ${verdict}`;
 };

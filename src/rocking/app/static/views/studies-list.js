@@ -54,9 +54,9 @@ export const stateWords = ({ state }) => WORDS[state] || state;
 
 /** What can be done with a study; then `after` looks again. @param {App} app @param {() => unknown} after */
 export const actsOf = (app, after) => {
-  /** @param {Server.StudyFacts} study @param {string} what @param {CallOptions} asked */
-  const act = (study, what, asked) =>
-    app.call(`studies/${study.id}${what}`, asked).then(after, (error) => app.say(error.message, "error"));
+  /** @param {Server.StudyFacts} study @param {string} action @param {CallOptions} options */
+  const act = (study, action, options) =>
+    app.call(`studies/${study.id}${action}`, options).then(after, (error) => app.say(error.message, "error"));
   return {
     /** @param {Server.StudyFacts} study */
     cancel: (study) => act(study, "/cancel", { json: {} }),

@@ -9,11 +9,11 @@ export const liveStudies = (app) => {
   const all = signal([]);
   /** @type {WebSocket | null} */
   let socket = null;
-  let wanted = false;
+  let isActive = false;
   let timer = 0;
 
-  /** @param {Server.Studies} told */
-  const take = (told) => (all.value = told.studies);
+  /** @param {Server.Studies} answer */
+  const take = (answer) => (all.value = answer.studies);
   const refresh = () => app.call("studies").then(take, (error) => app.say(error.message, "error"));
   const connect = () => {
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
@@ -22,16 +22,16 @@ export const liveStudies = (app) => {
     socket.addEventListener("close", () => {
       socket = null;
       clearTimeout(timer);
-      if (wanted) timer = setTimeout(start, AGAIN);
+      if (isActive) timer = setTimeout(start, AGAIN);
     });
   };
   const start = () => {
-    wanted = true;
+    isActive = true;
     refresh();
     if (!socket) connect();
   };
   const stop = () => {
-    wanted = false;
+    isActive = false;
     clearTimeout(timer);
     socket?.close();
   };

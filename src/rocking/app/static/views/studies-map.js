@@ -23,21 +23,21 @@ const SHORTEST = 6; // a pointer that moves less has clicked [CSS pixel]
 /** @type {Lines} */
 const NONE = [];
 
-/** @param {Cell} one @param {Cell | null} other */
-const same = (one, other) => other !== null && one.ix === other.ix && one.iy === other.iy;
+/** @param {Cell} first @param {Cell | null} other */
+const same = (first, other) => other !== null && first.ix === other.ix && first.iy === other.iy;
 
 /** A map, of one restitution and one layer at a time.
- * @param {{ app: App, study: Server.StudyFacts, found: MapFound, chosen: { restitution: number } }} props */
-export const OverturningMap = ({ app, study, found, chosen }) => {
+ * @param {{ app: App, study: Server.StudyFacts, result: MapFound, chosen: { restitution: number } }} props */
+export const OverturningMap = ({ app, study, result, chosen }) => {
   const [canvas, painter] = [useRef(null), useRef(null)];
-  const [k, wanted, aim, kept, frame, looks] = [0, "verdict", null, null, null, 0].map(useSignal);
+  const [k, layerName, aim, kept, frame, looks] = [0, "verdict", null, null, null, 0].map(useSignal);
   const cell = useMemo(() => createCell(app, study), []);
-  const several = found.restitutions.length > 1;
+  const several = result.restitutions.length > 1;
   const [layers, lines] = useMemo(() => [
-    layersOf(found, k.value, several ? (k.value === 0 ? 1 : 0) : null),
-    found.contours?.[k.value] ?? NONE,
+    layersOf(result, k.value, several ? (k.value === 0 ? 1 : 0) : null),
+    result.contours?.[k.value] ?? NONE,
   ], [k.value]);
-  const layer = layers.find(({ value }) => value === wanted.value) ?? layers[0];
+  const layer = layers.find(({ value }) => value === layerName.value) ?? layers[0];
   /** @param {Layer} of */
   const linesOf = (of) => (of.value === "difference" ? NONE : lines);
   /** @param {() => unknown} how */
@@ -46,7 +46,7 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
     looks.value += 1;
   };
   useLayoutEffect(() => {
-    const grid = createGrid(canvas.current, /** @type {MapAxis} */ (found.x), /** @type {MapAxis} */ (found.y));
+    const grid = createGrid(canvas.current, /** @type {MapAxis} */ (result.x), /** @type {MapAxis} */ (result.y));
     painter.current = grid;
     const fit = () => look(grid.fit);
     fit();
@@ -89,32 +89,32 @@ export const OverturningMap = ({ app, study, found, chosen }) => {
     const from = aim.value ?? { ix: -step[0], iy: -step[1] };
     /** @param {number} value @param {number} count */
     const within = (value, count) => Math.min(count - 1, Math.max(0, value));
-    return keep({ ix: within(from.ix + step[0], found.x.values.length), iy: within(from.iy + step[1], found.y.values.length) });
+    return keep({ ix: within(from.ix + step[0], result.x.values.length), iy: within(from.iy + step[1], result.y.values.length) });
   };
   const pointer = usePointer({ canvas, painter, frame, keep, preview, aim, look });
-  const whole = () => {
+  const showAll = () => {
     canvas.current.focus();
     look(painter.current.whole);
   };
   const looked = kept.value ?? aim.value;
   const leave = () => (aim.value = kept.value ?? aim.value);
   return html`<div class="study-result">
-    <div class="map" data-about=${modelWords(found.restitutions[k.value])}>
+    <div class="map" data-about=${modelWords(result.restitutions[k.value])}>
       <div class="map-choices">
-        ${several && html`<${Choice} label="Restitution" value=${k.value} on=${choose} options=${found.restitutions.map((label, value) => [value, modelWords(label)])} />`}
-        <${Segmented} label="Show" value=${layer.value} on=${(value) => (wanted.value = value)} options=${layers.map(({ value, text }) => [value, text])} />
+        ${several && html`<${Choice} label="Restitution" value=${k.value} on=${choose} options=${result.restitutions.map((label, value) => [value, modelWords(label)])} />`}
+        <${Segmented} label="Show" value=${layer.value} on=${(value) => (layerName.value = value)} options=${layers.map(({ value, text }) => [value, text])} />
       </div>
       <${Pictured} title="Overturning map" more=${`: ${t(layer.text)}`} canvasOf=${() => painter.current.asSvg(layer.paint, linesOf(layer))}>
         <div class="map-stage"><canvas ref=${canvas} class="map-canvas" tabindex="0" role="application" data-testid="map-canvas"
-          aria-label=${t(MAP, { x: greek(found.x.words), y: greek(found.y.words) })}
+          aria-label=${t(MAP, { x: greek(result.x.words), y: greek(result.y.words) })}
           onKeyDown=${walk} onPointerLeave=${leave} ...${pointer}></canvas></div>
-        <ul class="map-legend">${layer.legend.map(({ paint, words }) => html`
-          <li key=${words}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${words}</li>`)}</ul><//>
-      <div class="toolbar"><${Button} hidden=${looks.value === 0 || painter.current.isWhole()} onClick=${whole}>Show the whole map<//></div>
-      ${(found.islands?.[k.value] ?? []).map((/** @type {string} */ words) => html`<p key=${words} class="quiet" data-testid="map-islands">${words}</p>`)}
-      <p class="map-told" aria-live="polite" data-testid="map-told">${aim.value ? cellWords(found, k.value, aim.value) : START}</p>
+        <ul class="map-legend">${layer.legend.map(({ paint, words: text }) => html`
+          <li key=${text}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${text}</li>`)}</ul><//>
+      <div class="toolbar"><${Button} hidden=${looks.value === 0 || painter.current.isWhole()} onClick=${showAll}>Show the whole map<//></div>
+      ${(result.islands?.[k.value] ?? []).map((/** @type {string} */ island) => html`<p key=${island} class="quiet" data-testid="map-islands">${island}</p>`)}
+      <p class="map-told" aria-live="polite" data-testid="map-told">${aim.value ? cellWords(result, k.value, aim.value) : START}</p>
     </div>
-    <div data-about=${looked ? cellWords(found, k.value, looked) : ""}><${Cell} cell=${cell} /></div>
+    <div data-about=${looked ? cellWords(result, k.value, looked) : ""}><${Cell} cell=${cell} /></div>
   </div>`;
 };
 
@@ -150,7 +150,7 @@ const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
       if (!shares) return;
       framed.current = true;
       /** @param {number} axis */
-      const between = (axis) => shares.map((/** @type {number[]} */ each) => Math.min(1, Math.max(0, each[axis]))).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+      const between = (axis) => shares.map((/** @type {number[]} */ point) => Math.min(1, Math.max(0, point[axis]))).sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
       look(() => painter.current.look(between(0), between(1)));
     },
     onPointerCancel: end,

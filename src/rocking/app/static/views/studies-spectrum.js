@@ -8,13 +8,13 @@ import { t } from "/app/words.js";
 
 const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Overturning fraction"]];
 
-/** Spectra, of the peaks or of how often the block overturns. @param {{ found: Server.SpectrumResult }} props */
-export const Spectrum = ({ found }) => {
-  const what = useSignal("median");
-  const periods = /** @type {number[]} */ (found.x.values);
-  const count = found.motions.values.length;
-  const share = what.value === "overturned";
-  const data = useMemo(() => [periods, ...found.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (what.value)])], [what.value]);
+/** Spectra, of the peaks or of how often the block overturns. @param {{ result: Server.SpectrumResult }} props */
+export const Spectrum = ({ result }) => {
+  const quantity = useSignal("median");
+  const periods = /** @type {number[]} */ (result.x.values);
+  const count = result.motions.values.length;
+  const share = quantity.value === "overturned";
+  const data = useMemo(() => [periods, ...result.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (quantity.value)])], [quantity.value]);
   const marks = useMemo(() => ({
     words: count === 1 ? "A gap means that the block overturns." : t("{count} motions. A gap means that the block overturns.", { count }),
   }), []);
@@ -23,24 +23,24 @@ export const Spectrum = ({ found }) => {
     height: 340,
     x: { label: "period 2\u03c0/p", unit: "s", log: periods.length > 2 && periods[periods.length - 1] / periods[0] > 8 },
     y: { label: share ? "fraction" : "peak / \u03b1", unit: "" },
-    series: found.curves.map((curve) => ({ label: labelOf(found, curve), ...lookOf(found, curve) })),
+    series: result.curves.map((curve) => ({ label: labelOf(result, curve), ...lookOf(result, curve) })),
   };
   return html`
-    ${count > 1 && html`<${Segmented} label="Show" options=${SHOWN} value=${what} />`}
-    <div data-about=${found.restitutions.map(modelWords).join(", ")}>
+    ${count > 1 && html`<${Segmented} label="Show" options=${SHOWN} value=${quantity} />`}
+    <div data-about=${result.restitutions.map(modelWords).join(", ")}>
       <${Figure} shape=${shape} data=${data} marks=${marks} testid="spectrum-chart" /></div>
     <p class="quiet">${marks.words}</p>`;
 };
 
-/** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */
+/** @param {Server.SpectrumResult} result @param {Server.SpectrumCurve} curve */
 const lookOf = ({ curves, restitutions }, { angle, restitution }) => {
-  const angles = [...new Set(curves.map((each) => each.angle))];
+  const angles = [...new Set(curves.map((curve) => curve.angle))];
   const counts = { angles: angles.length, models: restitutions.length };
   return angleStyle(restitution, angles.indexOf(angle), counts);
 };
 
-/** @param {Server.SpectrumResult} found @param {Server.SpectrumCurve} curve */
-const labelOf = (found, { angle, restitution }) => {
-  const words = `\u03b1 = ${number(angle, 3)} rad`;
-  return found.restitutions.length > 1 ? `${words}, ${t(modelWords(restitution))}` : words;
+/** @param {Server.SpectrumResult} result @param {Server.SpectrumCurve} curve */
+const labelOf = (result, { angle, restitution }) => {
+  const label = `\u03b1 = ${number(angle, 3)} rad`;
+  return result.restitutions.length > 1 ? `${label}, ${t(modelWords(restitution))}` : label;
 };

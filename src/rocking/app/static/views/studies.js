@@ -28,10 +28,10 @@ export const mount = (section, app) => {
   /** @param {Server.StudyFacts} study @param {Element | null} [from] */
   const show = async (study, from) => {
     /** @param {object} more */
-    const told = (more) => open.value?.shown === study && (open.value = { shown: study, from, ...more });
+    const update = (more) => open.value?.shown === study && (open.value = { shown: study, from, ...more });
     open.value = { shown: study, from };
     await app.call(`studies/${study.id}/result`).then(
-      (found) => told({ found: unpacked(found), chosen: { restitution: 0 } }), (error) => told({ refused: error.message }),
+      (result) => update({ result: unpacked(result), chosen: { restitution: 0 } }), (error) => update({ refused: error.message }),
     );
   };
   studies.subscribe((now) => {
@@ -80,22 +80,22 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
     ${open.value && html`<${Outcome} app=${app} ...${open.value} />`}
   </div>`;
 
-/** @param {{ app: App, shown: Server.StudyFacts, from?: Element | null, found: any, refused?: string, chosen: { restitution: number } }} props */
-const Outcome = ({ app, shown, from, found, refused, chosen }) => {
+/** @param {{ app: App, shown: Server.StudyFacts, from?: Element | null, result: any, refused?: string, chosen: { restitution: number } }} props */
+const Outcome = ({ app, shown, from, result, refused, chosen }) => {
   const heading = useRef(null);
   const focused = document.activeElement;
   useLayoutEffect(() => { // from what was pressed, or is gone; what is typed meanwhile goes on
-    if (focused && ((found && focused === from) || !focused.isConnected)) heading.current.focus();
-  }, [shown, found]);
+    if (focused && ((result && focused === from) || !focused.isConnected)) heading.current.focus();
+  }, [shown, result]);
   const Found = SHOW[shown.kind] ?? Counts;
   return html`
     <section class="card study-outcome">
       <h2 ref=${heading} class="study-result-title" tabindex="-1" translate=${false}>${shown.name}</h2>
       <div class="study-result" data-testid="study-result" data-own=${shown.name}>
-        ${refused ? html`<p class="error-text">${refused}</p>` : !found ? html`<p class="quiet">Reading the result \u2026</p>` : html`
-          ${found.contact && html`<p class="note" data-testid="study-contact">${found.contact}</p>`}
-          <${Found} key=${shown.id} app=${app} study=${shown} found=${found} chosen=${chosen} />
-          <${Exports} app=${app} study=${shown} found=${found} chosen=${chosen} />`}
+        ${refused ? html`<p class="error-text">${refused}</p>` : !result ? html`<p class="quiet">Reading the result \u2026</p>` : html`
+          ${result.contact && html`<p class="note" data-testid="study-contact">${result.contact}</p>`}
+          <${Found} key=${shown.id} app=${app} study=${shown} result=${result} chosen=${chosen} />
+          <${Exports} app=${app} study=${shown} result=${result} chosen=${chosen} />`}
       </div>
     </section>`;
 };

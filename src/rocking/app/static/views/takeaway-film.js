@@ -46,12 +46,12 @@ export const Film = ({ app, children, ...more }) => {
 const save = async (path, inputs, signal) => {
   const headers = { "Content-Type": "application/json" };
   /** @type {RequestInit} */
-  const asked = { method: "POST", headers, body: JSON.stringify(inputs), signal, credentials: "same-origin" };
-  const answer = await fetch(path, asked);
+  const options = { method: "POST", headers, body: JSON.stringify(inputs), signal, credentials: "same-origin" };
+  const answer = await fetch(path, options);
   if (!answer.ok) {
-    const told = await answer.json().catch(() => ({}));
+    const content = await answer.json().catch(() => ({}));
     if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-    throw new Error(told.error?.message ?? t("the server returned status {status}", { status: answer.status }));
+    throw new Error(content.error?.message ?? t("the server returned status {status}", { status: answer.status }));
   }
   const header = answer.headers.get("Content-Disposition") ?? "";
   saveBlob(await answer.blob(), header.match(/filename="([^"]+)"/)?.[1] ?? NAME);

@@ -69,7 +69,7 @@ const TakeAway = ({ app, now: { value: { inputs, link } } }) => {
         <${Choice} label="Model in files with one model" hidden=${labels.length < 2} value=${chosenOf(labels)} on=${look}
           options=${labels.map((label) => [label, wordsOf(label)])}
           help="For the animation, and the response as CSV, MATLAB and netCDF. The file name contains the model." />
-        <ul>${TABLES.map(([what, name, kinds, needs]) => row(name, kinds.map((kind) => file(`table/${what}.${kind}`, name, needs))))}</ul><//></div>
+        <ul>${TABLES.map(([table, name, kinds, needs]) => row(name, kinds.map((kind) => file(`table/${table}.${kind}`, name, needs))))}</ul><//></div>
     </div>
     <input ref=${chooser} type="file" accept=".toml,.zip" hidden aria-label="File of inputs, TOML or ZIP" data-testid="read-toml"
       onChange=${({ target }) => read(app, target)} />`;
@@ -114,8 +114,8 @@ const read = async (app, box) => {
   box.value = "";
   if (!file) return;
   try {
-    const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-    app.inputs.lend(found, t("the file {name}", { name: file.name }));
+    const inputs = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
+    app.inputs.lend(inputs, t("the file {name}", { name: file.name }));
     app.say(t("The inputs of {name} are loaded.", { name: file.name }));
   } catch (error) {
     app.say(error.message, "error");
