@@ -399,7 +399,7 @@ def test_a_step_on_its_way_holds_up_no_other(
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
-        ({"status": 500, "json": {"error": {"kind": "internal", "message": "something went wrong"}}}, "went wrong"),
+        ({"status": 500, "json": {"error": {"kind": "internal", "message": "internal error"}}}, "nternal error"),
         ({"status": 429, "json": {"error": {"kind": "busy", "message": "too much at once; try again"}}}, "at once"),
         (None, "The server does not answer"),
     ],

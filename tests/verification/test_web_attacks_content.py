@@ -139,7 +139,7 @@ NUMBERS = {
     "nothing": ("/api/response", "null"),
     "deep table": ("/api/response", '{"body":' * 500 + "1" + "}" * 500),
     "NUL in a name": ("/api/body", {"body": {**BLOCK, "name": "a\0b"}}),
-    "half a character": ("/api/body", '{"body": {"units": "m", "width": 1, "height": 4, "name": "\\ud800"}}'),
+    "a lone surrogate": ("/api/body", '{"body": {"units": "m", "width": 1, "height": 4, "name": "\\ud800"}}'),
     "JSON in a file": ("/api/inputs/read", b'{"body": 1}'),
     "bomb in a record": ("/api/records?name=bomb.gz", b"\x1f\x8b\x08\x00" + b"\x00" * 1000),
     "archive for a record": ("/api/records?name=a.zip", b"PK\x03\x04" + b"\x00" * 1000),

@@ -167,7 +167,7 @@ def test_a_server_that_is_ended_leaves_studies_to_resume(tmp_path: Path) -> None
         server.process.wait(HANG)
     told = json.loads((tmp_path / "data" / "studies" / study / "meta.json").read_text())
     assert told["state"] == "interrupted"
-    assert "goes on when the server starts again" in told["message"]
+    assert "continues with the next server" in told["message"]
 
 
 @pytest.mark.speed

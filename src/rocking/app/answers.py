@@ -70,19 +70,19 @@ FILE_SENT: dict[str, Any] = {
 """What the schema of an endpoint says that takes a file."""
 
 _ERRORS = {
-    400: "The request is not what a browser or a script sends.",
-    401: "Nobody is signed in: no cookie, and no key in the header Authorization.",
+    400: "The request is malformed.",
+    401: "Not signed in: the request has no session cookie and no key in the header Authorization.",
     403: "Host or Origin is not the server's own address.",
-    404: "There is no such thing.",
-    405: "This takes another method.",
-    409: "Somebody else changed it meanwhile: look at it anew.",
-    413: "The request, or what it asks for, is larger than one server takes.",
-    415: "The body of the request is of another type than this takes.",
-    422: "The input is refused; the message names value, allowed range and likely cause.",
-    429: "Too much is asked at once; the header Retry-After says when to try again.",
-    500: "Something went wrong; its trace is in the server's log.",
-    503: "The server ends.",
-    507: "The disk of the server takes nothing more.",
+    404: "Not found.",
+    405: "The method is not allowed here.",
+    409: "Another client changed the object. Read it again.",
+    413: "The request or its result exceeds a limit of the server.",
+    415: "The type of the request body is not supported.",
+    422: "The input is refused. The message contains value, allowed range and likely cause.",
+    429: "Too many requests. The header Retry-After contains the waiting time.",
+    500: "Internal error. The log of the server contains the traceback.",
+    503: "The server is shutting down.",
+    507: "The disk of the server is full.",
 }
 
 
@@ -245,7 +245,7 @@ class ErrorAnswer(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid",
-        json_schema_extra={"examples": [{"error": {"kind": "not-found", "message": "there is no such thing here"}}]},
+        json_schema_extra={"examples": [{"error": {"kind": "not-found", "message": "not found"}}]},
     )
 
     error: ErrorDetail

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _READING = threading.Lock()
-_WORDS = {404: "there is no such thing here", 405: "this takes another method"}
+_WORDS = {404: "not found", 405: "the method is not allowed here"}
 STATIC = Path(__file__).parent / "static"
 _MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged, or built
 _ABOUT = """\

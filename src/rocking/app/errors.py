@@ -9,7 +9,7 @@ from typing import Any
 
 from rocking.errors import BodyFileError, GeometryError, MissingExtraError, RecordError, RockingError, UnknownModelError
 
-INTERNAL = "something went wrong; its trace is in the server's log"
+INTERNAL = "internal error; the log of the server contains the traceback"
 _KINDS: tuple[tuple[type[RockingError], str], ...] = (
     (UnknownModelError, "unknown-model"),
     (GeometryError, "geometry"),
@@ -53,7 +53,7 @@ class Refused(RockingError):  # noqa: N818 - the names of the subclasses are wha
 
 
 class NotFound(Refused):
-    """There is no such thing."""
+    """Not found."""
 
     status = 404
 
@@ -77,7 +77,7 @@ class Busy(Refused):
 
 
 class NoRoom(Refused):
-    """The disk of the server takes nothing more."""
+    """The disk of the server is full."""
 
     status = 507
 
@@ -99,8 +99,8 @@ def room_on_disk() -> Iterator[None]:
         yield
     except OSError as error:  # its own words name files of the server
         raise NoRoom(
-            "the disk of the server does not take the file: {reason}", reason=error.strerror or "it cannot be written",
-            hint="make room there, then send it again",
+            "the server cannot store the file: {reason}", reason=error.strerror or "not writable",
+            hint="free disk space, then send the file again",
         ) from error  # fmt: skip
 
 
@@ -114,6 +114,6 @@ def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
     room = min(shutil.disk_usage(folder).free, limit - used)
     if wanted > room:
         raise TooLarge(
-            "the results need about {needed:.1f} MB, and there is room for {free:.1f} MB; delete {items} that are no "
-            "longer needed", needed=wanted / 1e6, free=max(room, 0) / 1e6, items=what,
+            "the results need about {needed:.1f} MB, {free:.1f} MB are free; delete {items} that are no longer needed",
+            needed=wanted / 1e6, free=max(room, 0) / 1e6, items=what,
         )  # fmt: skip

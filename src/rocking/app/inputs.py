@@ -28,7 +28,7 @@ from rocking.spec.settings_tables import SettingsTable
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
 
-_UPLOAD = "the application reads no file by its name: upload it to /api/body/file, which answers with its points"
+_UPLOAD = "the application cannot open files by name; upload the file to /api/body/file"
 MOST_REGIONS = 250
 MOST_HOLES = 500
 MOST_VERTICES = 10_000
@@ -87,9 +87,7 @@ class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made
             raise InvalidValueError("{parameter} is missing", parameter="width" if self.width is None else "height")
         own = ("depth", "density", *KnownTable.model_fields)
         if not sized and (odd := [key for key in own if getattr(self, key) is not None]):
-            raise InvalidValueError(
-                "{keys} of a {table} stand in its own table", keys=" and ".join(odd), table=present[0]
-            )
+            raise InvalidValueError("move {keys} into the table {table}", keys=" and ".join(odd), table=present[0])
         for k, region in enumerate(self.section.region if self.section else ()):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:
@@ -109,8 +107,8 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
         case float() if 0.0 < abs(value) < sys.float_info.min:
             least = f"{sys.float_info.min:.3g}"
             raise InvalidValueError(
-                "{parameter} is {number!r}, too small for a number with all its digits ({limit})", parameter=key,
-                number=value, limit=least, hint="a wrong unit?",
+                "{parameter} is {number!r}, below the smallest normal number ({limit})", parameter=key,
+                number=value, limit=least, hint="Check the unit.",
             )  # fmt: skip
         case dict():
             for name, each in value.items():
@@ -129,8 +127,8 @@ def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
 def check_size(table: BodyFile) -> None:
     """Refuse a body that is too large, before anything is made of it."""
     regions, holes, vertices = _polygons(table)
-    refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
-    refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "leave out the small ones")
+    refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "merge regions of equal density")
+    refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "remove small holes")
     refuse_more(vertices, MOST_VERTICES, "outlines and holes hold up to {most} vertices", "simplify the outline")
     points = table.mass_points
     held = 0 if points is None else max(len(points.points), len(points.masses), len(points.contact or ()))
@@ -141,7 +139,7 @@ def check_file(content: bytes, name: str) -> None:
     """Refuse a body file that holds far more than a body may have, before it is read."""
     drawing = name.lower().endswith(".dxf")
     if drawing:
-        way_out = "save only the outline in a drawing of its own"
+        way_out = "save the outline alone in a separate drawing"
         refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
         refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
     # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
@@ -173,7 +171,7 @@ def _announced(record: bytes) -> int:
 def check_samples(count: int) -> None:
     """Refuse a record of too many samples."""
     what = "a record holds up to {most} numbers"
-    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
+    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut the record or remove columns; Python reads longer records")
 
 
 def size_of(table: BodyFile) -> int:
@@ -198,7 +196,7 @@ def _polygons(table: BodyFile) -> tuple[int, int, int]:
 
 def _forward(window: tuple[float, float]) -> tuple[float, float]:
     if window[0] >= window[1]:
-        raise ValueError(f"window must be the times between which curves are drawn, got {list(window)}; in this order?")
+        raise ValueError(f"window must have increasing times, got {list(window)}")
     return window
 
 
@@ -236,12 +234,12 @@ class MotionInput(OneMotionTable):
     @model_validator(mode="after")
     def _named_record(self) -> "MotionInput":
         if self.file_name is not None and self.record is None:
-            raise InvalidValueError("file_name goes with record only")
+            raise InvalidValueError("file_name is allowed with record only")
         other = self.model_fields_set - MOTION_KEYS - {"record", "file_name"}
         if odd := sorted(key for key in other if getattr(self, key) is not None):
             raise InvalidValueError(
-                "{parameter}: the application reads no file by its name", parameter=odd[0],
-                hint="upload one with both components",
+                "{parameter}: the application cannot open files by name", parameter=odd[0],
+                hint="upload one file with both components",
             )  # fmt: skip
         return self
 
@@ -261,11 +259,11 @@ class Inputs(ResponseTables):
     @model_validator(mode="after")
     def _few_restitutions(self) -> "Inputs":
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
-        refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
+        refuse_more(chosen, MOST_RESTITUTIONS, "up to {most} restitutions can be compared")
         if self.response.friction:  # the table has none of 0
             raise InvalidValueError(
-                "response.friction: the page rocks without sliding, compared with response.assumed_friction; "
-                "`rocking simulate` lets a body slide, hop and fly"
+                "response.friction: this analysis is without sliding. Use response.assumed_friction, or `rocking "
+                "simulate` for sliding"
             )
         return self
 
@@ -321,27 +319,23 @@ def parsed_toml(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text that somebody sent; every whole number in it fits into 64 bits."""
     if len(text) > LONGEST:
         raise Refused(
-            "a TOML file may have up to {limit} MiB, this has {size:.1f}", limit=LONGEST >> 20, size=len(text) / 2**20
+            "a TOML file may have up to {limit} MiB, got {size:.1f}", limit=LONGEST >> 20, size=len(text) / 2**20
         )
     try:
         tables = tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as error:
-        raise Refused(
-            "this is not TOML that can be read: {reason}", reason=" ".join(str(error).split())[:200]
-        ) from error
+        raise Refused("the TOML is not readable: {reason}", reason=" ".join(str(error).split())[:200]) from error
     except (ValueError, RecursionError) as error:
-        raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
+        raise Refused("the TOML is not readable: nesting too deep or number too long") from error
     for depth, level in enumerate(levels(tables)):
         if depth >= _DEEPEST:
             raise Refused("the TOML is nested deeper than {limit}", limit=_DEEPEST)
         for value in level:
             if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
-                raise Refused(
-                    "a whole number of {count} bits in the TOML does not fit into 64 bits", count=value.bit_length()
-                )
+                raise Refused("an integer in the TOML has {count} bits, 64 are allowed", count=value.bit_length())
             texts = [each for each in (value if isinstance(value, dict) else [value]) if isinstance(each, str)]
             if any("\0" in text for text in texts):
-                raise Refused("a text in the TOML holds a NUL")
+                raise Refused("a text in the TOML contains a NUL character")
     return tables
 
 
@@ -389,13 +383,13 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
 def _body(table: BodyInput) -> Body:
     with located("body"):
         body = body_of(table.table(), None)
-        what = "a base touches the ground in up to {most} separate stretches"
-        refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+        what = "a base can have up to {most} separate contact segments"
+        refuse_more(len(body.local_contact), MOST_STRETCHES, what, "remove segments that are not feet")
         mass, inertia = body.mass, body.moment_of_inertia
         if min(mass, inertia or mass) < _LIGHTEST:
             raise InvalidValueError(
-                "mass {mass:.3g} kg and moment of inertia {moment_of_inertia:.3g} kg m2 must be > {limit:g}, below "
-                "which digits are lost", mass=mass, moment_of_inertia=inertia, limit=_LIGHTEST,
-                hint="is a density or a mass in a wrong unit?",
+                "mass {mass:.3g} kg and moment of inertia {moment_of_inertia:.3g} kg m2 must be > {limit:g}",
+                mass=mass, moment_of_inertia=inertia, limit=_LIGHTEST,
+                hint="Check the units of density and mass.",
             )  # fmt: skip
         return body

@@ -98,7 +98,7 @@ def toml_value(value: Any) -> str:
         return "{" + ", ".join(pairs) + "}"
     if isinstance(value, Sequence):
         return "[" + ", ".join(toml_value(one) for one in value) + "]"
-    raise InvalidValueError("a file of inputs has no place for {entry!r:.60}", entry=value)
+    raise InvalidValueError("an input file cannot contain {entry!r:.60}", entry=value)
 
 
 def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:

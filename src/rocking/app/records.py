@@ -105,7 +105,7 @@ class RecordStore:
         path = self._place(record) if record else None
         # what was written here is no link, nor is its folder
         if record is None or path is None or path.is_symlink() or path.parent.is_symlink() or not path.is_file():
-            raise NotFound("no record {record}... is kept here: upload the file once more", record=str(sha)[:12])
+            raise NotFound("record {record}... is not stored here; upload the file again", record=str(sha)[:12])
         return record
 
     def path(self, sha: str) -> Path:
@@ -120,7 +120,7 @@ class RecordStore:
         except OSError:
             content = b""
         if hashlib.sha256(content).hexdigest() != sha:
-            raise RecordError("{file}: has changed since it was uploaded: upload it once more", file=path.name)
+            raise RecordError("{file}: changed since the upload; upload the file again", file=path.name)
         return content
 
     def delete(self, sha: str) -> None:
@@ -149,7 +149,7 @@ class RecordStore:
         def read() -> GroundMotion:
             motion = read_motion(path, *how[:-1], skip=skip)
             if sha not in motion.provenance[0]:  # read_motion notes the hash of what it read
-                raise RecordError("{file}: has changed since it was uploaded: upload it once more", file=path.name)
+                raise RecordError("{file}: changed since the upload; upload the file again", file=path.name)
             return motion
 
         return self._motions.get((sha, *how), read)
@@ -186,11 +186,13 @@ class RecordStore:
         while self._forgets and others and self._fits([], record) and not self._fits(others, record):
             self.delete(others.pop().record)
         if len(others) >= MOST_RECORDS:
-            raise TooLarge("up to {most} records are kept; delete some that are no longer needed", most=MOST_RECORDS)
+            raise TooLarge(
+                "up to {most} records are stored; delete records that are no longer needed", most=MOST_RECORDS
+            )
         if not self._fits(others, record):
             room = self._limits.records_bytes >> 20
             raise TooLarge(
-                "records may take up to {limit} MiB together", limit=room, hint="delete some that are no longer needed"
+                "records may take up to {limit} MiB together", limit=room, hint="delete items that are no longer needed"
             )
 
     def _fits(self, others: list[StoredRecord], record: StoredRecord) -> bool:

@@ -46,13 +46,13 @@ def check_host(host: str, *, allow_remote: bool) -> None:
     """Refuse an address that others reach, unless that is wanted."""
     if host in _EVERYWHERE:
         raise InvalidValueError(
-            "{parameter} {host} is every address at once: name the one under which others open the page",
+            "{parameter} {host} means all addresses; state the address that other computers use",
             parameter="--host", host=host or repr(host),
         )  # fmt: skip
     if host not in LOOPBACK and not allow_remote:
         raise InvalidValueError(
-            "{parameter} {host} can be reached from other machines, over a connection that is not encrypted: add "
-            "--allow-remote if that is meant; without it the server listens on 127.0.0.1 only", parameter="--host",
+            "{parameter} {host} is reachable from other computers without encryption; add --allow-remote to allow "
+            "this", parameter="--host",
             host=host,
         )  # fmt: skip
 
@@ -66,7 +66,7 @@ def listen(host: str, port: int, *, search: bool) -> socket.socket:
             return _bound(host, candidate)
         except PermissionError as error:
             raise InvalidValueError(
-                "port {port} is not free to use: choose one above 1023 with --port", port=candidate
+                "port {port} is not permitted; choose a port above 1023 with --port", port=candidate
             ) from error
         except socket.gaierror as error:
             raise InvalidValueError(
@@ -78,9 +78,9 @@ def listen(host: str, port: int, *, search: bool) -> socket.socket:
                     "cannot listen on {host}: {reason}", host=host, reason=error.strerror
                 ) from error
     raise InvalidValueError(
-        "ports {port} to {last} are taken: choose another with --port"
+        "ports {port} to {last} are in use; choose another port with --port"
         if search and port
-        else "port {port} is taken, perhaps by another rocking serve: choose another with --port",
+        else "port {port} is in use, perhaps by another rocking serve; choose another port with --port",
         port=port, last=port + _TRIED - 1,
     )  # fmt: skip
 
@@ -153,15 +153,15 @@ class DataFolder:
             self.path.chmod(0o700)
         except OSError as error:
             raise InvalidValueError(
-                "the data folder {folder!r} cannot be used ({reason}): choose another with --data",
+                "the data folder {folder!r} is not usable ({reason}); choose another folder with --data",
                 folder=str(self.path), reason=error.strerror,
             ) from error  # fmt: skip
         try:
             self._lock.__enter__()
         except CampaignBusyError as error:
             raise FolderInUseError(
-                "another rocking serve runs with the data folder {folder!r}: stop it, or choose another folder with "
-                "--data", folder=str(self.path),
+                "another rocking serve uses the data folder {folder!r}; stop that server, or choose another folder "
+                "with --data", folder=str(self.path),
             ) from error  # fmt: skip
         return self
 

@@ -35,9 +35,7 @@ class ComputationQueue:
         """Put a computation in the queue."""
         with self._lock:
             if self._inside >= self._room:
-                raise Busy(
-                    "{count} computations run or wait already; try again in a moment", count=self._inside, seconds=2
-                )
+                raise Busy("{count} computations are running or queued; try again later", count=self._inside, seconds=2)
             self._inside += 1
         try:
             future = self._threads.submit(function, *args, **kwargs)
@@ -68,7 +66,7 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
     try:
         return await asyncio.wrap_future(queue.submit(function, *args, **kwargs))
     except asyncio.CancelledError as error:  # only a server that ends cancels a request
-        words = "the server ends before this is computed; start it again, then ask again"
+        words = "the server is shutting down; restart it, then compute again"
         raise Refused(words, status=503) from error
 
 

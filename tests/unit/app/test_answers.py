@@ -39,7 +39,7 @@ ERRORS = {
     "extra": (MissingExtraError("pip install"), 422, "missing-extra"),
     "busy": (Busy("wait", seconds=1.2), 429, "busy"),
     "large": (TooLarge("too many"), 413, "too-large"),
-    "absent": (NotFound("no such study"), 404, "not-found"),
+    "absent": (NotFound("study not found"), 404, "not-found"),
 }
 
 

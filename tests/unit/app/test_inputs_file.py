@@ -165,7 +165,7 @@ def test_a_record_is_named_beside_the_file():
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = nan", "height"),
         ("[bodies]\nunits = 'm'", "no table"),
         ("[body]\nfile = '/etc/passwd'", "upload"),
-        ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = '../../x.AT2'", "not uploaded"),
+        ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = '../../x.AT2'", "not stored here"),
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = 3", "record"),
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[settings]\nworkers = 3", "workers"),
         ("[body]\nunits = 'm'\n[[body.section.region]]\ndxf = '/etc/passwd'", "upload"),
@@ -306,32 +306,32 @@ def _cut_by_nul():
 
 MANY = packed([(f"{k}.txt", "x") for k in range(9)])
 HOSTILE = {
-    "goes up": (packed([("response.toml", TOML), ("../wave.txt", COLUMN)]), 422, "without folders"),
-    "absolute": (packed([("/etc/response.toml", TOML)]), 422, "without folders"),
-    "a drive": (packed([("C:response.toml", TOML)]), 422, "without folders"),
-    "back slashes": (packed([("..\\response.toml", TOML)]), 422, "without folders"),
-    "a folder": (packed([("a/", b""), ("a/response.toml", TOML)]), 422, "without folders"),
-    "a name cut by NUL": (_cut_by_nul(), 422, "without folders"),
+    "goes up": (packed([("response.toml", TOML), ("../wave.txt", COLUMN)]), 422, "folders are not allowed"),
+    "absolute": (packed([("/etc/response.toml", TOML)]), 422, "folders are not allowed"),
+    "a drive": (packed([("C:response.toml", TOML)]), 422, "folders are not allowed"),
+    "back slashes": (packed([("..\\response.toml", TOML)]), 422, "folders are not allowed"),
+    "a folder": (packed([("a/", b""), ("a/response.toml", TOML)]), 422, "folders are not allowed"),
+    "a name cut by NUL": (_cut_by_nul(), 422, "folders are not allowed"),
     "a bomb": (packed([("response.toml", TOML), ("wave.txt", b"0 0\n" * 12_500_000)]), 413, "more than"),
     "a bomb that lies": (_lying(), 422, "damaged"),
     "a TOML bomb": (packed([("response.toml", b"#" * 50_000_000)]), 413, "more than"),
-    "nine files": (MANY, 413, "up to 8 files, this has 9"),
+    "nine files": (MANY, 413, "up to 8 files, got 9"),
     "thousands of entries": (packed([(f"{k}", "") for k in range(1500)]), 413, "up to 8 files"),
     "encrypted": (_encrypted(), 422, "encrypted"),
-    "another packing": (packed([("response.toml", TOML)], zipfile.ZIP_LZMA), 422, "pack it as usual"),
+    "another packing": (packed([("response.toml", TOML)], zipfile.ZIP_LZMA), 422, "unsupported compression"),
     "damaged": (_damaged(), 422, "damaged"),
-    "cut off": (packed([("response.toml", TOML)])[:-30], 422, "no ZIP archive"),
-    "only its first bytes": (b"PK\x03\x04", 422, "no ZIP archive"),
-    "empty": (packed([]), 422, "one TOML file of inputs, it has 0"),
+    "cut off": (packed([("response.toml", TOML)])[:-30], 422, "ZIP archive is not readable"),
+    "only its first bytes": (b"PK\x03\x04", 422, "ZIP archive is not readable"),
+    "empty": (packed([]), 422, "one TOML input file, got 0"),
     "two inputs": (packed([("a.toml", TOML), ("b.toml", TOML)]), 422, "it has 2"),
     "no text": (packed([("response.toml", b"\xff\xfe")]), 422, "UTF-8"),
-    "no record": (packed([("response.toml", TOML)]), 422, "was not uploaded here"),
+    "no record": (packed([("response.toml", TOML)]), 422, "is not stored here"),
     "a record that is none": (packed([("response.toml", TOML), ("wave.txt", b"hello")]), 422, "not recognised"),
     "an infinite record": (packed([("response.toml", TOML), ("wave.txt", b"0 0\n0.01 1e308")]), 422, "within 1e+06"),
     "an empty record": (packed([("response.toml", TOML), ("wave.txt", b" ")]), 422, "empty"),
     "bad inputs": (packed([("response.toml", TOML + "furlong = 1\n"), ("wave.txt", COLUMN)]), 422, "furlong"),
     "it names itself": (packed([("a.toml", TOML.replace("wave.txt", "a.toml"))]), 422, "not recognised"),
-    "the host's file": (packed([("a.toml", TOML.replace("wave.txt", "/etc/passwd"))]), 422, "not uploaded"),
+    "the host's file": (packed([("a.toml", TOML.replace("wave.txt", "/etc/passwd"))]), 422, "not stored here"),
 }
 
 
@@ -349,7 +349,7 @@ def test_two_files_of_one_name_are_refused():
     """Which of them would be meant is not guessed."""
     with pytest.warns(UserWarning, match="Duplicate name"):
         data = packed([("response.toml", TOML), ("response.toml", TOML)])
-    with pytest.raises(Refused, match="two files of one name"):
+    with pytest.raises(Refused, match="two files with the same name"):
         Archive(data)
 
 

@@ -40,13 +40,13 @@ def test_undo_and_redo_walk_among_states(store):
     project = store.undo(project.id, project.version)
     project = store.undo(project.id, project.version)
     assert (store.document(project.id), project.can_undo, project.can_redo) == ({"n": 0}, False, True)
-    with pytest.raises(Refused, match="nothing before"):
+    with pytest.raises(Refused, match="no earlier state"):
         store.undo(project.id, project.version)
     project = store.redo(project.id, project.version)
     assert store.document(project.id) == {"n": 1}
     project = store.save(project.id, project.version, {"n": 7}, "n = 7")
     assert not project.can_redo
-    with pytest.raises(Refused, match="nothing was undone"):
+    with pytest.raises(Refused, match="no later state"):
         store.redo(project.id, project.version)
     states = store.history(project.id)
     assert [store.document(project.id, each.number)["n"] for each in states] == [7, 2, 1, 0]
@@ -110,7 +110,7 @@ def test_what_is_deleted_comes_back_for_a_while(store, tmp_path, monkeypatch):
     gone = store.delete(project.id)
     assert store.all() == []
     assert [each.id for each in store.all(deleted=True)] == [project.id]
-    with pytest.raises(Conflict, match="bring it back"):
+    with pytest.raises(Conflict, match="restore it first"):
         store.save(project.id, gone.version, {}, "")
     store.bring_back(project.id)
     assert store.document(project.id) == {"n": 1}
@@ -159,7 +159,7 @@ def test_projects_have_a_limit_of_disk(tmp_path):
 
     for _ in range(4):
         project = saved(project)
-    with pytest.raises(NoRoom, match="too many projects"):  # noqa: PT012 - one of them
+    with pytest.raises(NoRoom, match="number of projects"):  # noqa: PT012 - one of them
         for _ in range(9):
             project = saved(project)
     assert len(store.history(project.id)) >= 5
@@ -271,7 +271,7 @@ def test_one_file_holds_all_of_it(client, tmp_path, monkeypatch):
     brought = project_from_file(state, many.getvalue())
     assert len(state.studies.of_project(brought.id)) == 12 > state.settings.limits.studies_waiting
     monkeypatch.setattr("rocking.app.projects.one_file.MOST_FILES", 1)
-    with pytest.raises(TooLarge, match=r"2 files, packed 0 MiB.*the largest is a\.txt, 0 MiB"):
+    with pytest.raises(TooLarge, match=r"2 files with 0 MiB.*the largest is a\.txt, 0 MiB"):
         project_file(state, other)
     state.studies.close()
     state.projects.close()
@@ -295,13 +295,13 @@ def test_files_that_are_no_project_are_refused(client):
         ({"readme.txt": "x"}, "holds no project.json"),
         ({"project.json": "{"}, "project.json"),
         ({"project.json": json.dumps({**whole, "format": "rocking project 9"})}, "rocking project 1"),
-        ({"project.json": json.dumps({**whole, "records": {sha: "a.txt"}})}, "does not hold the record"),
+        ({"project.json": json.dumps({**whole, "records": {sha: "a.txt"}})}, "is missing in the archive"),
         (
             {
                 "project.json": json.dumps({**whole, "records": {sha: "a.txt"}}),
                 f"{sha[:12]}-a.txt": "0.0 1.0\n0.01 2.0\n",
             },
-            "is not the file",
+            "does not match its hash",
         ),
     ):
         answer = sent(files)

@@ -98,7 +98,7 @@ def test_a_list_that_was_sent_is_assessed(desk):
 def test_the_paper_takes_nothing(desk):
     """What is recomputed from published measurements alone takes neither tables nor files, and can be stopped."""
     for tables, files in ((TABLES, {}), ({}, {"list.csv": desk.store.add(LIST.encode(), "list.csv").record})):
-        with pytest.raises(Refused, match="takes no tables and no files"):
+        with pytest.raises(Refused, match="accepts no tables and no files"):
             desk.ask("reproduce", tables, files)
     asked = desk.ask("reproduce", {}, {})
     assert (desk.tables(asked.id).strip(), desk.stop(asked.id).state) == ("", "stopped")
@@ -167,11 +167,11 @@ def test_what_is_refused_says_why(desk):
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
-        ({"body": {"file": "/etc/passwd"}}, "leads out"),
-        ({"body": {"file": "../x.toml"}}, "leads out"),
-        ({"body": {"file": "a/../../x.toml"}}, "leads out"),
-        ({"motions": [{"records": ["~/x.at2"]}]}, "leads out"),
-        ({"motions": [{"records": ["C:\\x.at2"]}]}, "leads out"),
+        ({"body": {"file": "/etc/passwd"}}, "is a path"),
+        ({"body": {"file": "../x.toml"}}, "is a path"),
+        ({"body": {"file": "a/../../x.toml"}}, "is a path"),
+        ({"motions": [{"records": ["~/x.at2"]}]}, "is a path"),
+        ({"motions": [{"records": ["C:\\x.at2"]}]}, "is a path"),
         ({"restitution": {"model": "own.py:Model"}}, "code"),
     ],
 )

@@ -273,7 +273,7 @@ def test_counts_and_stations_are_refused_with_a_way_out(client):
         assert answer.status_code == 422
         told = answer.json()["error"]["message"]
         assert said in told
-        assert "both files to the step \u201cRecords\u201d" in told
+        assert "both files in the step \u201cRecords\u201d" in told
         assert "Python" not in told
     assert client.get("/api/records").json() == []
 
@@ -306,7 +306,7 @@ def test_the_store_has_room_for_so_much(store):
     with pytest.raises(TooLarge, match="more than 20000"):
         store.add(b"1" * 20_001, "c.txt")
     store.add(b"1 2\n" * 4000, "d.txt")
-    with pytest.raises(TooLarge, match="delete some"):
+    with pytest.raises(TooLarge, match="delete items"):
         store.add(b"2 3\n" * 4000, "e.txt")
 
 

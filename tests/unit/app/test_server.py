@@ -74,7 +74,7 @@ def test_serve_from_start_to_end(tmp_path):
         assert again.stdout.startswith(f"{url}/#token=")
         scripted = second("--json", "--data", str(data))
         assert scripted.returncode == 2
-        assert "another rocking serve runs" in scripted.stderr
+        assert "another rocking serve uses" in scripted.stderr
         process.send_signal(signal.SIGINT)
         assert process.wait(10) == 0
         assert process.stderr is not None
@@ -149,12 +149,12 @@ def test_loopback_needs_no_word(host):
 
 
 def test_other_addresses_need_the_flag():
-    """An address that others reach is refused without the flag, and every address at once always."""
+    """An address that others reach is refused without the flag, and all addresses at once always."""
     check_host("192.0.2.7", allow_remote=True)
     with pytest.raises(InvalidValueError, match="--allow-remote"):
         check_host("192.0.2.7", allow_remote=False)
     for everywhere in ("0.0.0.0", "::", ""):
-        with pytest.raises(InvalidValueError, match="every address"):
+        with pytest.raises(InvalidValueError, match="all addresses"):
             check_host(everywhere, allow_remote=True)
 
 

@@ -42,33 +42,34 @@ class ContactBedRequest(JobTable):
         json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False
     )
 
-    varied: Varied = Field("slenderness", description="what changes; amplitude and seed are of an uneven base")
-    start: float | None = Field(None, alias="from", description="its first value; of a usual range if not given")
-    stop: float | None = Field(None, alias="to", description="its last value; of a usual range if not given")
-    count: Annotated[int, Field(ge=1, le=MOST_VALUES)] = Field(40, description="how many values")
-    spacing: Literal["usual", "linear", "log"] = Field("usual", description="how they lie")
+    varied: Varied = Field("slenderness", description="varied parameter; amplitude and seed belong to an uneven base")
+    start: float | None = Field(None, alias="from", description="first value; default depends on the parameter")
+    stop: float | None = Field(None, alias="to", description="last value; default depends on the parameter")
+    count: Annotated[int, Field(ge=1, le=MOST_VALUES)] = Field(40, description="number of values")
+    spacing: Literal["usual", "linear", "log"] = Field("usual", description="spacing of the values")
     slenderness: Positive = Field(2.0, description="h/b of the block [-]")
     width: Positive = Field(0.2, description="width of the base [m]")
     density: Positive = Field(2400.0, description="density of the block [kg/m3]")
     points: Annotated[int, Field(ge=2, le=MOST_POINTS)] = Field(41, description="contact points")
-    frequency: Positive = Field(400.0, description="of the whole bed beneath the block, where no layer is given [Hz]")
+    frequency: Positive = Field(400.0, description="frequency of the bed under the block, unless a layer is given [Hz]")
     modulus_over_thickness: Positive | None = Field(
-        None, description="of an elastic layer, per metre of depth, in place of the frequency [Pa/m]"
+        None,
+        description="modulus over thickness of an elastic layer, per metre of depth; replaces the frequency [Pa/m]",
     )
-    damping: Annotated[float, Field(ge=0.0)] = Field(1.0, description="damping ratio of the whole bed [-]")
+    damping: Annotated[float, Field(ge=0.0)] = Field(1.0, description="damping ratio of the bed [-]")
     release: Annotated[float, Field(gt=0.0, lt=1.0)] = Field(
-        0.5, description="rotation from which the block falls, over its slenderness angle [-]"
+        0.5, description="initial rotation / slenderness angle [-]"
     )
     friction: Annotated[float, Field(gt=0.0)] | None = Field(
-        None, description="coefficient of friction; a base that cannot slide if not given [-]"
+        None, description="coefficient of friction; default: no sliding [-]"
     )
     shape: Literal["usual", "convex", "concave", "tilted", "random"] = Field(
-        "usual", description="of an uneven base, where its amplitude changes; concave is usual"
+        "usual", description="shape of an uneven base if the amplitude is varied; default: concave"
     )
     amplitude: Positive | None = Field(
-        None, description="of a random base, where its seed changes; 0.0001 if not given [m]"
+        None, description="amplitude of a random base if the seed is varied; default: 0.0001 [m]"
     )
-    seed: Seed | None = Field(None, description="of a random base, where its amplitude changes")
+    seed: Seed | None = Field(None, description="seed of a random base if the amplitude is varied")
 
     @model_validator(mode="after")
     def _range(self) -> "ContactBedRequest":

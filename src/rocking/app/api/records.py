@@ -30,8 +30,8 @@ _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
 _WAY = (
-    "drop both together, or give both files to the step \u201cRecords\u201d, add \u201cresponse\u201d there and "
-    "choose the StationXML; the record that is taken away can be dropped here"
+    "drop both files together, or add both files in the step “Records”, add the step “response” and choose the "
+    "StationXML"
 )
 Need = Literal["format", "units", "time_step", "component"]
 Word = Annotated[str | None, Query(min_length=1, max_length=200)]
@@ -124,7 +124,7 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
     """Return what is found in a file; stated: format, units and time_step [s], None where nobody states them."""
     if _STATIONS in content[:4096]:
         raise RecordError(
-            ("{name}: this is a StationXML file, which describes an instrument and holds no motion; {way}"),
+            ("{name}: a StationXML file describes an instrument and contains no motion; {way}"),
             name=name,
             way=_WAY,
         )
@@ -138,7 +138,7 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
     except RecordError as error:
         if error.hint is not STATIONS:
             raise
-        words = "the samples are counts of the instrument, whose response lies in a StationXML file of its own"
+        words = "the samples are instrument counts; the instrument response is in a separate StationXML file"
         raise RecordError(words, hint=_WAY).at(name) from error
     components = [] if record is None else record.components
     choices = {
@@ -180,7 +180,7 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
     if len(record.components) > 1:
         names = ", ".join(each.name for each in record.components)
         reasons["component"] = Message(
-            "the file has the components {names}: choose the horizontal one", {"names": names}
+            "the file has the components {names}; choose the horizontal component", {"names": names}
         )
     return record, reasons
 
@@ -206,7 +206,7 @@ def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:
 def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
     """Refuse what no ground does: in its unit, or while that is not told in the smallest one."""
     if max(part.peak for part in record.components) < _QUIETEST:
-        raise RecordError("{name}: the acceleration is zero throughout; is this the right file?", name=name)
+        raise RecordError("{name}: the acceleration is zero throughout", name=name)
     for part in record.components:
         factor = ACCELERATION_UNITS[part.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
         with np.errstate(over="ignore"):  # what overflows is infinite, and refused

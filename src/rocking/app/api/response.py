@@ -174,9 +174,9 @@ def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
         samples += one.segments.count if isinstance(one, Response) else 0
         if samples > MOST_TOGETHER:
             raise TooLarge(
-                "{answered} of {count} responses together take {steps} steps, more than the {limit} that are computed "
-                "at once", answered=len(answers), count=len(problem.restitutions), steps=samples, limit=MOST_TOGETHER,
-                hint="fewer restitutions, a motion with longer steps, or the command line",
+                "{answered} of {count} responses have {steps} steps in total, {limit} are allowed",
+                answered=len(answers), count=len(problem.restitutions), steps=samples, limit=MOST_TOGETHER,
+                hint="use fewer restitutions, a longer time step, or the command line",
             )  # fmt: skip
     reasons = [reason for reason in answers.values() if isinstance(reason, str)]
     if len(reasons) == len(answers):

@@ -36,7 +36,7 @@ def gif_of(response: Response) -> bytes:
                 command, input=pickle.dumps(response), capture_output=True, timeout=_LONGEST, check=False
             )
         except subprocess.TimeoutExpired as error:
-            raise Busy("the frames take too long now: take the page (html), or try again", seconds=60) from error
+            raise Busy("drawing the frames takes too long; export the page (html), or try again", seconds=60) from error
         if done.returncode == _REFUSED:
             raise Refused(done.stderr.decode("utf-8", "replace").strip())
         if done.returncode:

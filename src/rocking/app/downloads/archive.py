@@ -51,7 +51,7 @@ def add_file(archive: ZipFile, name: str, data: bytes) -> None:
 
 
 def _words(evaluation: Evaluation, record: str | None) -> str:
-    typed = commands(evaluation.inputs) or ["(nothing moves the body yet: choose a motion or free rocking first)"]
+    typed = commands(evaluation.inputs) or ["(no motion: choose a motion or free rocking first)"]
     files = [f"  {FILE_NAME:<16} body, motion, restitution and settings"]
     if record is not None:
         files.append(f"  {record:<16} the record that it names")
@@ -83,7 +83,7 @@ def inputs_from_file(data: bytes, records: RecordStore) -> Inputs:
 def _inputs_from_archive(archive: "Archive", records: RecordStore) -> Inputs:
     texts = [name for name in archive.names if name.lower().endswith(".toml")]
     if len(texts) != 1:
-        raise Refused("the archive must hold one TOML file of inputs, it has {count}", count=len(texts))
+        raise Refused("the archive must contain one TOML input file, got {count}", count=len(texts))
     text = _text(archive.content(texts[0], LONGEST))
     name = _record_of(text)
     if name not in archive.names:
@@ -110,7 +110,7 @@ def _text(data: bytes) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise Refused("this is not a text file in UTF-8 (byte {byte})", byte=error.start) from error
+        raise Refused("the file is not UTF-8 text (byte {byte})", byte=error.start) from error
 
 
 def _finder(records: RecordStore) -> FindRecord:
@@ -132,21 +132,21 @@ class Archive:
     def __init__(self, data: bytes, most_files: int = MOST_FILES) -> None:
         # before all of them are read; a packed record may hold the four bytes by chance
         if data.count(_ENTRY) > _MOST_ENTRIES + most_files:
-            raise TooLarge("an archive may hold up to {limit} files", limit=most_files)
+            raise TooLarge("an archive may contain up to {limit} files", limit=most_files)
         try:
             self._archive = ZipFile(io.BytesIO(data))
         except (BadZipFile, ValueError, NotImplementedError, OSError) as error:
-            raise Refused("this is no ZIP archive that can be read: is it damaged?") from error
+            raise Refused("the ZIP archive is not readable; it is probably damaged") from error
         entries = self._archive.infolist()
         if len(entries) > most_files:
             raise TooLarge(
-                "an archive may hold up to {limit} files, this has {count}", limit=most_files, count=len(entries)
+                "an archive may contain up to {limit} files, got {count}", limit=most_files, count=len(entries)
             )
         for entry in entries:
             _check_entry(entry)
         self._entries = {entry.filename: entry for entry in entries}
         if len(self._entries) < len(entries):
-            raise Refused("the archive holds two files of one name")
+            raise Refused("the archive contains two files with the same name")
 
     @staticmethod
     def begins(data: bytes) -> bool:
@@ -178,10 +178,8 @@ def _check_entry(entry: ZipInfo) -> None:
         or set(entry.filename) & set("/\\:\0")
         or entry.filename in {"", ".", ".."}
     ):
-        raise Refused("the archive holds {name!r}: files must lie beside each other, without folders", name=name)
+        raise Refused("the archive contains {name!r}; folders are not allowed", name=name)
     if entry.flag_bits & _ENCRYPTED:
         raise Refused("{name} in the archive is encrypted", name=name)
     if entry.compress_type not in {ZIP_STORED, ZIP_DEFLATED}:
-        raise Refused(
-            "{name} in the archive is packed in a way that is not read here: pack it as usual (deflate)", name=name
-        )
+        raise Refused("{name} in the archive has an unsupported compression; use deflate", name=name)

@@ -58,7 +58,7 @@ class Evaluation:
         """The motion, scaled."""
         chosen = self.inputs.motion
         if chosen is None:
-            raise Refused("no motion was chosen: the ground is at rest", needs=["motion"])
+            raise Refused("no motion is selected", needs=["motion"])
         motion = _named_plainly(motion_from(chosen, self.records))
         return motion if self.scale == 1.0 else motion.scaled(self.scale)
 
@@ -66,7 +66,7 @@ class Evaluation:
     def problem(self) -> ResponseProblem:
         """Body, motion, restitutions and settings."""
         if self.inputs.motion is None and self.inputs.response.initial_rotation is None:
-            raise Refused("what moves the body? Choose a motion, or free rocking", needs=["motion"])
+            raise Refused("no motion; choose a motion or free rocking", needs=["motion"])
         problem = problem_from(self.inputs, self.records)
         if problem.motion is None or isinstance(problem.motion, dict):
             return problem

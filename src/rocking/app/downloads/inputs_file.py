@@ -76,14 +76,12 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     document = migrated(parsed_toml(text))
     unknown = sorted(set(document) - set(_TABLES))
     if unknown and "campaign" in document:
-        raise Refused(
-            "this is a job of many histories: set it up in the step Studies, or `rocking campaign run` takes it"
-        )
+        raise Refused("this is a campaign job: use the step Studies or `rocking campaign run`")
     if unknown and "body" not in document and _SHAPES & set(document):
-        raise Refused("this is a file of a body alone: drop it in the step Body")
+        raise Refused("this file contains a body only: drop it in the step Body")
     if unknown:
         raise Refused(
-            "[{table}] is no table of inputs; there are {names}", table=plain_line(unknown[0], 60),
+            "unknown table [{table}]; allowed are {names}", table=plain_line(unknown[0], 60),
             names=", ".join(_TABLES),
         )  # fmt: skip
     motion = document.get("motion")
@@ -117,8 +115,8 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
     sha = find(word)
     if sha is None:
         raise Refused(
-            "{parameter}: {record} was not uploaded here", parameter="motion.record", record=plain_line(word, 80),
-            hint="drop the file first, then read this",
+            "{parameter}: {record} is not stored here", parameter="motion.record", record=plain_line(word, 80),
+            hint="upload the record first, then read this file",
         )  # fmt: skip
     return {"record": sha} if is_hash(word) else {"record": sha, "file_name": word}
 

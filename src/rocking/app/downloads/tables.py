@@ -210,7 +210,7 @@ def _column(unit: str, values: "Iterable[Cell] | np.ndarray") -> Column:
 def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
     """Return tables as a file: all of them, under their names, in Excel, the first one elsewhere."""
     if kind not in get_args(Kind):
-        raise NotFound("tables are {names}, not {kind!r:.20}", names=", ".join(get_args(Kind)), kind=kind)
+        raise NotFound("unknown format {kind!r:.20}; allowed are {names}", names=", ".join(get_args(Kind)), kind=kind)
     first = sheets[0][1]
     with TemporaryDirectory(prefix="rocking-table-") as folder:
         path = Path(folder) / f"table.{kind}"
@@ -220,7 +220,7 @@ def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
             cells = sum(len(table) * len(table.columns) for _, table in sheets)
             if cells > MOST_CELLS:
                 raise InvalidValueError(
-                    "a workbook holds up to {limit} cells, this would have {count}: take csv or mat", limit=MOST_CELLS,
+                    "a workbook may have up to {limit} cells, got {count}; use csv or mat", limit=MOST_CELLS,
                     count=cells,
                 )  # fmt: skip
             to_excel([(plain_line(name), one) for name, one in sheets], path, others="csv or mat", dressed=True)

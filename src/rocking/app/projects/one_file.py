@@ -73,10 +73,9 @@ def project_file(state: "AppState", project: Project) -> bytes:
         largest = max(contents, key=lambda sha: len(contents[sha]))
         named = record_file_name({**files, **records}[largest])
         raise TooLarge(
-            "the project has {count} files, packed {size:.0f} MiB, more than the {most_files} of "
-            "{most_size} MiB that can be read again: leave out files where they were dropped "
-            "(the largest is {largest}, {largest_size:.0f} MiB), delete studies that need many, "
-            "or copy the whole data folder",
+            "the project has {count} files with {size:.0f} MiB; {most_files} files with {most_size} MiB are allowed. "
+            "Remove files (the largest is {largest}, {largest_size:.0f} MiB), delete studies with many files, or "
+            "copy the data folder",
             count=len(contents),
             size=len(data) / 2**20,
             most_files=MOST_FILES - 1,
@@ -90,10 +89,10 @@ def project_file(state: "AppState", project: Project) -> bytes:
 def project_from_file(state: "AppState", data: bytes) -> Project:
     """Keep the project of a file under a new name in addresses; its studies wait in line, to be computed again."""
     if not Archive.begins(data):
-        raise Refused("this is no project of rocking, which is one ZIP archive")
+        raise Refused("not a rocking project; a project is one ZIP archive")
     archive = Archive(data, MOST_FILES)
     if _WHAT not in archive.names:
-        raise Refused("the archive is no project of rocking: it holds no {file}", file=_WHAT)
+        raise Refused("the archive is not a rocking project: {file} is missing", file=_WHAT)
     with located(_WHAT, "file"):
         content = archive.content(_WHAT, 8 * LARGEST)
         check_json(content, _DEEPEST)
@@ -103,7 +102,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
             raise from_pydantic(error.errors(include_url=False), kind=Refused) from error
     if len(whole.studies) > MOST_STUDIES:
         raise TooLarge(
-            "a file may bring {limit} studies, this has {count}", limit=MOST_STUDIES, count=len(whole.studies)
+            "a project file may contain {limit} studies, got {count}", limit=MOST_STUDIES, count=len(whole.studies)
         )
     for study in whole.studies:
         JobDocument.of(study.job)  # before anything is kept
@@ -126,15 +125,13 @@ def _keep_files(state: "AppState", archive: Archive, whole: _ProjectFile) -> Non
             if store is state.records:
                 record_facts(content, name, {"format": None, "units": None, "time_step": None})
             if store.add(content, name).record != sha:
-                raise RecordError(
-                    "{record} in the archive is not the file that was put into it", record=record_file_name(name)
-                )
+                raise RecordError("{record} in the archive does not match its hash", record=record_file_name(name))
 
 
 def _entry(archive: Archive, sha: str) -> str:
     entry = next((name for name in archive.names if is_hash(sha) and name.startswith(f"{sha[:12]}-")), None)
     if entry is None:
-        raise Refused("the archive does not hold the record {record:.12} that it names", record=sha)
+        raise Refused("record {record:.12} is missing in the archive", record=sha)
     return entry
 
 

@@ -90,7 +90,7 @@ class ProjectStore:
         elif version > _FORMAT:
             self._database.close()
             raise Refused(
-                "{file} was written by a later version of rocking: use that one, or another --data", file=path.name
+                "{file} was written by a later version of rocking; use that version, or another --data", file=path.name
             )
         if fresh:
             sync_folder(path.parent)
@@ -116,7 +116,7 @@ class ProjectStore:
         with self.lock:
             row = self._database.execute(f"{_PROJECT} WHERE p.id = ?", (project,)).fetchone()
         if row is None:
-            raise NotFound("there is no such project here; was it deleted long ago, or is this another data folder?")
+            raise NotFound("project not found; it was deleted, or it is in another data folder")
         return _project(row)
 
     def document(self, project: str, state: int | None = None) -> dict[str, Any]:
@@ -127,9 +127,7 @@ class ProjectStore:
                 "SELECT document FROM states WHERE project = ? AND number = ?", (project, number)
             ).fetchone()
         if row is None:
-            raise NotFound(
-                "the project has no state {number}", number=number, hint="its oldest ones are not kept for ever"
-            )
+            raise NotFound("the project has no state {number}", number=number, hint="the oldest states are removed")
         return migrated_document(json.loads(zlib.decompress(row[0])))
 
     def history(self, project: str) -> list[ProjectState]:
@@ -149,7 +147,9 @@ class ProjectStore:
             (count,) = database.execute("SELECT count(*) FROM projects WHERE deleted IS NULL").fetchone()
             if count >= MOST_PROJECTS:
                 raise TooLarge(
-                    "up to {limit} projects are kept", limit=MOST_PROJECTS, hint="delete some that are no longer needed"
+                    "up to {limit} projects are stored",
+                    limit=MOST_PROJECTS,
+                    hint="delete items that are no longer needed",
                 )
             database.execute("INSERT INTO projects VALUES (?, ?, ?, ?, 1, 1, NULL)", (project, _name(name), now, now))
             database.execute("INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, words, now, packed))
@@ -175,12 +175,12 @@ class ProjectStore:
     @_alone
     def undo(self, project: str, version: int) -> Project:
         """Go back to the state before."""
-        return self._step(project, version, "before", "there is nothing before it")
+        return self._step(project, version, "before", "there is no earlier state")
 
     @_alone
     def redo(self, project: str, version: int) -> Project:
         """Go on to the state that was left last."""
-        return self._step(project, version, "after", "nothing was undone")
+        return self._step(project, version, "after", "there is no later state")
 
     @_alone
     def restore(self, project: str, version: int, state: int) -> Project:
@@ -240,9 +240,9 @@ class ProjectStore:
         with self._changing() as database:
             known, now = self.get(project), _instant()
             if known.deleted is not None:
-                raise Conflict("the project was deleted: bring it back first")
+                raise Conflict("the project is deleted; restore it first")
             if known.version != version:
-                raise Conflict("the project was changed meanwhile, perhaps in another tab or browser: look at it anew")
+                raise Conflict("the project was changed in another tab or browser; load it again")
             yield database, now, known
             database.execute("UPDATE projects SET version = version + 1, changed = ? WHERE id = ?", (now, project))
 
@@ -262,7 +262,7 @@ class ProjectStore:
             except sqlite3.OperationalError as error:
                 raise NoRoom(
                     "the project cannot be saved: {reason}", reason=str(error),
-                    hint="is the disk of the server full, or its folder read-only, or are there too many projects?",
+                    hint="Check the free disk space, the access rights of the folder and the number of projects.",
                 ) from error  # fmt: skip
 
 
@@ -290,7 +290,7 @@ def _packed(document: dict[str, Any]) -> bytes:
     data = json.dumps(document, allow_nan=False, separators=(",", ":")).encode()
     if len(data) > LARGEST:
         raise TooLarge(
-            "a project may hold {limit} MiB beside its records, this has {size:.1f}: simplify the outline, or take a "
+            "a project may contain {limit} MiB without its records, got {size:.1f}; simplify the outline, or use a "
             "body file", limit=LARGEST >> 20, size=len(data) / 2**20,
         )  # fmt: skip
     return zlib.compress(data)

@@ -118,23 +118,23 @@ class QuestionDesk:
             raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
         if format and (command != "record convert" or format not in formats()):
             raise Refused(
-                "{parameter} is that of a record that convert writes, one of {names}", parameter="format",
+                "{parameter} is allowed with convert only, one of {names}", parameter="format",
                 names=", ".join(formats()),
             )  # fmt: skip
         if command == WITHOUT_FILE and (tables or files):
             raise Refused(
-                "{command} is recomputed from published measurements alone: it takes no tables and no files",
+                "{command} accepts no tables and no files",
                 command=command,
             )  # fmt: skip
         refuse_outside(tables)
         known = self._paths(files)
         with self._changed:
             if len(self._line) >= MOST_WAITING:
-                raise Busy("{count} questions wait already; try again in a moment", count=len(self._line), seconds=5)
+                raise Busy("{count} runs are queued; try again later", count=len(self._line), seconds=5)
             if len(self._questions) >= MOST_QUESTIONS:
                 raise TooLarge(
-                    "up to {limit} questions are kept", limit=MOST_QUESTIONS,
-                    hint="delete some that are no longer needed",
+                    "up to {limit} runs are stored", limit=MOST_QUESTIONS,
+                    hint="delete items that are no longer needed",
                 )  # fmt: skip
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
@@ -164,7 +164,7 @@ class QuestionDesk:
         with self._changed:
             known = self._questions.get(question)
         if known is None:
-            raise NotFound("there is no such question here; it was deleted, or this is another data folder")
+            raise NotFound("run not found; it was deleted, or it is in another data folder")
         return known
 
     def answer(self, question: str) -> bytes | None:
@@ -181,7 +181,7 @@ class QuestionDesk:
         known = self.get(question)
         if name not in known.files:
             raise NotFound(
-                "the question has no file {name!r:.40}; it has {files}", name=name,
+                "unknown file {name!r:.40}; the run has {files}", name=name,
                 files=", ".join(known.files) or "none",
             )  # fmt: skip
         return self.folder / known.id / name
@@ -237,17 +237,17 @@ class QuestionDesk:
 
     def _paths(self, files: Mapping[str, str]) -> dict[str, Path]:
         if len(files) > MOST_FILES:
-            raise TooLarge("a question takes up to {limit} files, got {count}", limit=MOST_FILES, count=len(files))
+            raise TooLarge("a run accepts up to {limit} files, got {count}", limit=MOST_FILES, count=len(files))
         paths = {}
         for word, sha in files.items():
             plain = word.removeprefix(f"{FOLDER}/")
             if plain != safe_name(plain, "file") or word.lower() in {*_OWN, FOLDER}:
                 raise Refused(
-                    "the name of a file must be plain, as {example!r}, got {name!r:.60}",
+                    "a file name must be plain, such as {example!r}, got {name!r:.60}",
                     example=safe_name(word, "file"), name=word,
                 )  # fmt: skip
             if word.startswith("record."):
-                raise Refused("{name!r:.60} is the name of what is written: give the file another", name=word)
+                raise Refused("{name!r:.60} is reserved for output; rename the file", name=word)
             paths[word] = self._path(sha)
         return paths
 
@@ -255,7 +255,7 @@ class QuestionDesk:
         for store in self._stores:
             with suppress(NotFound):
                 return store.path(sha)
-        raise NotFound("no file {hash}... is kept here: send it once more", hash=str(sha)[:12])
+        raise NotFound("file {hash}... is not stored here; send it again", hash=str(sha)[:12])
 
     def _become(self, question: HostedQuestion) -> None:
         with self._changed:
@@ -354,7 +354,7 @@ class QuestionDesk:
         with self._changed:
             self._process = None
             if self._state(question.id) == "running":
-                why = "it could not be run: is the disk of the server full? Its log says more"
+                why = "the run could not start; check the free disk space and the log of the server"
                 self._become(replace(question, state="refused", message=why))
 
     def _state(self, question: str) -> str | None:
@@ -394,19 +394,17 @@ def refuse_outside(tables: dict[str, Any]) -> None:
                 continue
             if file_of(word.strip()):
                 raise Refused(
-                    "{name!r:.60} names a file of code, which a page cannot run", name=word, hint="see the command line"
+                    "{name!r:.60} names a code file, which is not allowed here", name=word, hint="use the command line"
                 )
             if word.startswith(("/", "\\", "~")) or ".." in word.replace("\\", "/").split("/") or word[1:3] == ":\\":
-                raise Refused(
-                    "{name!r:.60} leads out of the question: send the file, and name it by its name alone", name=word
-                )
+                raise Refused("{name!r:.60} is a path; send the file and use its name only", name=word)
 
 
 def _refusal(place: Path, code: int | None) -> dict[str, Any]:
     """Return why there is no answer, as data that a user may see."""
     if code is None:
         why = Message(
-            ("it took longer than {minutes:.0f} minutes, which is more than a page waits: use the command line"),
+            ("the run exceeded {minutes:.0f} minutes; use the command line"),
             {"minutes": _SECONDS / 60.0},
         )
         return RockingError(why).data()
@@ -415,9 +413,7 @@ def _refusal(place: Path, code: int | None) -> dict[str, Any]:
         with suppress(ValueError, TypeError, KeyError):
             refusal: dict[str, Any] = json.loads(line)["error"]
             return refusal
-    return RockingError(
-        "it needed more memory or time than a page gives, or failed: its log is in the data folder"
-    ).data()
+    return RockingError("the run failed or exceeded its memory or time limit; its log is in the data folder").data()
 
 
 def _link(source: Path, target: Path) -> None:

@@ -58,14 +58,15 @@ class RequestHead:
         pairs = scope["headers"]
         if len(pairs) > _MOST_HEADERS or sum(len(name) + len(value) for name, value in pairs) > _MOST_BYTES:
             raise Refused(
-                "the head has more than {headers} headers or {limit} bytes", headers=_MOST_HEADERS, limit=_MOST_BYTES,
+                "the request has more than {headers} headers or {limit} bytes of headers",
+                headers=_MOST_HEADERS, limit=_MOST_BYTES,
                 status=431,
             )  # fmt: skip
         headers: dict[str, str] = {}
         for raw, value in pairs:
             name = raw.decode("latin-1").lower()
             if name in headers and name in _ONCE:
-                raise Refused("the header {name} is there twice", name=name, status=400)
+                raise Refused("the header {name} appears twice", name=name, status=400)
             headers[name] = value.decode("latin-1").strip()
         target = (scope.get("raw_path") or scope["path"].encode()).decode("latin-1")
         return cls(
@@ -105,7 +106,7 @@ def check_target(head: RequestHead, most: int) -> None:
     if len(head.target) + len(head.query) > most:
         raise Refused("path and query are longer than {limit} bytes", limit=most, status=414)
     if not _PATH.fullmatch(head.target):
-        raise NotFound("there is no such page: its path has characters that none here has")
+        raise NotFound("page not found: the path has invalid characters")
 
 
 def own_hosts(settings: ServerSettings) -> frozenset[str]:
@@ -120,7 +121,7 @@ def check_host(head: RequestHead, own: frozenset[str]) -> None:
     """Refuse a request that was sent to another name."""
     if head.headers.get("host", "").lower() not in own:
         raise Refused(
-            "the Host header is not this server's address: open it by the link that `rocking serve` prints", status=403
+            "the Host header is not the address of this server; use the link that `rocking serve` prints", status=403
         )
 
 
@@ -131,11 +132,11 @@ def check_origin(head: RequestHead, own: frozenset[str]) -> None:
         if head.unsafe:
             name = head.headers.get("host", "127.0.0.1")
             raise Refused(
-                "the Origin header is missing: a script sends Origin: {scheme}://{name}", scheme=head.scheme, name=name,
+                "the Origin header is missing; send Origin: {scheme}://{name}", scheme=head.scheme, name=name,
                 status=403,
             )  # fmt: skip
     elif origin.lower() not in {f"{head.scheme}://{name}" for name in own}:
-        raise Refused("the Origin header names another page than this server's own", status=403)
+        raise Refused("the Origin header is not the address of this server", status=403)
 
 
 def check_site(head: RequestHead) -> None:
@@ -145,7 +146,7 @@ def check_site(head: RequestHead) -> None:
         return
     follows_link = head.headers.get("sec-fetch-mode") == "navigate" and head.headers.get("sec-fetch-dest") == "document"
     if head.unsafe or head.of_api or not follows_link:
-        raise Refused("another site asks for this", status=403)
+        raise Refused("requests from other sites are not allowed", status=403)
 
 
 def content_type(head: RequestHead) -> str:
@@ -173,8 +174,8 @@ def check_session(head: RequestHead, request: HTTPConnection) -> None:
     public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
     if not public and not is_signed_in(request):
         raise Refused(
-            "nobody is signed in: open the link that `rocking serve` prints",
-            hint="a script sends Authorization: Bearer with the key in the file api-key of the data folder",
+            "not signed in; open the link that `rocking serve` prints",
+            hint="scripts send Authorization: Bearer KEY, with the key from the file api-key in the data folder",
             status=401,
         )
 

@@ -76,7 +76,7 @@ class BodyLimits:
                 await _drain(pieces)
                 raise TooLarge(too_large)
             if self._held + len(piece) > self._limits.bytes_in_flight:
-                raise Busy("too many files arrive at once; try again in a moment", seconds=2)
+                raise Busy("too many uploads at the same time; try again later", seconds=2)
             self._held += len(piece)
             body += piece
 
@@ -128,30 +128,30 @@ def check_json(data: bytes, depth: int) -> None:
     except UnicodeDecodeError as error:
         raise Refused("the JSON is not in UTF-8") from error
     except UnicodeEncodeError as error:
-        raise Refused("a text in the JSON holds half a character (a lone surrogate)") from error
+        raise Refused("a text in the JSON contains a lone surrogate") from error
     except json.JSONDecodeError as error:
         raise Refused(
             "this is not JSON: {reason} at line {line}, column {column}", reason=error.msg, line=error.lineno,
             column=error.colno,
         ) from error  # fmt: skip
     if "\\u0000" in text.lower() or "\0" in text:
-        raise Refused("a text in the JSON holds a NUL")
+        raise Refused("a text in the JSON contains a NUL character")
 
 
 def _constant(word: str) -> NoReturn:
-    raise Refused("{word} is not a number that can be computed with", word=word)
+    raise Refused("{word} is not a finite number", word=word)
 
 
 def _float(word: str) -> float:
     value = float(word)
     if not math.isfinite(value):
-        raise Refused("the number {word} is larger than float64 holds", word=word[:40])
+        raise Refused("the number {word} exceeds the range of float64", word=word[:40])
     return value
 
 
 def _int(word: str) -> int:
     if len(word) > 20 or not -_LARGEST <= int(word) < _LARGEST:
-        raise Refused("the whole number {word} does not fit into 64 bits", word=word[:40])
+        raise Refused("the integer {word} exceeds 64 bits", word=word[:40])
     return int(word)
 
 
@@ -160,5 +160,5 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(content) != len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise Refused("the key {key!r} is there twice", key=twice[:60])
+        raise Refused("the key {key!r} appears twice", key=twice[:60])
     return content

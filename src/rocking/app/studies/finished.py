@@ -112,7 +112,7 @@ def written(
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(
-            "restitution must be a number from 0 to {largest}, got {restitution}",
+            "restitution must be in 0 ... {largest}, got {restitution}",
             largest=len(labels) - 1,
             restitution=restitution,
         )
@@ -128,7 +128,7 @@ def written(
             draw_to(lambda: incremental_dynamic_analysis_picture(analysis), target)
             return
         if len(labels) < 2:
-            raise Refused("there is nothing to compare in a study that was asked with one restitution")
+            raise Refused("a study with one restitution has nothing to compare")
         draw_to(lambda: campaign_picture(study.opened), target)
     else:
         from rocking.campaigns.jobs import export

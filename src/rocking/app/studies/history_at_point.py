@@ -72,7 +72,7 @@ class HistoryPlace:
         for name, size in sizes.items():
             if not 0 <= at[name] < size:
                 raise NotFound(
-                    "{name} must be a number from 0 to {largest}, got {index}",
+                    "{name} must be in 0 ... {largest}, got {index}",
                     name=name,
                     largest=size - 1,
                     index=at[name],
@@ -207,13 +207,11 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
         **Answer({"stored": stored(study, place), "answer": None, "difference": None}).plain(), "inputs": None,
     }  # fmt: skip
     if "friction" in study.job.problem.settings.stated:
-        return cell | {
-            "note": "with friction the page has the study's numbers alone; ask `rocking simulate --friction`"
-        }
+        return cell | {"note": "time histories with friction are not shown here; use `rocking simulate --friction`"}
     try:
         variation = Variation.of(study, place)
         if isinstance(variation.restitution, float) and not np.isfinite(variation.restitution):
-            return cell | {"note": "the coefficient of this cell would create energy: nothing was computed"}
+            return cell | {"note": "the coefficient of this cell would create energy; it was not computed"}
         motion, source, scale = _motion_at(study, place.index["motion"], variation.stretch)
         problem, response = _responded(study, place, variation, motion, scale * variation.scale)
     except InvalidValueError as error:
@@ -262,7 +260,7 @@ def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
             "that is no pulse; the response is the one with the stretched motion"
         )
     if variation.rotation or variation.angular_velocity:
-        return "with a motion, inputs state no initial rotation and no initial angular velocity"
+        return "inputs with a motion cannot contain an initial rotation or an initial angular velocity"
     if variation.choice is None:
-        return "the coefficient is drawn at every impact, by the number of the history, which inputs do not have"
+        return "the coefficient is sampled at every impact, which inputs cannot contain"
     return ""

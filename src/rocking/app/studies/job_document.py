@@ -73,7 +73,7 @@ class JobDocument:
         for name, count in {"regions of bodies": sum(map(_checked_regions, document.bodies)), **counts}.items():
             if count > most[name]:
                 raise TooLarge(
-                    "the job has {count} {items}; a page takes up to {limit}, `rocking campaign` any number",
+                    "the job has {count} {items}; {limit} are allowed here, `rocking campaign` has no limit",
                     count=count, items=name, limit=most[name],
                 )  # fmt: skip
 
@@ -123,12 +123,12 @@ def _check_extent(tables: Any) -> None:
         if count > _MOST_VALUES:
             raise InvalidValueError(
                 "{parameter} must have at most {limit} values, got more", parameter="job", limit=_MOST_VALUES,
-                hint="write ranges for lists",
+                hint="use ranges instead of lists",
             )  # fmt: skip
         if depth >= _DEEPEST:
             raise InvalidValueError(
                 "{parameter} must be nested at most {limit} deep, got more", parameter="job", limit=_DEEPEST,
-                hint="as job files are",
+                hint="use the structure of a job file",
             )  # fmt: skip
 
 
@@ -138,15 +138,15 @@ def _refuse_files(tables: dict[str, Any]) -> None:
         for key in each if isinstance(each, dict) else ():
             if key in _FILES:
                 raise InvalidValueError(
-                    "body: {key} names a file, which a page cannot do", key=key, hint="upload the file instead"
+                    "body: {key} names a file, which is not allowed here", key=key, hint="upload the file instead"
                 )
             if key not in _BODY_KEYS:
-                raise InvalidValueError("body: a body on a page has no key {key!r:.60}", key=key)
+                raise InvalidValueError("body: unknown key {key!r:.60}", key=key)
     for word in chain.from_iterable(levels(tables.get("restitution"))):
         if isinstance(word, str) and file_of(word.strip()):  # it would be run
             raise InvalidValueError(
-                "restitution: {model!r:.60} names a file, which a page cannot do", model=word,
-                hint="see rocking campaign",
+                "restitution: {model!r:.60} names a file, which is not allowed here", model=word,
+                hint="use rocking campaign",
             )  # fmt: skip
     for table in _listed(tables.get("motions")):
         if isinstance(table, dict):
@@ -157,12 +157,12 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
     """Refuse whatever of a motion may name a file; keys that no motion has are refused later on, in other words."""
     if table.get("files") is not None:
         raise InvalidValueError(
-            "motions.files is for files by name; write one table of motions per unit, with the hashes of its records"
+            "motions.files is not allowed here; write one table of motions per unit, with the hashes of its records"
         )
     for key in sorted(MotionTable.model_fields.keys() & table.keys() - MOTION_KEYS - {"records"}):
         raise InvalidValueError(
-            "{parameter} names a file, which a page cannot do", parameter=f"motions.{key}",
-            hint="upload one that has both components",
+            "{parameter} names a file, which is not allowed here", parameter=f"motions.{key}",
+            hint="upload one file with both components",
         )  # fmt: skip
     for name in _listed(table.get("records")):
         if name is not None and not is_hash(name):

@@ -60,8 +60,8 @@ class StudyManager:
         count = document.most
         if count > self._limits.histories:
             raise TooLarge(
-                "the study has {count} histories; this server takes up to {limit}: fewer values, or `rocking "
-                "campaign` on the command line, which has no limit", count=count, limit=self._limits.histories,
+                "the study has {count} simulations, {limit} are allowed; use fewer values, or `rocking campaign` on "
+                "the command line", count=count, limit=self._limits.histories,
             )  # fmt: skip
         words = name or document.document.campaign.name
         return self.queue.enter(lambda: self._new_study(words, document, project), brought=brought).folder.id
@@ -86,8 +86,9 @@ class StudyManager:
         facts = self.get(study)
         if facts["state"] != DONE:
             raise Refused(
-                "the study is {state}, not done: {done} of {count} histories are finished", state=facts["state"],
-                done=facts["histories_done"], count=facts["histories"], hint="its results can be seen when all are",
+                "the study is {state}: {done} of {count} simulations are finished", state=facts["state"],
+                done=facts["histories_done"], count=facts["histories"], hint="results are available when all "
+                                                                             "simulations are finished",
             )  # fmt: skip
         return self.queue.study(study).folder
 
@@ -101,11 +102,11 @@ class StudyManager:
             hosted = self.queue.study(study)
             if hosted.meta.state not in {WAITING, RUNNING}:
                 raise Refused(
-                    "the study is {state}: only one that waits or runs can be cancelled", state=hosted.meta.state
+                    "the study is {state}; only a queued or running study can be cancelled", state=hosted.meta.state
                 )
             hosted.cancelled, process = True, hosted.process
             if process is None:
-                hosted.become(CANCELLED, "cancelled before it began")
+                hosted.become(CANCELLED, "cancelled before the start")
         if process is not None:
             process.stop()
             self.queue.end(hosted, process)
@@ -120,7 +121,7 @@ class StudyManager:
                 if hosted.unreadable:
                     raise Refused(hosted.meta.message)
                 if hosted.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
-                    raise Refused("the study is {state}: there is nothing to resume", state=hosted.meta.state)
+                    raise Refused("the study is {state}; it cannot be resumed", state=hosted.meta.state)
                 hosted.cancelled = False
                 hosted.become(WAITING)
                 return hosted
@@ -151,7 +152,7 @@ class StudyManager:
         except OSError as error:
             if error.errno not in _FULL:
                 raise
-            raise NoRoom("the disk is full, and nothing was kept of the study; make room and send it again") from error
+            raise NoRoom("the disk is full and the study was not stored; free disk space and send it again") from error
         return HostedStudy(folder, meta)
 
 

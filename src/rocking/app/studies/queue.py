@@ -12,7 +12,7 @@ from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITI
 LOOK = 0.2  # time between looks at what runs [s]
 SAVE_AGAIN = 2.0  # time after which a state is written again that the disk did not take [s]
 _LOG = logging.getLogger(__name__)
-GONE = "there is no such study; it may have been deleted"
+GONE = "study not found; it may have been deleted"
 
 
 class StudyQueue:
@@ -39,7 +39,9 @@ class StudyQueue:
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
             if waiting >= self._longest and not brought:
-                raise Busy("{count} studies wait already", count=waiting, hint="try again when one is done", seconds=30)
+                raise Busy(
+                    "{count} studies are queued", count=waiting, hint="try again when a study is finished", seconds=30
+                )
             self._entering += 1
         try:
             study = make()
@@ -112,7 +114,7 @@ class StudyQueue:
                 self.end(study, process)
             elif study.meta.state == WAITING:
                 study.become(
-                    INTERRUPTED, "the server was closed before it began; it begins when the server starts again"
+                    INTERRUPTED, "the server was closed before the study started; it starts with the next server"
                 )
         self.publish()
 

@@ -168,11 +168,11 @@ class HostedStudy:
         if self.look():
             self.become(DONE)
         elif self.cancelled:
-            self.become(CANCELLED, "cancelled; what was finished is safe, resume it")
+            self.become(CANCELLED, "cancelled; finished simulations are kept, resume the study")
         elif closed:
             self.become(
                 INTERRUPTED,
-                "the server was closed; what was finished is safe, and it goes on when the server starts again",
+                "the server was closed; finished simulations are kept, and the study continues with the next server",
             )
         else:
             self.become(FAILED, process.refusal())

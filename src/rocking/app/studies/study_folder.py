@@ -117,7 +117,7 @@ class StudyFolder:
             try:
                 shutil.copyfile(source, target)
             except FileNotFoundError as error:
-                raise NotFound("a record of the job was deleted meanwhile; upload it again") from error
+                raise NotFound("a record of the job was deleted; upload the record again") from error
         return name
 
     def write(self, meta: Meta) -> None:
@@ -148,7 +148,7 @@ class StudyFolder:
             complete = self.status()[1]
         except (RockingError, OSError):
             complete = False
-        message = "" if complete else "the server ended before the study did; what was finished is safe, and it goes on"
+        message = "" if complete else "the server was closed; finished simulations are kept, and the study continues"
         meta = replace(meta, state=DONE if complete else WAITING, message=message)
         with suppress(OSError):  # a full disk: the next start finds out again
             self.write(meta)

@@ -82,7 +82,7 @@ def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
         JobDocument.of(map_job(motions=[{"records": [SHA], "vertical_file": file}]))
     with pytest.raises(InvalidValueError, match=r"motions\.x names a file, which a page cannot do"):
         JobDocument.of(map_job(motions=[{"x": {"record": file}, "y": {"record": file}}]))
-    with pytest.raises(InvalidValueError, match=r"motions\.files is for files by name; write one table of motions per"):
+    with pytest.raises(InvalidValueError, match=r"motions\.files is not allowed here; write one table of motions per"):
         JobDocument.of(map_job(motions=[{"records": [SHA], "files": {SHA: {"units": "g"}}}]))
 
 
@@ -95,7 +95,7 @@ def test_only_keys_that_are_known_to_name_no_file_are_taken(map_job, monkeypatch
     monkeypatch.setattr(job_document, "MOTION_KEYS", MOTION_KEYS - {"pga"})
     with pytest.raises(InvalidValueError, match=r"motions\.pga names a file"):
         JobDocument.of(map_job(motions=motion))
-    with pytest.raises(InvalidValueError, match="body: a body on a page has no key 'mesh'"):
+    with pytest.raises(InvalidValueError, match="body: unknown key 'mesh'"):
         JobDocument.of(map_job(body={"units": "m", "mesh": "/etc/passwd"}))
 
 

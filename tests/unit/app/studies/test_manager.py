@@ -124,7 +124,7 @@ def test_too_many_histories_are_refused_with_the_number(tmp_path, map_job, idle)
     """The limit itself is allowed, one more is not; refinement counts, and nothing is made of what is refused."""
     manager = idle(histories=72)
     manager.create(None, map_job())
-    with pytest.raises(TooLarge, match="98 histories; this server takes up to 72"):
+    with pytest.raises(TooLarge, match="98 simulations, 72 are allowed"):
         manager.create(None, map_job(7))
     refined = map_job(restitution={"model": "ked"})
     refined["map"]["refine"] = 12
@@ -154,7 +154,7 @@ def test_the_disk_has_a_limit(tmp_path, map_job, idle):
     """A study whose results do not fit is refused with both sizes, before anything is written."""
     manager = idle(studies_bytes=20_000)
     manager.create(None, map_job())
-    with pytest.raises(TooLarge, match=r"0\.2 MB, and there is room for 0\.0 MB"):
+    with pytest.raises(TooLarge, match=r"0\.2 MB, 0\.0 MB are free"):
         manager.create(None, map_job(30))
     assert len(list((tmp_path / "studies").iterdir())) == 1
 
@@ -216,7 +216,7 @@ def test_what_is_over_cannot_be_cancelled(manager, map_job, until):
     until(manager, study, "done")
     with pytest.raises(Refused, match="done"):
         manager.cancel(study)
-    with pytest.raises(Refused, match="nothing to resume"):
+    with pytest.raises(Refused, match="cannot be resumed"):
         manager.resume(study)
 
 
