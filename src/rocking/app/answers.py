@@ -24,14 +24,14 @@ from rocking.quantities import quantity as quantity_of
 
 
 class MessageData(BaseModel):
-    """A text with named fields, and what fills them."""
+    """A text with named fields and their values."""
 
     model_config = ConfigDict(extra="forbid")
 
     text: str
     facts: dict[str, Any]
     many: str = Field("", description="the text where the fact count is not 1")
-    context: str = Field("", description="what tells it from a message of the same text")
+    context: str = Field("", description="context that separates it from a message with the same text")
 
 
 Point = tuple[float, float]  # x and y [m]
@@ -59,7 +59,7 @@ MEDIA_TYPES = {
     "xml": "application/xml",
     "zip": "application/zip",
 }
-"""What a browser is told of a file, by the ending of its name; all of them are saved, none is shown as a page."""
+"""Media types by file extension; browsers save these files and never show them as a page."""
 
 FILE_SENT: dict[str, Any] = {
     "requestBody": {
@@ -67,7 +67,7 @@ FILE_SENT: dict[str, Any] = {
         "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
     }
 }
-"""What the schema of an endpoint says that takes a file."""
+"""Request body of an endpoint that accepts a file."""
 
 _ERRORS = {
     400: "The request is malformed.",
@@ -107,12 +107,12 @@ def _plain(value: Any) -> Any:
 
 
 def error_answer(status: int, kind: str, message: str) -> JsonAnswer:
-    """Return an error of which only a sentence is known."""
+    """Return an error that has a sentence only."""
     return JsonAnswer({"error": {"kind": kind, "message": message}}, status_code=status)
 
 
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
-    """Return an error of this package as the client is told it, with Retry-After where another try makes sense."""
+    """Return an error of this package as JSON, with Retry-After if a retry is useful."""
     own = error if isinstance(error, Refused) else None
     kind = kind_of_status(own.status) if own else kind_of(error)
     told = {"kind": kind, **error.data()} | ({"needs": list(own.needs)} if own and own.needs else {})
@@ -125,17 +125,17 @@ def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
 
 
 def attachment(data: bytes, name: str) -> Response:
-    """Return an answer that a browser saves as a file and never shows as a page; its type is that of the ending."""
+    """Return a response that browsers save as a file; the extension sets its media type."""
     return Response(data, media_type=MEDIA_TYPES[name.rpartition(".")[2]], headers=attachment_headers(name))
 
 
 def attachment_headers(name: str) -> dict[str, str]:
-    """Return what makes a browser save an answer, under a name that is harmless on every system."""
+    """Return headers that make browsers save a response under a safe file name."""
     return {"Content-Disposition": f'attachment; filename="{safe_name(name)}"', "X-Content-Type-Options": "nosniff"}
 
 
 class AnswerShape(BaseModel):
-    """A table of an answer: it has these keys and no others."""
+    """A table of an answer, without further keys."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -185,31 +185,31 @@ def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) 
 
 Messages: Any = (
     dict[str, MessageData],
-    Field({}, description="sentences of this answer as messages, by the sentence"),
+    Field({}, description="messages of this answer, by sentence"),
 )
 Units: Any = (dict[str, str], "unit of every number, by the name of its quantity")
 
 
 def answered(kind: Any, words: str, status: int = 200) -> dict[int | str, dict[str, Any]]:
-    """Return what an endpoint declares of an answer in JSON."""
+    """Return the declaration of a JSON answer of an endpoint."""
     return {status: {"model": kind, "description": words}}
 
 
 def answered_with_file(words: str, *endings: str) -> dict[int | str, dict[str, Any]]:
-    """Return what an endpoint declares of a file that it answers with; endings: of the names that it may have."""
+    """Return the declaration of a file that an endpoint returns; endings: extensions of its names."""
     name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
     file = {"schema": {"type": "string", "format": "binary"}}
     content = {MEDIA_TYPES[ending].partition(";")[0]: file for ending in endings}
     return {200: {"description": words, "headers": {"Content-Disposition": name}, "content": content}}
 
 
-Deleted: Any = shape("Deleted", "What is no longer there.", deleted=(str, "its name in addresses"))
+Deleted: Any = shape("Deleted", "Identifier of the deleted item.", deleted=(str, "identifier in URLs"))
 QuantityAnswer: Any = shape(
     "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, words=str, unit=str
 )
 PlaceData: Any = shape(
     "PlaceData",
-    "A table, a file or a step with what is refused.",
+    "A table, file or step with an invalid input.",
     name=str,
     kind=Literal["table", "key", "file", "step"],
     number=(int, "of the line or step, from 1; 0 for none"),
@@ -225,23 +225,23 @@ AllowedData: Any = shape(
 )
 Refusal: Any = shape(
     "Refusal",
-    "Why something is refused; all beside the message where more than a sentence is known.",
+    "Reason of a refusal; further keys are filled if known.",
     message=(str, "in one sentence"),
     parameter=(str, Field("", description="path of the refused parameter in the request, such as body.block.width")),
     value=(Any, Field(None, description="the refused value, in the unit of the request; as text if it is no number")),
     allowed=(AllowedData | None, Field(None, description="the allowed values")),
     unit=(str, Field("", description="unit of the allowed values")),
     text=(str, Field("", description="the sentence without place and hint, with named fields")),
-    facts=(dict[str, Any], Field({}, description="what fills the fields")),
-    hint=(MessageData | None, Field(None, description="what to do about it, or the likely cause")),
+    facts=(dict[str, Any], Field({}, description="values of the fields")),
+    hint=(MessageData | None, Field(None, description="remedy or likely cause")),
     places=(list[PlaceData], []),
     more=(int, Field(0, description="number of further errors")),
 )
-ErrorDetail: Any = shape("ErrorDetail", "What went wrong.", Refusal, kind=Kind, needs=(list[str], []))
+ErrorDetail: Any = shape("ErrorDetail", "An error.", Refusal, kind=Kind, needs=(list[str], []))
 
 
 class ErrorAnswer(BaseModel):
-    """Every error: one kind, one sentence."""
+    """An error: kind and sentence."""
 
     model_config = ConfigDict(
         extra="forbid",
@@ -254,14 +254,14 @@ class ErrorAnswer(BaseModel):
 ERRORS: dict[int | str, dict[str, Any]] = {
     status: {"model": ErrorAnswer, "description": words} for status, words in _ERRORS.items()
 }
-"""What every endpoint may answer besides what it is for."""
+"""Error responses of every endpoint."""
 
 
 def describe_api(app: FastAPI) -> None:
-    """Let the schema of the API say which calls need the key, and say once what an error looks like."""
+    """Add the key of each call and the form of errors to the schema of the API."""
     plain = app.openapi
     key = {"type": "http", "scheme": "bearer"}
-    key["description"] = "The key in the file `api-key` of the data folder, new at every start."
+    key["description"] = "The key from the file `api-key` in the data folder. Each start writes a new key."
 
     def openapi() -> dict[str, Any]:
         schema = plain()
@@ -269,7 +269,7 @@ def describe_api(app: FastAPI) -> None:
         components["securitySchemes"] = {"key": key}
         content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
         errors = {status: {"description": words, "content": content} for status, words in _ERRORS.items()}
-        again = {"schema": {"type": "integer"}, "description": "when another try makes sense [s]"}
+        again = {"schema": {"type": "integer"}, "description": "waiting time before the next request [s]"}
         errors[429]["headers"] = {"Retry-After": again}
         components["responses"] = {f"Error{status}": error for status, error in errors.items()}
         for path, item in schema["paths"].items():

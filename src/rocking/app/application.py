@@ -58,7 +58,7 @@ own address. Errors are `{{"error": {{"kind", "message", ...}}}}`: `message` is 
 
 
 def refused_input(error: ValidationError | RequestValidationError) -> RockingError:
-    """Return the first error of an input as one of ours."""
+    """Return the first validation error as an error of this package."""
     errors: list[dict[str, Any]] = [dict(each) for each in error.errors()]
     for each in errors:
         if each["loc"] and each["loc"][0] in {"body", "query", "path", "header"}:
@@ -100,7 +100,7 @@ def _read_own_models() -> None:
 
 
 async def _own_models() -> None:
-    """Know the models of the owner's file as it is now; one that is no longer sound is refused."""
+    """Load the current restitution models of the user; invalid models are refused."""
     if os.environ.get("ROCKING_MODELS"):
         await run_in_threadpool(_read_own_models)
 
@@ -111,7 +111,7 @@ async def _own_models_if_sound() -> None:
 
 
 def create_app(settings: ServerSettings) -> FastAPI:
-    """Return the application: every page and every endpoint, behind the gate."""
+    """Return the application with all pages and endpoints behind the gate."""
     app = FastAPI(
         title="rocking",
         version=__version__,

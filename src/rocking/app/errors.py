@@ -1,4 +1,4 @@
-"""What goes wrong, as the client is told it: one status, one kind, one sentence, never a traceback."""
+"""Errors for clients: status, kind and sentence, without a traceback."""
 
 import os
 import shutil
@@ -33,7 +33,7 @@ _BY_STATUS = {
 
 
 class Refused(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
-    """The server itself refuses, with a status of HTTP; seconds: time after which another try makes sense [s]."""
+    """A refusal with an HTTP status; seconds: waiting time before a retry [s]."""
 
     status = 422
 
@@ -59,19 +59,19 @@ class NotFound(Refused):
 
 
 class Conflict(Refused):
-    """Somebody else was quicker."""
+    """Another client changed the object first."""
 
     status = 409
 
 
 class TooLarge(Refused):
-    """More is asked than one server takes."""
+    """The request exceeds a limit of the server."""
 
     status = 413
 
 
 class Busy(Refused):
-    """Too much is asked at once."""
+    """Too many requests at the same time."""
 
     status = 429
 
@@ -83,18 +83,18 @@ class NoRoom(Refused):
 
 
 def kind_of(error: RockingError) -> str:
-    """Return the kind of an error that is not the server's own."""
+    """Return the kind of an error of the library."""
     return next(kind for family, kind in _KINDS if isinstance(error, family))
 
 
 def kind_of_status(status: int) -> str:
-    """Return the kind of an error of which only the status is known."""
+    """Return the kind of an error from its HTTP status."""
     return _BY_STATUS.get(status, "internal" if status >= 500 else "invalid-value")
 
 
 @contextmanager
 def room_on_disk() -> Iterator[None]:
-    """Turn what a disk says that takes nothing more into a sentence for whoever sent the file."""
+    """Raise `NoRoom` for errors of the disk."""
     try:
         yield
     except OSError as error:  # its own words name files of the server
@@ -105,7 +105,7 @@ def room_on_disk() -> Iterator[None]:
 
 
 def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
-    """Refuse what needs more room than there is, or than all of its kind may take together [byte]."""
+    """Refuse results larger than the free space of the disk or of their quota [bytes]."""
     used = 0
     for where, _, names in os.walk(folder):
         for name in names:

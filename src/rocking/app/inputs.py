@@ -1,4 +1,4 @@
-"""Everything that a user chose: body, motion, restitution, response, settings; its caps; and what is made of it."""
+"""Inputs of a user: body, motion, restitution, response, settings; their limits and conversions."""
 
 import re
 import sys
@@ -52,11 +52,11 @@ CAPS = {
     "drawing_bytes": MOST_DRAWING_BYTES,
     "drawing_entities": MOST_ENTITIES,
 }
-"""What one body and one question may hold, as the API tells it."""
+"""Limits of one body and one request."""
 
 Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of an uploaded record")]
 Points = Annotated[int, Field(ge=10, le=2000)]
-"""Over how many dots curves are drawn; each keeps the lowest and the highest value of every curve."""
+"""Number of pixels of a curve; each pixel keeps the lowest and the highest value."""
 
 LONGEST = 4 << 20  # bytes of a TOML file that is read
 _LIGHTEST = 1e-200  # products of smaller masses and moments leave the range of numbers that have all their digits
@@ -65,7 +65,7 @@ _LARGEST = 2**63
 
 
 class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made of the fields of a block
-    """A unit of length, and one table that says what the body is, or width and height."""
+    """A unit of length, and one table of the body, or width and height."""
 
     @model_validator(mode="before")
     @classmethod
@@ -97,12 +97,12 @@ class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made
         return self
 
     def table(self) -> dict[str, Any]:
-        """Return the body as a table of a body file or job file; what was not given is left out."""
+        """Return the body as a table of a body file or job file, without unset keys."""
         return self.model_dump(exclude_none=True, exclude_unset=True)
 
 
 def _refuse_subnormal(value: Any, key: str = "") -> None:
-    """Refuse numbers that have lost digits already: what is computed from them would have none that are right."""
+    """Refuse subnormal numbers, which have lost digits."""
     match value:
         case float() if 0.0 < abs(value) < sys.float_info.min:
             least = f"{sys.float_info.min:.3g}"
@@ -119,13 +119,13 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
 
 
 def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
-    """Refuse more of something than one answer takes."""
+    """Refuse a count above a limit."""
     if count > most:
         raise TooLarge(what + ", got {count}", most=most, count=count, hint=way_out)
 
 
 def check_size(table: BodyFile) -> None:
-    """Refuse a body that is too large, before anything is made of it."""
+    """Refuse a body that is too large, before it is built."""
     regions, holes, vertices = _polygons(table)
     refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "merge regions of equal density")
     refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "remove small holes")
@@ -136,7 +136,7 @@ def check_size(table: BodyFile) -> None:
 
 
 def check_file(content: bytes, name: str) -> None:
-    """Refuse a body file that holds far more than a body may have, before it is read."""
+    """Refuse a body file that is far too large, before it is read."""
     drawing = name.lower().endswith(".dxf")
     if drawing:
         way_out = "save the outline alone in a separate drawing"
@@ -148,7 +148,7 @@ def check_file(content: bytes, name: str) -> None:
 
 
 def check_record(content: bytes) -> None:
-    """Refuse a record file of far more numbers than a record has, before any of them is read."""
+    """Refuse a record file with too many numbers, before it is read."""
     if _MINISEED.match(content):
         # what the headers announce, and not one sample fewer than are decoded
         check_samples(
@@ -163,7 +163,7 @@ def check_record(content: bytes) -> None:
 
 
 def _announced(record: bytes) -> int:
-    """Return how many samples the header of a miniSEED record announces."""
+    """Return the number of samples in the header of a miniSEED record."""
     order: Literal["big", "little"] = "big" if 1900 <= int.from_bytes(record[20:22], "big") <= 2200 else "little"
     return int.from_bytes(record[30:32], order)
 
@@ -175,7 +175,7 @@ def check_samples(count: int) -> None:
 
 
 def size_of(table: BodyFile) -> int:
-    """Return how much there is to compute with."""
+    """Return the number of vertices and mass points."""
     return _polygons(table)[-1] + (len(table.mass_points.points) if table.mass_points else 0)
 
 
@@ -201,7 +201,7 @@ def _forward(window: tuple[float, float]) -> tuple[float, float]:
 
 
 Window = Annotated[tuple[FiniteFloat, FiniteFloat], Field(strict=False), AfterValidator(_forward)]
-"""The part of the time that is drawn [s]."""
+"""Time window of the curves [s]."""
 
 
 _BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
@@ -214,7 +214,7 @@ _INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"mo
 
 
 def _shown(example: dict[str, Any]) -> ConfigDict:
-    """Return what puts an example into the schema; FastAPI takes no table that is built only when it is read."""
+    """Return a configuration with an example for the schema."""
     return ConfigDict(json_schema_extra={"examples": [example]}, defer_build=False)
 
 
@@ -222,7 +222,7 @@ MOTION_KEYS = frozenset({
     "pulse", "synthetic", "count", "member", "format", "units", "time_step", "component", "vertical", "scale", "seed",
     "pga", "pgv", "skip",
 })  # fmt: skip
-"""Keys of a motion that a request may use; none of them can name a file of the server. Records are hashes."""
+"""Keys of a motion that a request may use; none names a file of the server. Records are hashes."""
 
 
 class MotionInput(OneMotionTable):
@@ -245,7 +245,7 @@ class MotionInput(OneMotionTable):
 
 
 class Inputs(ResponseTables):
-    """Everything that a user chose: a body, and what else was given so far."""
+    """Inputs of a user: a body and optional tables."""
 
     model_config = _shown(_INPUTS)
 
@@ -269,7 +269,7 @@ class Inputs(ResponseTables):
 
 
 class ResponseInputs(Inputs):
-    """Inputs that have a response: something moves the body."""
+    """Inputs with a motion or a free start."""
 
     @model_validator(mode="after")
     def _moves(self) -> "ResponseInputs":
@@ -278,7 +278,7 @@ class ResponseInputs(Inputs):
 
 
 class ResponseRequest(ResponseInputs):
-    """Inputs that have a response, and how its curves are drawn."""
+    """Inputs with a motion or a free start, and the resolution of the curves."""
 
     model_config = _shown(_INPUTS)
 
@@ -287,7 +287,7 @@ class ResponseRequest(ResponseInputs):
 
 
 class BodyRequest(JobTable):
-    """A body, and the gravity under which it stands."""
+    """A body and gravity."""
 
     model_config = _shown({"body": _BODY})
 
@@ -296,7 +296,7 @@ class BodyRequest(JobTable):
 
 
 class ImpactRequest(BodyRequest):
-    """A body, and the foot on which it lands."""
+    """A body and the impact foot."""
 
     model_config = _shown({"body": _BODY, "foot": "both"})
 
@@ -304,7 +304,7 @@ class ImpactRequest(BodyRequest):
 
 
 class MotionRequest(JobTable):
-    """A motion, and how much of it."""
+    """A motion, and the resolution and window of its curves."""
 
     model_config = _shown({"motion": _MOTION})
 
@@ -316,7 +316,7 @@ class MotionRequest(JobTable):
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """Return the tables of a TOML text that somebody sent; every whole number in it fits into 64 bits."""
+    """Return the tables of a TOML text; integers fit into 64 bits."""
     if len(text) > LONGEST:
         raise Refused(
             "a TOML file may have up to {limit} MiB, got {size:.1f}", limit=LONGEST >> 20, size=len(text) / 2**20
@@ -340,7 +340,7 @@ def parsed_toml(text: str) -> dict[str, Any]:
 
 
 def levels(value: Any) -> Iterator[list[Any]]:
-    """Return what lies in tables and lists, level by level from the outside in: no recursion, however deep it is."""
+    """Yield the values of nested tables and lists by level, without recursion."""
     level = [value]
     while level:
         yield level
@@ -358,18 +358,18 @@ _SYNTHETIC: Remembered[Motion] = Remembered(16)
 
 
 def problem_from(inputs: Inputs, records: "RecordStore") -> ResponseProblem:
-    """Return what a user asked, with everything read that it needs."""
+    """Return the response problem of inputs, with its files read."""
     motion = None if inputs.motion is None else motion_from(inputs.motion, records)
     return problem_of(inputs, body_from(inputs.body), motion)
 
 
 def body_from(table: BodyInput) -> Body:
-    """Return a body; one that was asked for lately is not made again."""
+    """Return a body; recent bodies are cached."""
     return _BODIES.get(table.model_dump_json(exclude_none=True, exclude_unset=True), lambda: _body(table))
 
 
 def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
-    """Return a motion, not scaled; one that was asked for lately is not read or made again."""
+    """Return a motion, not scaled; recent motions are cached."""
     if table.record is not None:
         how = (table.format, table.units, table.time_step, table.component, table.vertical)
         return records.motion(table.record, *how, skip=table.skip or 0)

@@ -1,4 +1,4 @@
-"""Words that came from a user, made harmless before they go into a file; and plain values as TOML that people read."""
+"""Safe text from users for files, and plain values as readable TOML."""
 
 import json
 import re

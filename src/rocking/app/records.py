@@ -1,4 +1,4 @@
-"""Uploaded records: folders by the hash of the bytes, a note of the name beside each, and the motions read lately."""
+"""Uploaded records: folders by hash, notes with names, and cached motions."""
 
 import hashlib
 import json
@@ -27,24 +27,24 @@ MOST_RECORDS = 5_000  # files that are kept at once
 
 @dataclass(frozen=True, slots=True)
 class StoredRecord:
-    """A file that is kept."""
+    """A stored file."""
 
-    record: Annotated[str, "SHA-256 of its bytes, by which inputs name it"]
-    file_name: Annotated[str, "the name it was given, made harmless"]
-    bytes: Annotated[int, "its length [bytes]"]
-    uploaded: Annotated[str, "when, in UTC"]
+    record: Annotated[str, "SHA-256 of its bytes; inputs use it as the name of the record"]
+    file_name: Annotated[str, "safe form of its original name"]
+    bytes: Annotated[int, "size [bytes]"]
+    uploaded: Annotated[str, "time in UTC"]
 
 
 _NOTE = TypeAdapter(StoredRecord)
 
 
 def is_hash(word: object) -> bool:
-    """Return whether a word is the SHA-256 of a file."""
+    """Return True if a text is the SHA-256 of a file."""
     return isinstance(word, str) and len(word) == 64 and _DIGITS.issuperset(word)
 
 
 def read_note(note: Path) -> StoredRecord | None:
-    """Return what a note says; None if it is no note that was written here."""
+    """Return the record of a note; None if the note is invalid."""
     try:
         record = _NOTE.validate_json(note.read_bytes(), strict=True)
     except (OSError, ValueError):
@@ -73,7 +73,7 @@ class RecordStore:
         return self._limits.upload_bytes
 
     def add(self, content: bytes, name: str) -> StoredRecord:
-        """Keep a file; the same bytes under another name take that name."""
+        """Store a file; the same bytes under another name are renamed."""
         self.check_upload(content)
         sha = hashlib.sha256(content).hexdigest()
         record = StoredRecord(sha, safe_name(name, "record"), len(content), datetime.now(UTC).isoformat(" ", "seconds"))
@@ -85,7 +85,7 @@ class RecordStore:
         return record
 
     def check_upload(self, content: bytes) -> None:
-        """Refuse a file that will not be kept whatever it holds."""
+        """Refuse a file that is empty or too large."""
         if not content.strip():
             raise RecordError("the file is empty")
         if len(content) > self._limits.upload_bytes:
@@ -94,7 +94,7 @@ class RecordStore:
             )
 
     def stored(self) -> list[StoredRecord]:
-        """Return all files, the latest first."""
+        """Return all files, newest first."""
         with self._lock:
             notes = [note for note in self.folder.glob("*.json") if is_hash(note.stem)]
             records = [record for note in notes if (record := read_note(note)) is not None]
@@ -109,11 +109,11 @@ class RecordStore:
         return record
 
     def path(self, sha: str) -> Path:
-        """Return where a file is, under the name it was given."""
+        """Return the path of a file."""
         return self._place(self.get(sha))
 
     def content(self, sha: str) -> bytes:
-        """Return the bytes of a file, as they were uploaded."""
+        """Return the bytes of a file, checked by hash."""
         path = self.path(sha)
         try:
             content = path.read_bytes()
@@ -141,7 +141,7 @@ class RecordStore:
         *,
         skip: int = 0,
     ) -> GroundMotion:
-        """Return a motion of a file, as `read_motion` reads it; one that was read lately is not read again."""
+        """Return a motion of a file from `read_motion`; recent motions are cached."""
         how = (format, units, time_step, component, vertical, skip)
         with self._lock:
             path = self.path(sha)
@@ -158,7 +158,7 @@ class RecordStore:
         return self.folder / record.record / record.file_name
 
     def _keep(self, record: StoredRecord, content: bytes) -> None:
-        """Write a file and its note, for this user alone; what could not be written leaves nothing behind."""
+        """Write a file and its note with private access; a failure leaves no files."""
         path = self._place(record)
         fresh = not path.parent.exists()
         note = self.folder / f"{record.record}.json"
@@ -176,7 +176,7 @@ class RecordStore:
                 old.unlink()
 
     def _sweep(self) -> None:
-        """Remove what was being written when an earlier server ended."""
+        """Remove unfinished files of an earlier server."""
         for place in (self.folder, *(each for each in self.folder.iterdir() if is_hash(each.name))):
             if not place.is_symlink():
                 remove_unfinished(place)

@@ -1,4 +1,4 @@
-"""The server: data folder, address, socket, link, what is computed ahead, and a clean end."""
+"""The server: data folder, address, socket, link, warm-up and clean shutdown."""
 
 import asyncio
 import contextlib
@@ -37,13 +37,13 @@ _BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
 _TURN = 0.0005
-"""How long a computation may keep the interpreter while light requests wait [s]; Python's own is ten times that."""
+"""Switch interval of threads [s], a tenth of the default of Python."""
 KEY_FILE = "api-key"
 _NOTE = "server.json"
 
 
 def check_host(host: str, *, allow_remote: bool) -> None:
-    """Refuse an address that others reach, unless that is wanted."""
+    """Refuse an address that other computers can reach, unless it is allowed."""
     if host in _EVERYWHERE:
         raise InvalidValueError(
             "{parameter} {host} means all addresses; state the address that other computers use",
@@ -99,7 +99,7 @@ def _bound(host: str, port: int) -> socket.socket:
 
 
 def warm_up(*more: Step) -> None:
-    """Fit the calibration, answer one question of each kind and draw one picture, as far as the extras are there."""
+    """Fit the calibration, compute one response and draw one picture, if the extras are installed."""
     for step in (_impact, _response, _picture, *more):
         with contextlib.suppress(ImportError, RockingError):
             step()
@@ -137,11 +137,11 @@ def _picture() -> None:
 
 
 class FolderInUseError(InvalidValueError):
-    """Another server has the data folder."""
+    """Another server uses the data folder."""
 
 
 class DataFolder:
-    """The data folder of a server, held while it runs."""
+    """The data folder of a server, locked while the server runs."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -171,13 +171,13 @@ class DataFolder:
         self._lock.__exit__()
 
     def publish(self, url: str, key: str) -> Path:
-        """Leave the address for a second start, and the key for scripts in a file that only its owner can read."""
+        """Write the address for a second start and the key for scripts into private files."""
         note = {"url": url, "process": os.getpid(), "machine": socket.gethostname()}
         write_private(self.path / _NOTE, json.dumps(note))
         return write_private(self.path / KEY_FILE, key)
 
     def running(self) -> tuple[str, str] | None:
-        """Return address and key of the server that has the folder; None if it runs elsewhere, or has left none."""
+        """Return address and key of the server that uses the folder; None if unknown or on another machine."""
         try:
             note: dict[str, Any] = json.loads((self.path / _NOTE).read_text(encoding="utf-8"))
             key = (self.path / KEY_FILE).read_text(encoding="utf-8")
@@ -187,7 +187,7 @@ class DataFolder:
 
 
 def write_private(path: Path, text: str) -> Path:
-    """Write a file that only its owner can read, in place of whatever has that name."""
+    """Write a private file; an existing file is replaced."""
     path.unlink(missing_ok=True)  # never through a link that somebody left there
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(handle, "w", encoding="utf-8") as file:
@@ -197,7 +197,7 @@ def write_private(path: Path, text: str) -> Path:
 
 @dataclass(frozen=True)
 class Started:
-    """What a user needs to know of a server that has just started."""
+    """Address and keys of a started server."""
 
     url: str  # address of the page
     token: str  # signs one browser in, once
@@ -211,7 +211,7 @@ class Started:
 
 
 def serve(settings: ServerSettings, started: Callable[[Started], None], *, port: int | None = None) -> None:
-    """Serve until the process is told to stop."""
+    """Serve until the process is stopped."""
     check_host(settings.host, allow_remote=settings.allow_remote)
     with DataFolder(settings.folder) as folder:
         wanted = DEFAULT_PORT if port is None else port
@@ -248,7 +248,7 @@ def _run(
 
 @contextlib.contextmanager
 def _ended_like_ctrl_c() -> Iterator[None]:
-    """Let SIGTERM end the server as Ctrl-C does, with the folder left tidy."""
+    """Make SIGTERM end the server as Ctrl-C does."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -278,7 +278,7 @@ def _config(app: Any) -> uvicorn.Config:
 
 
 class _Server(uvicorn.Server):
-    """Says when the first page can be opened."""
+    """A server that calls back when the first page can be opened."""
 
     def __init__(self, config: uvicorn.Config, tell: Callable[[], None]) -> None:
         super().__init__(config)
@@ -291,7 +291,7 @@ class _Server(uvicorn.Server):
 
 
 class _PatientProtocol(H11Protocol):
-    """Ends a connection on which the head of a request, the first or a later one, does not arrive in time."""
+    """A protocol that closes connections whose request head arrives too late."""
 
     _patience: asyncio.TimerHandle | None = None
 

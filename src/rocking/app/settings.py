@@ -1,4 +1,4 @@
-"""What the server is told when it starts, and what its endpoints share."""
+"""Settings of the server, and the shared state of its endpoints."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,7 +23,7 @@ DEFAULT_PORT = 8765
 
 @dataclass(frozen=True)
 class Limits:
-    """How much one server takes on, and how much it accepts at once."""
+    """Limits of one server."""
 
     upload_bytes: int = 32 * MEBIBYTE  # largest file that is taken [bytes]
     project_bytes: int = 128 * MEBIBYTE  # largest file of a project [bytes]
@@ -46,7 +46,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """What the server is told when it starts."""
+    """Settings of the server at its start."""
 
     host: str = "127.0.0.1"  # address to listen on
     port: int = DEFAULT_PORT  # port to listen on
@@ -64,7 +64,7 @@ class ServerSettings:
 
 @dataclass(frozen=True)
 class AppState:
-    """What the endpoints share."""
+    """Shared state of the endpoints."""
 
     settings: ServerSettings  # what the server was told
     records: "RecordStore"  # uploaded records
@@ -77,5 +77,5 @@ class AppState:
 
 
 def state_of(request: HTTPConnection) -> AppState:
-    """Return what the endpoints share."""
+    """Return the shared state of the endpoints."""
     return cast("AppState", request.app.state.rocking)

@@ -1,4 +1,4 @@
-"""Long computations: a few threads with a short queue, processes that are ended whole, what is computed once."""
+"""Long computations: threads with a short queue, process groups, cached results."""
 
 import asyncio
 import os
@@ -23,7 +23,7 @@ _SMALL = 200  # vertices up to which a body takes a few milliseconds
 
 
 class ComputationQueue:
-    """Threads for long computations, and a queue of bounded length before them."""
+    """Threads for long computations, with a bounded queue."""
 
     def __init__(self, at_once: int, waiting: int) -> None:
         self._threads = ThreadPoolExecutor(at_once, thread_name_prefix="heavy")
@@ -47,12 +47,12 @@ class ComputationQueue:
 
     @property
     def busy(self) -> bool:
-        """Whether something is still being computed."""
+        """True while a computation runs."""
         with self._lock:
             return self._inside > 0
 
     def close(self) -> None:
-        """Start nothing more; what runs ends by itself."""
+        """Start no further computation; running computations end by themselves."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _leave(self, _: Any = None) -> None:
@@ -61,7 +61,7 @@ class ComputationQueue:
 
 
 async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Compute in a thread, with few others at once, so that light requests stay quick."""
+    """Compute in one of a few threads, so that light requests stay fast."""
     queue: ComputationQueue = request.app.state.rocking.heavy
     try:
         return await asyncio.wrap_future(queue.submit(function, *args, **kwargs))
@@ -73,14 +73,14 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
 async def sized(
     request: HTTPConnection, vertices: int, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
 ) -> T:
-    """Compute in a thread; with a large body it waits in the queue with other long computations."""
+    """Compute in a thread; large bodies use the queue of long computations."""
     if vertices <= _SMALL:
         return await run_in_threadpool(function, *args, **kwargs)
     return await heavy(request, function, *args, **kwargs)
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """End a process, which leads a group, and all that it has started."""
+    """End a process group."""
     with suppress(OSError):
         if sys.platform == "win32":
             process.kill()
@@ -89,7 +89,7 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 class Remembered(Generic[T]):
-    """The latest results by key, as long as their sizes together are at most so much; safe for several threads."""
+    """Thread-safe cache of the latest results by key, with a limit of their total size."""
 
     def __init__(self, most: int, size: Callable[[T], int] = lambda result: 1) -> None:
         self._most, self._size = most, size
@@ -97,7 +97,7 @@ class Remembered(Generic[T]):
         self._lock = threading.Lock()
 
     def get(self, key: Hashable, compute: Callable[[], T]) -> T:
-        """Return the result of a key, computed once however many ask; one that cannot be computed is not kept."""
+        """Return the result of a key, computed once; failures are not kept."""
         with self._lock:
             known = self._held.get(key)
             future: Future[T] = Future() if known is None else known
@@ -122,13 +122,13 @@ class Remembered(Generic[T]):
         return future.result()
 
     def known(self, key: Hashable) -> T | None:
-        """Return the result of a key if it is there already."""
+        """Return the cached result of a key, or None."""
         with self._lock:
             future = self._held.get(key)
         return future.result() if future is not None and future.done() else None
 
     def forget(self, concerned: Callable[[Any], bool]) -> None:
-        """Forget what is kept under some keys."""
+        """Remove the results of some keys."""
         with self._lock:
             for key in [key for key in self._held if concerned(key)]:
                 del self._held[key]

@@ -110,8 +110,8 @@ def test_a_drawing_becomes_a_body(client, tmp_path):
 BROKEN = {
     "no unit": ("x.wkt", b"POLYGON ((0 0, 1 0, 1 2, 0 0))", "does not state its unit"),
     "ending": ("x.exe", b"MZ", "the name must end in"),
-    "not TOML": ("x.toml", b"units = ", "is not TOML"),
-    "not text": ("x.toml", b"\xff\xfe", "is not TOML"),
+    "not TOML": ("x.toml", b"units = ", "is not readable TOML"),
+    "not text": ("x.toml", b"\xff\xfe", "is not readable TOML"),
     "names a file": ("x.toml", b'units = "m"\n[[section.region]]\ndxf = "/etc/passwd"\n', "cannot open files by name"),
     "not WKT": ("x.wkt", b"POLYGON", ""),
 }
@@ -183,8 +183,8 @@ def test_info_names_everything_that_can_be_chosen(client):
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ({"width": 0.6, "height": 1.8, "density": 1e-320}, "density is 1e-320, too small"),
-        ({"width": 5e-324, "height": 1.8}, "width is 5e-324, too small"),
+        ({"width": 0.6, "height": 1.8, "density": 1e-320}, "density is 1e-320, below the smallest normal number"),
+        ({"width": 5e-324, "height": 1.8}, "width is 5e-324, below the smallest normal number"),
         ({"block": {"width": 0.6, "height": 1.8, "density": 2e-308}}, "block.density"),
         (
             {"mass_points": {"points": [[0.0, 0.0], [1.0, 1.0]], "masses": [1.0, 5e-324], "feet": [0.0, 1.0]}},

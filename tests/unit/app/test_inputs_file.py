@@ -161,9 +161,9 @@ def test_a_record_is_named_beside_the_file():
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a = ", "not TOML"),
+        ("a = ", "TOML is not readable"),
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = nan", "height"),
-        ("[bodies]\nunits = 'm'", "no table"),
+        ("[bodies]\nunits = 'm'", "unknown table"),
         ("[body]\nfile = '/etc/passwd'", "upload"),
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = '../../x.AT2'", "not stored here"),
         ("[body]\nunits = 'm'\nwidth = 1.0\nheight = 2.0\n[motion]\nrecord = 3", "record"),
@@ -323,7 +323,7 @@ HOSTILE = {
     "cut off": (packed([("response.toml", TOML)])[:-30], 422, "ZIP archive is not readable"),
     "only its first bytes": (b"PK\x03\x04", 422, "ZIP archive is not readable"),
     "empty": (packed([]), 422, "one TOML input file, got 0"),
-    "two inputs": (packed([("a.toml", TOML), ("b.toml", TOML)]), 422, "it has 2"),
+    "two inputs": (packed([("a.toml", TOML), ("b.toml", TOML)]), 422, "got 2"),
     "no text": (packed([("response.toml", b"\xff\xfe")]), 422, "UTF-8"),
     "no record": (packed([("response.toml", TOML)]), 422, "is not stored here"),
     "a record that is none": (packed([("response.toml", TOML), ("wave.txt", b"hello")]), 422, "not recognised"),

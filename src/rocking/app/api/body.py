@@ -1,4 +1,4 @@
-"""POST /api/body and /api/body/file: what a body is, from a document or from a file."""
+"""POST /api/body and /api/body/file: properties of a body, from a document or a file."""
 
 import tomllib
 from pathlib import Path
@@ -26,7 +26,7 @@ router = APIRouter(prefix="/api", tags=["body"])
 
 SideFacts: Any = shape(
     "SideFacts",
-    "What one side of a body decides: it stands on this foot and turns about it.",
+    "Quantities of one side of a body, for rocking about this foot.",
     "slenderness_ratio slenderness_angle semi_diagonal frequency_parameter uplift_acceleration",
 )
 Sides: Any = shape("Sides", "One entry for each foot.", left=SideFacts, right=SideFacts)
@@ -39,7 +39,7 @@ Polygon: Any = shape(
 )
 BodyFacts: Any = shape(
     "BodyFacts",
-    "Mass, centre, feet, and what each side decides.",
+    "Mass, centre of mass, feet, and quantities of each side.",
     "mass moment_of_inertia gravity assumed[] warnings[]",
     kind=(str, "class of the body in Python"),
     centre=Point,
@@ -51,18 +51,18 @@ DrawnBody: Any = shape(
     "A body with the outline that draws it.",
     BodyFacts,
     "masses[] ground",
-    name=(str | None, "what the user calls it"),
+    name=(str | None, "name of the body"),
     outline=(list[Polygon], "polygons; none for mass points and for ellipses"),
     points=list[Point],
     base_contact=list[Point],
 )
-DescribedBody: Any = shape("DescribedBody", "A body, and what a user should know of it.", DrawnBody, units=Units)
+DescribedBody: Any = shape("DescribedBody", "A body with warnings and units.", DrawnBody, units=Units)
 BodyInFile: Any = shape(
-    "BodyInFile", "What a body file holds.", DescribedBody, body=(BodyInput, "the body as it stands in the inputs")
+    "BodyInFile", "The body of a file.", DescribedBody, body=(BodyInput, "the body as a table of inputs")
 )
 
 
-@router.post("/body", summary="What a body is", responses=answered(DescribedBody, "The body."))
+@router.post("/body", summary="Properties of a body", responses=answered(DescribedBody, "The body."))
 async def body(request: Request, inputs: BodyRequest) -> JsonAnswer:
     """Answer with the keys of `body` of `rocking restitution --json`, the polygons that draw it, and its warnings."""
     gravity = inputs.settings.gravity or g
@@ -75,7 +75,7 @@ async def body(request: Request, inputs: BodyRequest) -> JsonAnswer:
 @router.post(
     "/body/file",
     summary="Read a body file",
-    responses=answered(BodyInFile, "The body, and what stands in the inputs for it."),
+    responses=answered(BodyInFile, "The body and its table of inputs."),
     openapi_extra=FILE_SENT,
 )
 async def body_file(
@@ -94,7 +94,7 @@ async def body_file(
 
 
 def described(body: Body, gravity: float, name: str | None) -> Answer:
-    """Return what is shown of a body; gravity: acceleration of gravity [m/s2]."""
+    """Return properties, outline and warnings of a body; gravity: acceleration of gravity [m/s2]."""
     answer = body.answer(gravity)
     warnings = [*answer["warnings"], *(outside_evidence(body, foot) for foot in FEET)]
     warnings = list(dict.fromkeys(sentence for sentence in warnings if sentence))
@@ -107,7 +107,7 @@ def _of_file(content: bytes, name: str, units: str | None, density: float | None
 
 
 def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
-    """Return the body that a file describes; density: of what has none of its own, in a drawing [kg/m3]."""
+    """Return the body of a file; density: default density of regions in a drawing [kg/m3]."""
     name = safe_name(name, "body")
     check_file(content, name)
     if name.lower().endswith(".toml"):

@@ -1,4 +1,4 @@
-"""POST /api/contact-bed: what a bed of springs and dashpots makes of an impact, as one thing of it changes."""
+"""POST /api/contact-bed: impacts on springs and dashpots, over one varied parameter."""
 
 import math
 from typing import Annotated, Any, Literal
@@ -28,7 +28,7 @@ _USUAL: dict[str, tuple[float, float, str]] = {
     "width": (0.05, 5.0, "log"), "points": (3.0, 81.0, "linear"), "amplitude": (0.0, 1e-3, "linear"),
     "seed": (0.0, 39.0, "linear"),
 }  # fmt: skip
-"""From where to where, and how, where nobody says."""
+"""Default range and spacing by parameter."""
 _OPTIONS: dict[str, dict[str, Any]] = {"amplitude": {"shape": "concave"}, "seed": {"amplitude": 1e-4}}
 _OF_LABORATORY = {
     "slenderness", "width", "density", "points", "frequency", "modulus_over_thickness", "damping", "release",
@@ -36,7 +36,7 @@ _OF_LABORATORY = {
 
 
 class ContactBedRequest(JobTable):
-    """A block on a bed of points, and what changes of it."""
+    """A block on a bed of contact points, and the varied parameter."""
 
     model_config = ConfigDict(
         json_schema_extra={"examples": [{"varied": "damping", "slenderness": 4}]}, defer_build=False
@@ -86,29 +86,29 @@ class ContactBedRequest(JobTable):
 
 
 BedResult: Any = shape(
-    "BedResult", "What was found, over what changes.", unit=str, words=str, values=(list[float | None], "in `unit`")
+    "BedResult", "Results over the varied parameter.", unit=str, words=str, values=(list[float | None], "in `unit`")
 )
 ContactBedAnswered: Any = shape(
     "ContactBedAnswered",
-    "What a bed makes of an impact.",
+    "Results of impacts on a contact bed.",
     varied=Varied,
     unit=str,
-    values=(list[float], "of what changes, in `unit`"),
+    values=(list[float], "values of the varied parameter, in `unit`"),
     results=(dict[str, BedResult], "`coefficient` is that of restitution; null where an impact failed"),
-    rigid=(dict[str, list[float]], "the coefficient of the same blocks by models of one instant [-]"),
+    rigid=(dict[str, list[float]], "coefficient of the same blocks by instantaneous models [-]"),
 )
 
 
 @router.post(
-    "/contact-bed", summary="An impact on a contact bed", responses=answered(ContactBedAnswered, "What was found.")
+    "/contact-bed", summary="An impact on a contact bed", responses=answered(ContactBedAnswered, "The results.")
 )
 async def contact_bed(request: Request, inputs: ContactBedRequest) -> JsonAnswer:
-    """Answer with what the impact laboratory of Python finds, and with Housner and KED beside it."""
+    """Return the results of the impact laboratory, compared with Housner and KED."""
     return await heavy(request, answer, inputs)
 
 
 def answer(inputs: ContactBedRequest) -> JsonAnswer:
-    """Return what a bed makes of the impacts of a study."""
+    """Return the results of impacts on a contact bed."""
     from rocking.restitution import Housner, Ked
     from rocking.restitution.bed import Coulomb
     from rocking.studies.impact_laboratory import STUDIES, Laboratory, study

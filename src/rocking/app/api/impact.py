@@ -1,4 +1,4 @@
-"""POST /api/impact: what an impact costs, under every model, against the published measurements."""
+"""POST /api/impact: coefficient of restitution by model, compared with published measurements."""
 
 from typing import Any, Literal
 
@@ -35,7 +35,7 @@ Shares: Any = shape(
 )
 CoefficientFacts: Any = shape(
     "CoefficientFacts",
-    "One model's answer for one body.",
+    "Result of one model for one body.",
     "coefficient coefficient_low coefficient_high impulse_ratio impulse_position energy_loss warnings[]",
     model=(str, "name of the model with its parameters, or calibrated"),
     friction_demand=(float, "friction coefficient below which the foot slips at the impact"),
@@ -46,15 +46,15 @@ Stage: Any = shape(
     "One stage of the impact.",
     name=Literal["before", "stage 1", "stage 2", "after"],
     words=str,
-    energy=(float, "kinetic energy that it leaves"),
-    share=(float, "the same over the energy before the impact"),
+    energy=(float, "kinetic energy after the stage"),
+    share=(float, "kinetic energy after the stage / energy before the impact"),
     velocity=list[Point],
 )
 Stages: Any = shape(
     "Stages",
     "The three stages of KED for an impact at 1 rad/s.",
     "velocity_before velocity_after",
-    points=(list[Point], "where the velocities are given, x and y"),
+    points=(list[Point], "points of the velocities, x and y"),
     stages=list[Stage],
 )
 MeasuredPoint: Any = shape(
@@ -70,10 +70,10 @@ ModelCurve: Any = shape(
     "The coefficient of homogeneous rectangles under one model.",
     "model slenderness_ratio[] coefficient[]",
 )
-ImpactWarning: Any = shape("ImpactWarning", "A sentence, and the models that it is about.", words=str, models=list[str])
+ImpactWarning: Any = shape("ImpactWarning", "A warning and its models.", words=str, models=list[str])
 ImpactAnswered: Any = shape(
     "ImpactAnswered",
-    "What an impact costs, by the foot on which the body lands; of two equal feet only the right one is told.",
+    "Coefficients by impact foot; of two equal feet only the right foot.",
     body=DrawnBody,
     ked_energy_shares=dict[Foot, Shares],
     coefficients=(dict[Foot, list[CoefficientFacts]], "every model, the calibrated default first"),
@@ -89,7 +89,7 @@ ImpactAnswered: Any = shape(
 
 @router.post(
     "/impact",
-    summary="What an impact costs",
+    summary="Coefficients of restitution",
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
 async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
@@ -102,7 +102,7 @@ async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
 
 
 def answer(inputs: ImpactRequest) -> JsonAnswer:
-    """Return what an impact costs; one that was asked for lately is not computed again."""
+    """Return the coefficients of an impact; recent results are cached."""
     key = inputs.model_dump_json(exclude_unset=True), *models().values()
     return _HELD.get(key, lambda: JsonAnswer(_facts(inputs)))
 

@@ -1,4 +1,4 @@
-"""GET /api/info: what there is to choose from."""
+"""GET /api/info: available models, pulses, formats, units and limits."""
 
 import inspect
 import math
@@ -31,10 +31,10 @@ PARAMETERS = {
 
 _DASHES = {"-": [], "--": [6.0, 4.0], "-.": [8.0, 3.0, 2.0, 3.0], ":": [2.0, 3.0]}
 UNLIMITED = "unlimited"  # what stands for an infinite default, which JSON has no number for
-EngineFacts: Any = shape("EngineFacts", "Which engine computes histories.", name=str, instruction_set=str | None)
+EngineFacts: Any = shape("EngineFacts", "Engine of the simulations.", name=str, instruction_set=str | None)
 ParameterFacts: Any = shape(
     "ParameterFacts",
-    "What a model or a pulse takes.",
+    "A parameter of a model or pulse.",
     unit=str,
     words=str,
     default=(
@@ -76,7 +76,7 @@ FormatFacts: Any = shape(
     states_time_step=bool,
     notes=str,
 )
-UnitNames: Any = shape("UnitNames", "Units that may be said.", length=list[str], acceleration=list[str])
+UnitNames: Any = shape("UnitNames", "Allowed units.", length=list[str], acceleration=list[str])
 KindOfStudy: Any = shape(
     "KindOfStudy",
     "A kind of study, and the table that its job has of its own.",
@@ -92,7 +92,7 @@ KeyFacts: Any = shape(
     kind=(str, "text, number, whole number, list of number"),
     usual=(str, "as it is written; empty where there is none"),
     needed=bool,
-    choices=(list[str], "all that may be said, where these are few"),
+    choices=(list[str], "allowed values, if few"),
     ge=(float | None, Field(None, description="lowest value, in the unit of the key")),
     gt=(float | None, Field(None, description="lower limit, not included, in the unit of the key")),
     le=(float | None, Field(None, description="highest value, in the unit of the key")),
@@ -109,10 +109,10 @@ AxisFacts: Any = shape(
 )
 Info: Any = shape(
     "Info",
-    "What there is to choose from.",
+    "Available models, pulses, formats, units and limits.",
     version=str,
     engine=EngineFacts,
-    gravity=(float, "where nothing else is said"),
+    gravity=(float, "default gravity"),
     models=list[ModelFacts],
     pulses=dict[str, PulseFacts],
     families=list[FamilyFacts],
@@ -121,14 +121,14 @@ Info: Any = shape(
     measures=list[QuantityAnswer],
     axes=list[AxisFacts],
     study_kinds=list[KindOfStudy],
-    steps=(dict[str, StepFacts], "that a record goes through"),
+    steps=(dict[str, StepFacts], "processing steps of records"),
     targets=(dict[str, StepFacts], "spectra that records are scaled to"),
-    keys=(dict[str, dict[str, KeyFacts]], "of tables that the page asks for"),
-    limits=(dict[str, float], "how much one server takes; the names say what: bytes [B], seconds [s], counts"),
+    keys=(dict[str, dict[str, KeyFacts]], "keys of input tables"),
+    limits=(dict[str, float], "limits of the server: bytes [B], seconds [s], counts"),
 )
 
 
-@router.get("/info", summary="What there is to choose from", responses=answered(Info, "What there is."))
+@router.get("/info", summary="Available options", responses=answered(Info, "The available options."))
 def info(request: Request) -> JsonAnswer:
     """Answer with version, engine, models, pulses, families of motions, formats, units, measures, axes and limits."""
     from rocking.app.studies.job_document import MOST_MOTIONS
@@ -139,7 +139,7 @@ def info(request: Request) -> JsonAnswer:
 
 @cache
 def _constant(*kinds: type) -> dict[str, Any]:
-    """Return what only another model changes, of these kinds."""
+    """Return the options for these restitution models."""
     from rocking.app.api.contact_bed import ContactBedRequest
     from rocking.app.studies.job_document import launched_kinds
     from rocking.dynamics.plane import fast_engine
@@ -234,7 +234,7 @@ def _dash(linestyle: str | tuple[int, tuple[int, ...]]) -> list[float]:
 
 
 def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
-    """Return what something takes, with unit and usual value."""
+    """Return the parameters of a callable, with unit and default."""
     parameters = {}
     for name, one in inspect.signature(kind).parameters.items():
         unit, words = PARAMETERS.get(name, ("-", name.replace("_", " ")))

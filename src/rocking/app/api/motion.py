@@ -1,4 +1,4 @@
-"""POST /api/motion: what a motion is and how strong."""
+"""POST /api/motion: properties and intensity of a motion."""
 
 from typing import Any, Literal
 
@@ -27,7 +27,7 @@ _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 
 MotionSeries: Any = shape(
     "MotionSeries",
-    "The curves of a motion, as many samples of each, every extreme among them.",
+    "Curves of a motion, with equal numbers of samples and all extremes.",
     "time[] acceleration[]",
     velocity=(list[float], "velocity"),
     displacement=(list[float], "displacement"),
@@ -48,7 +48,7 @@ MeasureFacts: Any = shape(
 )
 MotionAnswered: Any = shape(
     "MotionAnswered",
-    "What a motion is, how strong, and its curves.",
+    "Properties, intensity and curves of a motion.",
     "name duration warnings[] provenance[] peak_ground_acceleration",
     kind=Literal["record", "pulse"],
     format=str | None,
@@ -63,13 +63,13 @@ MotionAnswered: Any = shape(
     intensity=(dict[str, float], "measures by their names, in their units"),
     scale=(float, "factor on the motion, which is in every number here"),
     series=MotionSeries,
-    spectrum=(SpectrumFacts | None, "null where it was not asked for"),
+    spectrum=(SpectrumFacts | None, "null if not requested"),
     measures=list[MeasureFacts],
     units=Units,
 )
 
 
-@router.post("/motion", summary="What a motion is", responses=answered(MotionAnswered, "The motion."))
+@router.post("/motion", summary="Properties of a motion", responses=answered(MotionAnswered, "The motion."))
 async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
     """Answer with the keys of `rocking record show --json` but its spectrum.
 

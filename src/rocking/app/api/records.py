@@ -1,4 +1,4 @@
-"""The uploaded records: POST, GET and DELETE /api/records; what a file holds, and what it leaves open."""
+"""Uploaded records: POST, GET and DELETE /api/records; content and missing data of a file."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -41,7 +41,7 @@ Sha = Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")
 RecordKept: Any = shape_of(StoredRecord, "RecordKept")
 ComponentFacts: Any = shape(
     "ComponentFacts",
-    "One component of a record; null is what the file does not say.",
+    "One component of a record; null for data missing in the file.",
     name=str,
     samples=int,
     unit=(str | None, "of acceleration in the file"),
@@ -51,20 +51,23 @@ ComponentFacts: Any = shape(
 )
 RecordFacts: Any = shape(
     "RecordFacts",
-    "What a record file holds, and what must still be told.",
+    "Content of a record file and its missing data.",
     RecordKept,
     messages=Messages,
     format=(str | None, "null where no format fits"),
     components=list[ComponentFacts],
-    needs=(list[Need], "what must still be told before it can be used"),
-    choices=(dict[Need, list[str]], "what may be told"),
-    message=(str, "why, in a sentence; empty if nothing is missing"),
-    doubts=(str, "what its header states and its data contradict, or what was resampled; empty if nothing"),
+    needs=(list[Need], "data required before use"),
+    choices=(dict[Need, list[str]], "allowed values"),
+    message=(str, "reason as a sentence; empty if no data are missing"),
+    doubts=(str, "contradictions of header and data, or resampling; empty if none"),
 )
 
 
 @router.post(
-    "", summary="Send a record file", responses=answered(RecordFacts, "What the file holds."), openapi_extra=FILE_SENT
+    "",
+    summary="Send a record file",
+    responses=answered(RecordFacts, "The content of the file."),
+    openapi_extra=FILE_SENT,
 )
 async def add_record(
     request: Request,
@@ -85,22 +88,24 @@ async def add_record(
 
 @router.get("", summary="All record files", responses=answered(list[RecordKept], "The files."))
 def list_records(request: Request) -> JsonAnswer:
-    """Answer with what is kept, the latest first."""
+    """Return the stored records, newest first."""
     return JsonAnswer([asdict(one) for one in state_of(request).records.stored()])
 
 
-@router.get("/{record}", summary="What a record file holds", responses=answered(RecordFacts, "What the file holds."))
+@router.get(
+    "/{record}", summary="Content of a record file", responses=answered(RecordFacts, "The content of the file.")
+)
 async def look_at_record(
     request: Request, record: Sha, format: Word = None, units: Word = None, time_step: Step = None
 ) -> JsonAnswer:
-    """Answer with what a kept file holds and what must still be told; time_step where the file states none [s]."""
+    """Return the content and missing data of a stored file; time_step if missing in the file [s]."""
     stated = _stated(format, units, time_step)
     return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, stated))
 
 
-@router.delete("/{record}", summary="Remove a record file", responses=answered(Deleted, "What is no longer kept."))
+@router.delete("/{record}", summary="Remove a record file", responses=answered(Deleted, "The deleted record."))
 def delete_record(request: Request, record: Sha) -> JsonAnswer:
-    """Answer with the hash of what is no longer kept."""
+    """Return the hash of the deleted record."""
     state_of(request).records.delete(record)
     return JsonAnswer({"deleted": record})
 
@@ -121,7 +126,7 @@ def _looked(records: RecordStore, record: str, stated: dict[str, Any]) -> dict[s
 
 
 def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str, Any]:
-    """Return what is found in a file; stated: format, units and time_step [s], None where nobody states them."""
+    """Return the content of a file; stated: format, units and time_step [s], or None."""
     if _STATIONS in content[:4096]:
         raise RecordError(
             ("{name}: a StationXML file describes an instrument and contains no motion; {way}"),
@@ -186,7 +191,7 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
 
 
 def _to_state(error: RecordError) -> str | None:
-    """Return what a file leaves open, by the option that its error asks for; None for any other error."""
+    """Return the missing option of an error; None for any other error."""
     option = error.hint.facts.get("option") if isinstance(error.hint, Message) else None
     return option.name if isinstance(option, Option) else None
 
@@ -204,7 +209,7 @@ def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:
 
 
 def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
-    """Refuse what no ground does: in its unit, or while that is not told in the smallest one."""
+    """Refuse implausible motions, in the unit of the file or in the smallest unit."""
     if max(part.peak for part in record.components) < _QUIETEST:
         raise RecordError("{name}: the acceleration is zero throughout", name=name)
     for part in record.components:

@@ -1,4 +1,4 @@
-"""POST /api/response: how the body rocks under every restitution that was chosen, with curves thinned for drawing."""
+"""POST /api/response: responses for all selected restitutions, with thinned curves."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -34,31 +34,31 @@ router = APIRouter(prefix="/api", tags=["response"])
 MOST_SAMPLES = 500_000  # samples of a response whose forces and energy are computed here
 
 MOST_TOGETHER = 3_000_000
-"""Samples of all responses of one problem, those after an overturning among them: they are computed as well."""
+"""Samples of all responses of one problem, including samples after overturning."""
 
 _NEWTON_STEPS = 8
 
 
 MotionSummaryAnswer: Any = shape(
     "MotionSummaryAnswer",
-    "What moved the ground.",
+    "The ground motion.",
     "name support provenance[] scale duration peak_ground_acceleration peak_ground_velocity warnings[]",
     kind=Literal["record", "pulse"],
 )
 LastState: Any = shape(
     "LastState",
-    "The last state of a body that does not yet rest when the computation ends.",
+    "The last state of a body that still rocks at the end.",
     "time rotation angular_velocity unfinished",
 )
 Impact: Any = shape(
     "Impact",
     "One impact.",
     "time velocity_before velocity_after coefficient",
-    foot=(str, "foot on which the body lands"),
+    foot=(str, "impact foot"),
 )
 ResponseSeries: Any = shape(
     "ResponseSeries",
-    "The curves of a response: one entry of each for every time; every dot of a picture has its extremes.",
+    "Curves of a response with equal lengths; each pixel keeps its extremes.",
     "time[] rotation[] angular_velocity[] kinetic_energy[] potential_energy[] work_of_ground[] energy_lost[] "
     "vertical_force[] ground_acceleration[] ground_displacement[]",
     friction_demand=(list[float | None], "friction demand; null where no friction suffices"),
@@ -67,7 +67,7 @@ ResponseSeries: Any = shape(
 )
 FallAnswer: Any = shape(
     "FallAnswer",
-    "How a fall goes on after the curves end, by the same equation of motion, until a corner meets the ground.",
+    "Fall after the end of the curves, until a corner touches the ground.",
     "time[] rotation[]",
     lying=tuple[float, float],
 )
@@ -100,12 +100,10 @@ ResponseFacts: Any = shape(
     series=ResponseSeries,
     fall=FallAnswer,
 )
-NoResponse: Any = shape(
-    "NoResponse", "Why one of the restitutions has no response.", label=(str, "the restitution"), error=str
-)
+NoResponse: Any = shape("NoResponse", "Reason for a missing response.", label=(str, "the restitution"), error=str)
 VerdictFacts: Any = shape(
     "VerdictFacts",
-    "Whether the choice of the model decides.",
+    "Effect of the choice of the model.",
     decides=bool,
     sentence=str,
     headline=(str, "the restitution model of the first answer, with the reason"),
@@ -113,7 +111,7 @@ VerdictFacts: Any = shape(
 )
 ResponseAnswered: Any = shape(
     "ResponseAnswered",
-    "How the body rocks, under every restitution that was chosen.",
+    "Responses for all selected restitutions.",
     answers=list[ResponseFacts | NoResponse],
     verdict=VerdictFacts,
     body=DrawnBody,
@@ -124,8 +122,8 @@ ResponseAnswered: Any = shape(
 
 @router.post(
     "/response",
-    summary="How the body rocks",
-    responses=answered(ResponseAnswered, "One answer for every restitution, and what they say together."),
+    summary="Response of the body",
+    responses=answered(ResponseAnswered, "One answer per restitution, and a common verdict."),
 )
 async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
     """Answer for every restitution, in the order in which they were chosen, with the keys of `rocking simulate --json`.
@@ -145,7 +143,7 @@ def _answer(inputs: ResponseRequest, records: RecordStore) -> Answer:
 def responses_answer(
     problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
 ) -> Answer:
-    """Return what every restitution makes of one question; window: the part of the time that is drawn [s]."""
+    """Return the responses for all restitutions; window: time window of the curves [s]."""
     assert not isinstance(problem.motion, dict)  # the page has one component
     answers = responses_of(problem)
     verdict = ModelAgreement.of({label: one for label, one in answers.items() if isinstance(one, Response)})
@@ -166,7 +164,7 @@ def responses_answer(
 
 
 def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
-    """Return by label the response with every restitution, or why there is none; at least one is there."""
+    """Return responses by label, or the reason for a missing response; at least one response."""
     answers: dict[str, Response | str] = {}
     samples = 0
     for label, restitution in problem.restitutions.items():
@@ -213,7 +211,7 @@ def _tried(problem: ResponseProblem, restitution: Any) -> Response | str:
 
 
 def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
-    """Return the curves of a response, `ResponseSeries`; window: the part of the time that is drawn [s]."""
+    """Return the curves of a response, `ResponseSeries`; window: time window [s]."""
     whole, curves = _states(response)
     kept = thinned(whole, list(curves.values()), points, window)
     time = whole[kept]
@@ -227,7 +225,7 @@ def response_series(response: Response, points: int, window: tuple[float, float]
 
 
 def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """Return times and curves; what comes after a jump stands the smallest step of time after it."""
+    """Return times and curves; values after a jump are one smallest time step later."""
     dense_output = response.dense_output
     curves = _at_both_ends(response, dense_output)
     jumps = np.any([np.append(True, each[1:, 0] != each[:-1, 1]) for each in curves.values()], axis=0)
@@ -249,7 +247,7 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
 
 
 def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, FloatArray]:
-    """Return every curve at the start and at the end of every interval."""
+    """Return all curves at both ends of every interval."""
     mass, settings = response.body.mass, response.settings
     kinetic, potential, work, lost = energies(dense_output, mass, settings)
     _, vertical, demand = forces(dense_output, settings.gravity)
@@ -267,7 +265,7 @@ def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, Fl
 
 
 def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
-    """Return in which dense_output the body turns round, and where within them, from 0 to 1."""
+    """Return intervals with a reversal of rotation, and its position within, from 0 to 1."""
     at = np.flatnonzero(dense_output.velocity[:, 0] * dense_output.velocity[:, 1] < 0.0)
     c, (start, end) = dense_output.quintics()[at], dense_output.velocity[at].T
     x, power = start / (start - end), np.arange(6)
@@ -279,7 +277,7 @@ def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
 
 
 def _moved(response: Response, time: FloatArray) -> FloatArray:
-    """Return the displacement of the ground, which is taken to stay where the motion ends."""
+    """Return the displacement of the ground, constant after the end of the motion."""
     motion = response.motion
     if motion is None:
         return np.zeros_like(time)

@@ -1,1 +1,1 @@
-"""What a user takes away: pictures, tables, a report, the animation, and the inputs as a file of the command line."""
+"""Exports: pictures, tables, report, animation, and inputs as a file of the command line."""

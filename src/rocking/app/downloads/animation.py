@@ -1,4 +1,4 @@
-"""The animation as files: a page at once, a GIF in a process of its own, since its frames take seconds."""
+"""The animation as a web page, or as a GIF from a separate process."""
 
 import pickle
 import subprocess
@@ -19,7 +19,7 @@ _REFUSED = 3
 
 
 def page_of(response: Response) -> bytes:
-    """Return a web page in which the body rocks."""
+    """Return the animation as a web page."""
     from rocking.plots.animation import page
 
     label = response.parameters.label
@@ -27,7 +27,7 @@ def page_of(response: Response) -> bytes:
 
 
 def gif_of(response: Response) -> bytes:
-    """Return a GIF in which the body rocks, with 150 frames at most."""
+    """Return the animation as a GIF with at most 150 frames."""
     with TemporaryDirectory(prefix="rocking-film-") as folder:
         path = Path(folder) / "animation.gif"
         command = [sys.executable, "-m", "rocking.app.downloads.animation", str(path)]

@@ -1,4 +1,4 @@
-"""Inputs, the record and the commands in one archive, and an archive that somebody sent, unpacked within limits."""
+"""Inputs, record and commands in one archive, and archives of users unpacked within limits."""
 
 import hashlib
 import io
@@ -32,7 +32,7 @@ _ENCRYPTED = 0x1
 
 
 def bundle_of(evaluation: Evaluation) -> bytes:
-    """Return a ZIP file of all that the command line needs for the same result; the same bytes for the same inputs."""
+    """Return a reproducible ZIP file with the inputs of the command line."""
     inputs, record = evaluation.inputs, record_name(evaluation.inputs)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:
@@ -44,7 +44,7 @@ def bundle_of(evaluation: Evaluation) -> bytes:
 
 
 def add_file(archive: ZipFile, name: str, data: bytes) -> None:
-    """Add a file whose time is always the same: the archive then depends on nothing but the inputs."""
+    """Add a file with a fixed time, so that the archive depends on the inputs only."""
     entry = ZipInfo(name, _EARLIEST)
     entry.compress_type, entry.external_attr, entry.create_system = ZIP_DEFLATED, _ORDINARY_FILE, 3
     archive.writestr(entry, data)
@@ -74,7 +74,7 @@ def _words(evaluation: Evaluation, record: str | None) -> str:
 
 
 def inputs_from_file(data: bytes, records: RecordStore) -> Inputs:
-    """Return what a file of inputs says: TOML, or the archive of it and its record."""
+    """Return the inputs of a TOML file, or of an archive with its record."""
     if Archive.begins(data):
         return _inputs_from_archive(Archive(data), records)
     return inputs_from_toml(_text(data), _finder(records))
@@ -100,7 +100,7 @@ def _inputs_from_archive(archive: "Archive", records: RecordStore) -> Inputs:
 
 
 def _record_of(text: str) -> str:
-    """Return the name of the record file that inputs name; empty if they name none."""
+    """Return the record file name in inputs, or an empty text."""
     motion: Any = parsed_toml(text).get("motion")
     word = motion.get("record") if isinstance(motion, dict) else None
     return word if isinstance(word, str) else ""
@@ -114,7 +114,7 @@ def _text(data: bytes) -> str:
 
 
 def _finder(records: RecordStore) -> FindRecord:
-    """Return what finds the hash of an uploaded record, given that or its name: the latest of that name."""
+    """Return a function that finds the hash of a record by hash or name, newest first."""
 
     def find(word: str) -> str | None:
         try:
@@ -127,7 +127,7 @@ def _finder(records: RecordStore) -> FindRecord:
 
 
 class Archive:
-    """The files of a ZIP archive, by their names."""
+    """The files of a ZIP archive by name."""
 
     def __init__(self, data: bytes, most_files: int = MOST_FILES) -> None:
         # before all of them are read; a packed record may hold the four bytes by chance
@@ -150,7 +150,7 @@ class Archive:
 
     @staticmethod
     def begins(data: bytes) -> bool:
-        """Return whether bytes begin as a ZIP archive does."""
+        """Return True if bytes start as a ZIP archive."""
         return data.startswith(_BEGINNINGS)
 
     @property

@@ -1,4 +1,4 @@
-"""Documents to take away: the report, the animation, the inputs as a file, and such a file read again."""
+"""Documents for export: report, animation, input files; and import of input files."""
 
 import datetime
 from functools import partial
@@ -24,15 +24,15 @@ from rocking.reports.response_facts import measures_of
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
-Place = Annotated[int | None, Query(ge=0, description="which response, counted from 0; the first if left out")]
-_DATE = "day that is printed on the report, as 2026-11-21; none if left out"
+Place = Annotated[int | None, Query(ge=0, description="index of the response; default: 0")]
+_DATE = "date on the report, such as 2026-11-21; default: none"
 
 
 @router.post("/report.pdf", summary="The report as PDF", responses=answered_with_file("The report.", "pdf"))
 async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
-    """Return the report: body, coefficients, motion, responses, and how to do it again."""
+    """Return the report: body, coefficients, motion, responses and commands."""
     evaluation = Evaluation(inputs, state_of(request).records)
     day = "" if date is None else f"{date.day} {date:%B %Y}"
     return attachment(await heavy(request, report_of, evaluation, day), f"{evaluation.label} report.pdf")
@@ -46,7 +46,7 @@ async def report(
 async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
 ) -> Answer:
-    """Return one response in motion: a page that needs nothing else, or a GIF."""
+    """Return the animation of one response: a self-contained page, or a GIF."""
     evaluation = Evaluation(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(evaluation.chosen(restitution)))
@@ -56,20 +56,20 @@ async def animation(
 @router.post(
     "/inputs.toml",
     summary="The inputs as a file of the command line",
-    responses=answered_with_file("What `rocking simulate` takes.", "toml"),
+    responses=answered_with_file("The input file of `rocking simulate`.", "toml"),
 )
 async def inputs_file(request: Request, inputs: Inputs) -> Answer:
-    """Return the file that `rocking simulate` takes for the same result."""
+    """Return the input file of `rocking simulate` for the same result."""
     return attachment((await heavy(request, inputs_as_toml, inputs)).encode(), FILE_NAME)
 
 
 @router.post(
     "/inputs.zip",
     summary="The inputs with their record",
-    responses=answered_with_file("The file of inputs, the record, and what to type.", "zip"),
+    responses=answered_with_file("Input file, record and commands.", "zip"),
 )
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
-    """Return an archive of the file of inputs, the record, and what to type."""
+    """Return an archive with input file, record and commands."""
     evaluation = Evaluation(inputs, state_of(request).records)
     return attachment(await heavy(request, bundle_of, evaluation), f"{evaluation.label} response.zip")
 
@@ -77,12 +77,12 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
 @router.post(
     "/inputs/read",
     openapi_extra=FILE_SENT,
-    summary="A file of inputs, read again",
+    summary="Read an input file",
     responses=answered(Inputs, "The inputs."),
     response_class=JsonAnswer,
 )
 async def inputs_read(request: Request) -> JsonAnswer:
-    """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept."""
+    """Return the inputs of an input file or archive; the record of an archive is stored."""
     data = await request.body()
     return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 

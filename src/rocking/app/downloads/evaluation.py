@@ -1,4 +1,4 @@
-"""What a request for a file asks about: the inputs, and what is made of them when it is needed."""
+"""Inputs of an export, and results computed on demand."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,7 +22,7 @@ from rocking.version import SOFTWARE
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Inputs, and what is computed from them, each once and only when somebody needs it."""
+    """Inputs, and results computed once on demand."""
 
     inputs: Inputs  # what the user chose
     records: RecordStore  # uploaded records
@@ -30,12 +30,12 @@ class Evaluation:
 
     @property
     def name(self) -> str:
-        """What the user calls the body; perhaps empty."""
+        """Name of the body, possibly empty."""
         return plain_line(self.inputs.body.name or "", 100)
 
     @property
     def label(self) -> str:
-        """How names of files begin."""
+        """First word of file names."""
         return self.name or "rocking"
 
     @property
@@ -74,21 +74,21 @@ class Evaluation:
 
     @cached_property
     def answers(self) -> dict[str, Response | str]:
-        """By label: the response with a restitution, or why there is none."""
+        """Response or reason for its absence, by restitution label."""
         return responses_of(self.problem)
 
     @property
     def responses(self) -> dict[str, Response]:
-        """The responses that are there, by label; at least one."""
+        """Available responses by label, at least one."""
         return {label: one for label, one in self.answers.items() if isinstance(one, Response)}
 
     @property
     def refused(self) -> dict[str, str]:
-        """By label: why a restitution has no response for this body."""
+        """Reasons for missing responses, by label."""
         return {label: why for label, why in self.answers.items() if isinstance(why, str)}
 
     def chosen(self, index: int | None) -> Response:
-        """Return one response by its place."""
+        """Return one response by index."""
         if index is None:
             return next(iter(self.responses.values()))
         answers = list(self.answers.values())
@@ -100,7 +100,7 @@ class Evaluation:
         return one
 
     def file_stem(self, what: str, index: int | None) -> str:
-        """Return what a file of one response is called: with its restitution, where there are several."""
+        """Return the file name of one response, with its restitution if there are several."""
         restitution, stem = self.inputs.restitution, f"{self.label} {what}"
         if len(restitution.models or ()) + len(restitution.values or ()) < 2:
             return stem
@@ -123,7 +123,7 @@ class Evaluation:
 
 
 def _named_plainly(motion: Motion) -> Motion:
-    """Return a motion whose name and provenance, which a file may have given it, can stand in any other file."""
+    """Return a motion with a safe name and safe provenance."""
     if not isinstance(motion, GroundMotion):
         return motion
     name, provenance = plain_line(motion.name), tuple(plain_line(line, 500) for line in motion.provenance)

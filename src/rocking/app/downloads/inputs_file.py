@@ -1,4 +1,4 @@
-"""Inputs as a file of the command line, such a file as inputs, and inputs as the words of a command."""
+"""Inputs as an input file or as a command, and input files as inputs."""
 
 import hashlib
 import json
@@ -25,29 +25,29 @@ _SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_
 _RECORD = re.compile(r"^# record: ([0-9a-f]{64}) (\".*\")$", re.MULTILINE)
 
 FindRecord = Callable[[str], str | None]
-"""Returns the hash of the stored record that a word means, which is a hash or the name of a file."""
+"""Function that returns the hash of a stored record, from its hash or file name."""
 
 
 def plain_inputs(inputs: Inputs) -> dict[str, Any]:
-    """Return inputs as plain values; what was not given is left out."""
+    """Return inputs as plain values, without unset keys."""
     return inputs.model_dump(exclude_none=True, exclude_unset=True)
 
 
 def fingerprint(inputs: Inputs) -> str:
-    """Return the SHA-256 of inputs, the same however they were written."""
+    """Return the SHA-256 of inputs, independent of their format."""
     words = json.dumps(inputs.model_dump(exclude_none=True), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(words.encode()).hexdigest()
 
 
 def record_name(inputs: Inputs) -> str | None:
-    """Return the name of the record file beside a file of inputs; None if the motion is no record."""
+    """Return the record file name of an input file; None without a record."""
     if inputs.motion is None or inputs.motion.record is None:
         return None
     return record_file_name(inputs.motion.file_name or "", f"record-{inputs.motion.record[:12]}.txt")
 
 
 def commands(inputs: Inputs) -> list[str]:
-    """Return what to type for the same result: with the file of inputs, and in words where that is possible."""
+    """Return commands for the same result: with the input file, and with options if possible."""
     if inputs.motion is None and inputs.response.initial_rotation is None:
         return []
     words = simulate_words(plain_inputs(inputs), record_name(inputs))
@@ -55,7 +55,7 @@ def commands(inputs: Inputs) -> list[str]:
 
 
 def inputs_as_toml(inputs: Inputs) -> str:
-    """Return inputs as a file that `rocking simulate` takes."""
+    """Return inputs as an input file of `rocking simulate`."""
     plain, friction, record = plain_inputs(inputs), inputs.response.assumed_friction, record_name(inputs)
     motion: dict[str, Any] | None = plain.get("motion")
     if motion is not None and record is not None:
@@ -72,7 +72,7 @@ def inputs_as_toml(inputs: Inputs) -> str:
 
 
 def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
-    """Return what a file of inputs says."""
+    """Return the inputs of an input file."""
     document = migrated(parsed_toml(text))
     unknown = sorted(set(document) - set(_TABLES))
     if unknown and "campaign" in document:
@@ -106,7 +106,7 @@ def _head(inputs: Inputs) -> list[str]:
 
 
 def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
-    """Return hash and name of the record that a file of inputs means."""
+    """Return hash and name of the record in an input file."""
     noted = _RECORD.search(text)
     if noted is not None:
         name = str(parsed_toml(f"name = {noted[2]}")["name"])

@@ -1,4 +1,4 @@
-"""Pictures of the report, and of studies compared, drawn one at a time; the page draws and saves its own."""
+"""Pictures of reports and of compared studies, drawn one at a time."""
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -63,7 +63,7 @@ def _titled(figure: "Figure", title: str) -> "Figure":
 
 
 def drawn(make: "Callable[[], Figure]") -> bytes:
-    """Draw a picture and return its SVG, the same for the same figure."""
+    """Draw a picture and return its reproducible SVG."""
     with TemporaryDirectory(prefix="rocking-picture-") as folder:
         path = Path(folder) / "picture.svg"
         draw_to(make, path)
@@ -80,7 +80,7 @@ def draw_to(make: "Callable[[], Figure]", path: Path) -> None:
 
 
 def _thinned(figure: "Figure") -> "Figure":
-    """Leave out of long curves what no eye can see; every extreme stays."""
+    """Thin long curves; extremes stay."""
     for line in (line for axes in figure.axes for line in axes.get_lines()):
         x, y = (np.asarray(values, dtype=np.float64) for values in line.get_data(orig=False))
         if x.size > 2 * _ENOUGH and (np.diff(x) >= 0.0).all():
@@ -90,7 +90,7 @@ def _thinned(figure: "Figure") -> "Figure":
 
 
 def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
-    """Write the names of restitutions into a picture, wherever it has their labels."""
+    """Replace restitution labels in a picture by their names."""
     from matplotlib.text import Text
 
     known = {label: restitution_words(label) for label in labels}
@@ -174,7 +174,7 @@ def _frame(axes: "list[Axes]", responses: Mapping[str, Response]) -> None:
 
 
 def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
-    """Fit the velocities before a body falls for good."""
+    """Return the range of velocities before overturning."""
     curves = [(motion_curves(response), response.overturning_time) for response in responses.values()]
     values = np.concatenate([velocity[~(time > end)] for (time, _, velocity), end in curves])
     low, high = float(np.min(values, initial=0.0)), float(np.max(values, initial=0.0))
@@ -183,7 +183,7 @@ def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
 
 
 def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
-    """Return colour and dash of each: that of a model everywhere, of its family once, and others of their own."""
+    """Return colour and dash by label: those of the model, once per family, or spare ones."""
     looks: dict[str, dict[str, object]] = {}
     taken: set[str] = set()
     styles = model_styles()

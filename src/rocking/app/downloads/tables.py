@@ -1,4 +1,4 @@
-"""Tables of what the user sees, POST /api/table/{what}.{kind}: comma-separated values, Excel, MATLAB, netCDF."""
+"""Tables of results, POST /api/table/{what}.{kind}: CSV, Excel, MATLAB, netCDF."""
 
 import codecs
 import math
@@ -48,13 +48,13 @@ async def table(
     what: What,
     kind: Kind,
     inputs: Inputs,
-    foot: Annotated[Literal["left", "right", "both"], Query(description="foot on which the body lands")] = "both",
+    foot: Annotated[Literal["left", "right", "both"], Query(description="impact foot")] = "both",
     restitution: Annotated[
         int | None,
-        Query(ge=0, description="which response, counted from 0; if left out the first one, in xlsx all of them"),
+        Query(ge=0, description="index of the response; default: the first, in xlsx all"),
     ] = None,
 ) -> Answer:
-    """Return a table as a file that Excel, MATLAB, Python or R opens."""
+    """Return a table as a file for Excel, MATLAB, Python or R."""
     evaluation = Evaluation(inputs, state_of(request).records, foot)
     data, name = await heavy(request, _named_table, what, kind, evaluation, restitution)
     return attachment(data, f"{name}.{kind}")
@@ -99,7 +99,7 @@ def _one_table(what: str, evaluation: Evaluation) -> Table:
 
 
 def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
-    """Return what a body is; gravity: acceleration of gravity [m/s2]."""
+    """Return the properties of a body; gravity: acceleration of gravity [m/s2]."""
     answer = body.answer(gravity)
     (left, right), (x, y) = answer["foot_positions"], answer["centre"]
     rows = [
@@ -126,13 +126,13 @@ def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
 
 
 def _unit(name: str) -> str:
-    """Return the unit of a quantity as headings have it; empty for words."""
+    """Return the unit of a quantity for headings; empty for texts."""
     entry = quantity_of(name)
     return "" if entry is None else "-" if entry.unit == "1" else entry.unit
 
 
 def motion_table(motion: Motion, about: dict[str, str]) -> Table:
-    """Return time, acceleration, velocity and displacement; those of a pulse as its formulas give them."""
+    """Return time, acceleration, velocity and displacement of a motion."""
     if isinstance(motion, GroundMotion):
         curves = motion.time, motion.acceleration, ground_velocity(motion), ground_displacement(motion)
     else:
@@ -157,7 +157,7 @@ def measures_table(motion: Motion, about: dict[str, str]) -> Table:
 
 
 def spectrum_table(motion: Motion, about: dict[str, str]) -> Table:
-    """Return the response spectrum of a motion for 5 % damping, at the periods of the picture on the screen."""
+    """Return the response spectrum of a motion for 5 % damping, at the plotted periods."""
     answer = spectrum_answer(spectrum_of(fine_samples(motion)))
     columns = {name: (_unit(name), values) for name, values in answer.values.items() if name != "damping_ratio"}
     return as_table({**about, "damping ratio": repr(DAMPING)}, columns)
@@ -169,7 +169,7 @@ def response_table(response: Response, about: dict[str, str]) -> Table:
 
 
 def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
-    """Return the impacts of every response, one a row; none if there is no impact."""
+    """Return the impacts of all responses, one impact per row."""
     names = ("time", "velocity_before", "velocity_after", "coefficient", "foot")
     rows = [
         (label, number, *row)
@@ -181,7 +181,7 @@ def impacts_table(responses: Mapping[str, Response], about: dict[str, str]) -> T
 
 
 def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> Table:
-    """Return how every response ended."""
+    """Return the outcomes of all responses."""
     answers = [response.outcome_answer() for response in responses.values()]
     names = ("outcome", "summary", "peak_rotation", "peak_ratio", "overturning_time", "impacts")
     columns: dict[str, Any] = {"restitution": ("", list(responses))}
@@ -197,7 +197,7 @@ def as_table(about: dict[str, str], columns: "Mapping[str, tuple[str, Iterable[C
 
 
 def _column(unit: str, values: "Iterable[Cell] | np.ndarray") -> Column:
-    """Return a column of numbers, NaN where there is nothing, or of text that can be seen."""
+    """Return a column of numbers, NaN for missing values, or of printable text."""
     plain: list[Any] = values.tolist() if isinstance(values, np.ndarray) else list(values)
     if any(isinstance(value, str) for value in plain):
         return Column(text_array(["" if v is None else plain_line(str(v), LONGEST_CELL) for v in plain]), unit)
@@ -208,7 +208,7 @@ def _column(unit: str, values: "Iterable[Cell] | np.ndarray") -> Column:
 
 
 def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
-    """Return tables as a file: all of them, under their names, in Excel, the first one elsewhere."""
+    """Return tables as a file: all tables in Excel, the first table in other formats."""
     if kind not in get_args(Kind):
         raise NotFound("unknown format {kind!r:.20}; allowed are {names}", names=", ".join(get_args(Kind)), kind=kind)
     first = sheets[0][1]

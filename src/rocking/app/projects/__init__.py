@@ -1,1 +1,1 @@
-"""Projects: what somebody works on, kept on this computer with every state that it had."""
+"""Projects, stored on this computer with their history."""

@@ -1,4 +1,4 @@
-"""A project as one file: what it holds, the records and files that it names, and its studies as they were asked."""
+"""A project as one file: inputs, records and files, and the jobs of its studies."""
 
 import io
 import json
@@ -51,7 +51,7 @@ class _ProjectFile(BaseModel):
 
 
 def project_file(state: "AppState", project: Project) -> bytes:
-    """Return a project as an archive; the same bytes as long as nothing changes."""
+    """Return a project as a reproducible archive."""
     document = state.projects.document(project.id)
     studies = [{"name": name, "job": job} for name, job in state.studies.of_project(project.id)]
     contents, records, files = dict[str, bytes](), dict[str, str](), dict[str, str]()
@@ -87,7 +87,7 @@ def project_file(state: "AppState", project: Project) -> bytes:
 
 
 def project_from_file(state: "AppState", data: bytes) -> Project:
-    """Keep the project of a file under a new name in addresses; its studies wait in line, to be computed again."""
+    """Store the project of a file under a new identifier and queue its studies."""
     if not Archive.begins(data):
         raise Refused("not a rocking project; a project is one ZIP archive")
     archive = Archive(data, MOST_FILES)

@@ -1,4 +1,4 @@
-"""Endpoints of projects: make, look at, save, undo, redo, history, delete and bring back, one file out and in."""
+"""Endpoints of projects: create, read, save, undo, redo, history, delete, restore, export and import."""
 
 from collections.abc import Callable
 from dataclasses import asdict
@@ -16,17 +16,17 @@ from rocking.app.settings import state_of
 from rocking.app.work import heavy
 
 router = APIRouter(prefix="/api/projects", tags=["projects"])
-Name = Annotated[str, Field(min_length=1, max_length=200, description="what people call it")]
-Version = Annotated[int, Field(ge=1, description="the one that this change follows; refused if there is a later one")]
-_DOCUMENT = "body, motion, restitution and whatever else belongs to it, half finished perhaps"
+Name = Annotated[str, Field(min_length=1, max_length=200, description="display name")]
+Version = Annotated[int, Field(ge=1, description="version before this change; refused if there is a later version")]
+_DOCUMENT = "body, motion, restitution and further inputs, possibly incomplete"
 
 ProjectFacts: Any = shape_of(Project, "ProjectFacts")
 Projects: Any = shape(
-    "Projects", "All projects, the last changed first.", projects=list[ProjectFacts], deleted=list[ProjectFacts]
+    "Projects", "All projects, last changed first.", projects=list[ProjectFacts], deleted=list[ProjectFacts]
 )
-WholeProject: Any = shape("WholeProject", "A project and what it holds.", ProjectFacts, document=dict[str, Any])
+WholeProject: Any = shape("WholeProject", "A project and its content.", ProjectFacts, document=dict[str, Any])
 StateFacts: Any = shape_of(ProjectState, "StateFacts")
-History: Any = shape("History", "Every state that is kept, the last first.", states=list[StateFacts])
+History: Any = shape("History", "All stored states, newest first.", states=list[StateFacts])
 
 
 class _Request(BaseModel):
@@ -34,20 +34,20 @@ class _Request(BaseModel):
 
 
 class NewProject(_Request):
-    """A project to make: with something in it, or as a copy of another one."""
+    """A new project, with content or as a copy of another project."""
 
     name: Name
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)] = Field(default_factory=dict)
     copy_of: Annotated[str | None, Field(max_length=40, description="another project")] = None
-    words: Annotated[str, Field(max_length=400, description="how it came about, for its history")] = ""
+    words: Annotated[str, Field(max_length=400, description="description for its history")] = ""
 
 
 class ProjectChange(_Request):
-    """What a project holds from now on."""
+    """The new content of a project."""
 
     version: Version
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)]
-    words: Annotated[str, Field(max_length=200, description="what was changed")] = "changed"
+    words: Annotated[str, Field(max_length=200, description="description of the change")] = "changed"
 
 
 class ProjectStep(_Request):
@@ -68,8 +68,8 @@ class ProjectPast(ProjectStep):
     state: Annotated[int, Field(ge=1)]
 
 
-_WHOLE = answered(WholeProject, "The project as it stands.")
-_FACTS = answered(ProjectFacts, "The project as it stands.")
+_WHOLE = answered(WholeProject, "The current project.")
+_FACTS = answered(ProjectFacts, "The current project.")
 
 
 def _store(request: Request) -> ProjectStore:
@@ -88,7 +88,7 @@ async def _whole(request: Request, change: Callable[[ProjectStore], Project], st
 
 @router.get("", summary="All projects", responses=answered(Projects, "The projects."))
 async def list_projects(request: Request) -> JsonAnswer:
-    """Return all projects, and those that can be brought back."""
+    """Return all projects, and the deleted projects that can be restored."""
     store = _store(request)
     there, gone = await run_in_threadpool(lambda: (store.all(), store.all(deleted=True)))
     return JsonAnswer({"projects": [*map(asdict, there)], "deleted": [*map(asdict, gone)]})
@@ -96,7 +96,7 @@ async def list_projects(request: Request) -> JsonAnswer:
 
 @router.post("", status_code=201, summary="Make a project", responses=answered(WholeProject, "The project.", 201))
 async def create_project(request: Request, new: NewProject) -> JsonAnswer:
-    """Make a project, a copy of another one perhaps."""
+    """Create a project, optionally as a copy."""
 
     def made(store: ProjectStore) -> Project:
         if new.copy_of is None:
@@ -111,11 +111,11 @@ async def create_project(request: Request, new: NewProject) -> JsonAnswer:
     "/import",
     status_code=201,
     openapi_extra=FILE_SENT,
-    summary="A project from its file",
+    summary="Import a project file",
     responses=answered(WholeProject, "The project.", 201),
 )
 async def import_project(request: Request) -> JsonAnswer:
-    """Keep the project of a file; its studies wait in line, to be computed again."""
+    """Store the project of a file and queue its studies."""
     state, data = state_of(request), await request.body()
     project = await heavy(request, project_from_file, state, data)
     return await _whole(request, lambda store: store.get(project.id), 201)
@@ -123,63 +123,65 @@ async def import_project(request: Request) -> JsonAnswer:
 
 @router.get("/{project}", summary="One project", responses=_WHOLE)
 async def get_project(request: Request, project: str) -> JsonAnswer:
-    """Return a project and what it holds."""
+    """Return a project and its content."""
     return await _whole(request, lambda store: store.get(project))
 
 
 @router.post("/{project}", summary="Save a project", responses=_FACTS)
 async def save_project(request: Request, project: str, change: ProjectChange) -> JsonAnswer:
-    """Put a project into a new state; nothing of what it held is lost."""
+    """Save a new state of a project; earlier states are kept."""
     saved = await run_in_threadpool(
         _store(request).save, project, change.version, change.document, change.words or "changed"
     )
     return JsonAnswer(asdict(saved))
 
 
-@router.post("/{project}/undo", summary="Go back to the state before", responses=_WHOLE)
+@router.post("/{project}/undo", summary="Undo the last change", responses=_WHOLE)
 async def undo_project(request: Request, project: str, step: ProjectStep) -> JsonAnswer:
-    """Go back to the state before."""
+    """Restore the previous state."""
     return await _whole(request, lambda store: store.undo(project, step.version))
 
 
-@router.post("/{project}/redo", summary="Go on to what was undone", responses=_WHOLE)
+@router.post("/{project}/redo", summary="Redo the last undone change", responses=_WHOLE)
 async def redo_project(request: Request, project: str, step: ProjectStep) -> JsonAnswer:
-    """Go on to the state that was left last."""
+    """Restore the state that was undone last."""
     return await _whole(request, lambda store: store.redo(project, step.version))
 
 
 @router.get("/{project}/history", summary="Every state of a project", responses=answered(History, "The states."))
 async def project_history(request: Request, project: str) -> JsonAnswer:
-    """Return every state that is kept, the last first."""
+    """Return all stored states, newest first."""
     states = await run_in_threadpool(_store(request).history, project)
     return JsonAnswer({"states": [*map(asdict, states)]})
 
 
-@router.post("/{project}/restore", summary="Take over a state of the history", responses=_WHOLE)
+@router.post("/{project}/restore", summary="Restore a state of the history", responses=_WHOLE)
 async def restore_project(request: Request, project: str, past: ProjectPast) -> JsonAnswer:
-    """Take over what the project held in another state, as a new state."""
+    """Save an earlier state of a project as a new state."""
     return await _whole(request, lambda store: store.restore(project, past.version, past.state))
 
 
-@router.post("/{project}/name", summary="Call a project otherwise", responses=_FACTS)
+@router.post("/{project}/name", summary="Rename a project", responses=_FACTS)
 async def rename_project(request: Request, project: str, named: ProjectName) -> JsonAnswer:
-    """Call a project otherwise."""
+    """Rename a project."""
     return JsonAnswer(asdict(await run_in_threadpool(_store(request).rename, project, named.version, named.name)))
 
 
 @router.delete("/{project}", summary="Delete a project", responses=_FACTS)
 async def delete_project(request: Request, project: str) -> JsonAnswer:
-    """Take a project away; it can be brought back."""
+    """Delete a project; it can be restored."""
     return JsonAnswer(asdict(await run_in_threadpool(_store(request).delete, project)))
 
 
-@router.post("/{project}/back", summary="Bring a deleted project back", responses=_FACTS)
+@router.post("/{project}/back", summary="Restore a deleted project", responses=_FACTS)
 async def bring_project_back(request: Request, project: str) -> JsonAnswer:
-    """Bring a deleted project back."""
+    """Restore a deleted project."""
     return JsonAnswer(asdict(await run_in_threadpool(_store(request).bring_back, project)))
 
 
-@router.get("/{project}/file", summary="A project as one file", responses=answered_with_file("The project.", "zip"))
+@router.get(
+    "/{project}/file", summary="Export a project as one file", responses=answered_with_file("The project.", "zip")
+)
 async def project_as_file(request: Request, project: str) -> Response:
     """Return a project with its records and the jobs of its studies."""
     state = state_of(request)

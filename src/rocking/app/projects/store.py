@@ -1,4 +1,4 @@
-"""Projects in one database: every state that was saved stays, and undo, redo and history walk among them."""
+"""Projects in one database, with all saved states for undo, redo and history."""
 
 import json
 import secrets
@@ -38,12 +38,12 @@ CREATE TABLE states (
 class Project:
     """A project."""
 
-    id: Annotated[str, "its name in addresses"]
-    name: Annotated[str, "what people call it"]
-    created: Annotated[str, "when, in UTC"]
-    changed: Annotated[str, "when last, in UTC"]
-    version: Annotated[int, "one more with every change"]  # of whatever kind: what a change must know that it follows
-    state: Annotated[int, "number of the state that it is in"]
+    id: Annotated[str, "identifier in URLs"]
+    name: Annotated[str, "display name"]
+    created: Annotated[str, "time in UTC"]
+    changed: Annotated[str, "time of the last change in UTC"]
+    version: Annotated[int, "number of changes"]  # of whatever kind: what a change must know that it follows
+    state: Annotated[int, "number of the current state"]
     can_undo: bool
     can_redo: bool
     deleted: Annotated[str | None, f"when, in UTC; it can be brought back for {KEPT_DAYS} days"]
@@ -51,16 +51,16 @@ class Project:
 
 @dataclass(frozen=True)
 class ProjectState:
-    """A state that a project was saved in."""
+    """A saved state of a project."""
 
     number: int
-    words: Annotated[str, "what was changed"]
-    time: Annotated[str, "when, in UTC"]
-    here: Annotated[bool, "whether the project is in it"]
+    words: Annotated[str, "description of the change"]
+    time: Annotated[str, "time in UTC"]
+    here: Annotated[bool, "true for the current state"]
 
 
 def _alone(method: Callable[..., Project]) -> Callable[..., Project]:
-    """Let nobody change anything between a change and the answer that tells of it."""
+    """Lock the store until a change and its answer are complete."""
 
     @wraps(method)
     def locked(self: "ProjectStore", *given: Any, **named: Any) -> Project:
@@ -99,12 +99,12 @@ class ProjectStore:
             database.execute("DELETE FROM projects WHERE deleted < ?", (long_ago,))
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the database."""
         with self.lock:
             self._database.close()
 
     def all(self, *, deleted: bool = False) -> list[Project]:
-        """Return all projects, the last changed first, or those that were deleted and can be brought back."""
+        """Return all projects, last changed first, or the deleted projects."""
         with self.lock:
             rows = self._database.execute(
                 f"{_PROJECT} WHERE p.deleted IS {'NOT ' * deleted}NULL ORDER BY p.changed DESC, p.rowid DESC"
@@ -112,7 +112,7 @@ class ProjectStore:
         return [_project(row) for row in rows]
 
     def get(self, project: str) -> Project:
-        """Return a project, one that was deleted too."""
+        """Return a project, including deleted projects."""
         with self.lock:
             row = self._database.execute(f"{_PROJECT} WHERE p.id = ?", (project,)).fetchone()
         if row is None:
@@ -120,7 +120,7 @@ class ProjectStore:
         return _project(row)
 
     def document(self, project: str, state: int | None = None) -> dict[str, Any]:
-        """Return what a project holds, now or in another state of its history."""
+        """Return the content of a project, now or in an earlier state."""
         with self.lock:
             number = self.get(project).state if state is None else state
             row = self._database.execute(
@@ -131,7 +131,7 @@ class ProjectStore:
         return migrated_document(json.loads(zlib.decompress(row[0])))
 
     def history(self, project: str) -> list[ProjectState]:
-        """Return every state of a project that is kept, the last first."""
+        """Return all stored states of a project, newest first."""
         with self.lock:
             here = self.get(project).state
             rows = self._database.execute(
@@ -141,7 +141,7 @@ class ProjectStore:
 
     @_alone
     def create(self, name: str, document: dict[str, Any], words: str = "begun") -> Project:
-        """Make a project."""
+        """Create a project."""
         now, project, packed = _instant(), secrets.token_hex(8), _packed(document)
         with self._changing() as database:
             (count,) = database.execute("SELECT count(*) FROM projects WHERE deleted IS NULL").fetchone()
@@ -157,7 +157,7 @@ class ProjectStore:
 
     @_alone
     def save(self, project: str, version: int, document: dict[str, Any], words: str) -> Project:
-        """Put a project into a new state, which follows the one that it is in."""
+        """Save a new state of a project after its current state."""
         packed = _packed(document)
         with self._followed(project, version) as (database, now, known):
             (last,) = database.execute("SELECT max(number) FROM states WHERE project = ?", (project,)).fetchone()
@@ -174,22 +174,22 @@ class ProjectStore:
 
     @_alone
     def undo(self, project: str, version: int) -> Project:
-        """Go back to the state before."""
+        """Restore the previous state."""
         return self._step(project, version, "before", "there is no earlier state")
 
     @_alone
     def redo(self, project: str, version: int) -> Project:
-        """Go on to the state that was left last."""
+        """Restore the state that was undone last."""
         return self._step(project, version, "after", "there is no later state")
 
     @_alone
     def restore(self, project: str, version: int, state: int) -> Project:
-        """Take over what the project held in another state, as a new state."""
+        """Save an earlier state of a project as a new state."""
         return self.save(project, version, self.document(project, state), f"as in state {state}")
 
     @_alone
     def rename(self, project: str, version: int, name: str) -> Project:
-        """Call a project otherwise."""
+        """Rename a project."""
         words = _name(name)
         with self._followed(project, version) as (database, _, _):
             database.execute("UPDATE projects SET name = ? WHERE id = ?", (words, project))
@@ -197,7 +197,7 @@ class ProjectStore:
 
     @_alone
     def delete(self, project: str) -> Project:
-        """Take a project away; it can be brought back for a while."""
+        """Delete a project; it can be restored for a limited time."""
         self.get(project)
         with self._changing() as database:
             database.execute(
@@ -208,7 +208,7 @@ class ProjectStore:
 
     @_alone
     def bring_back(self, project: str) -> Project:
-        """Bring a deleted project back."""
+        """Restore a deleted project."""
         self.get(project)
         with self._changing() as database:
             database.execute(
@@ -230,13 +230,13 @@ class ProjectStore:
         return self.get(project)
 
     def _lead(self, project: str, before: int, after: int) -> None:
-        """Note which state redo goes on to, and put the project there."""
+        """Store the redo target of a state, and make that state current."""
         self._database.execute("UPDATE states SET after = ? WHERE project = ? AND number = ?", (after, project, before))
         self._database.execute("UPDATE projects SET here = ? WHERE id = ?", (after, project))
 
     @contextmanager
     def _followed(self, project: str, version: int) -> Iterator[tuple[sqlite3.Connection, str, Project]]:
-        """Change a project if nobody has changed it since a version."""
+        """Change a project if its version is current."""
         with self._changing() as database:
             known, now = self.get(project), _instant()
             if known.deleted is not None:
@@ -248,7 +248,7 @@ class ProjectStore:
 
     @contextmanager
     def _changing(self) -> Iterator[sqlite3.Connection]:
-        """Change the database as a whole or not at all."""
+        """Change the database in one transaction."""
         with self.lock:
             try:
                 self._database.execute("BEGIN IMMEDIATE")

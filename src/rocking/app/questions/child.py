@@ -21,7 +21,7 @@ _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/font
 
 
 def _imports() -> Iterator[None]:
-    """Import what most questions need, step by step: these modules take a second, most of the time of a question."""
+    """Import common modules step by step."""
     import typer
 
     import rocking.spec.documents.prediction
@@ -48,7 +48,7 @@ def _imports() -> Iterator[None]:
 
 
 def main() -> None:
-    """Run the command that is told."""
+    """Run the received command."""
     from rocking.app.studies.child import end_with_the_server
 
     told, question = threading.Event(), b""
@@ -72,7 +72,7 @@ def main() -> None:
 
 
 def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list[str]) -> None:
-    """Run a command on a file in a folder; its answer, what it says, and what libraries write go to files there."""
+    """Run a command in a folder; answer, log and library output are files there."""
     os.chdir(folder)
     for number, name in ((1, answer), (2, log)):
         descriptor = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
@@ -95,7 +95,7 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list
 
 
 def keep_inside(*folders: Path) -> None:
-    """Refuse to open files of this computer that are neither in one of the folders nor of the installation."""
+    """Refuse to open files outside the folders and the installation."""
     own = [sys.prefix, sys.base_prefix, sys.exec_prefix, *filter(None, sys.path), str(Path(__file__).parents[3])]
     allowed = tuple(f"{Path(each).resolve()}{os.sep}" for each in [*own, *_SYSTEM, *map(str, folders)])
 
@@ -114,7 +114,7 @@ def keep_inside(*folders: Path) -> None:
 
 
 def _limit() -> None:
-    """Bound memory, time and files, where the system can."""
+    """Limit memory, time and file size, if the system supports limits."""
     os.nice(10) if hasattr(os, "nice") else None
     try:
         import resource

@@ -1,4 +1,4 @@
-"""All questions of a data folder: asked, in line, answered, stopped; what a restart interrupts is answered after it."""
+"""All runs of a data folder: queued, running, finished or stopped; interrupted runs restart."""
 
 import json
 import logging
@@ -46,7 +46,7 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
     "overturning-pga": ("picture.svg", "table.csv"),
     "reproduce": ("report.html", "report.pdf", "results.json"),
 }
-"""Commands, and the files that they write beside their answer."""
+"""Commands and their output files."""
 
 WITHOUT_FILE = "reproduce"  # the command that takes none, and writes a folder
 FOLDER = "records"  # of a question, in which the files of a set are
@@ -62,20 +62,20 @@ State = Literal["waiting", "running", "done", "refused", "stopped"]
 
 @dataclass(frozen=True)
 class HostedQuestion:
-    """A question, and how far it is."""
+    """A run and its state."""
 
-    id: Annotated[str, "its name in addresses"]
+    id: Annotated[str, "identifier in URLs"]
     command: Command
-    name: Annotated[str, "what people call it"]
-    project: Annotated[str, "to which it belongs; empty if to none"]
-    asked: Annotated[str, "when, in UTC"]
+    name: Annotated[str, "display name"]
+    project: Annotated[str, "project of the item; empty if none"]
+    asked: Annotated[str, "time in UTC"]
     state: State = "waiting"
-    message: Annotated[str, "why there is no answer; empty while nothing is wrong"] = ""
-    refusal: Annotated[dict[str, Any] | None, "the same with its text and facts, as of any error"] = None
-    seconds: Annotated[float, "that it took [s]"] = 0.0
-    files: Annotated[list[str], "that can be taken away"] = field(default_factory=list)
+    message: Annotated[str, "reason for a missing answer, or empty"] = ""
+    refusal: Annotated[dict[str, Any] | None, "reason as an error with text and facts"] = None
+    seconds: Annotated[float, "computing time [s]"] = 0.0
+    files: Annotated[list[str], "files for export"] = field(default_factory=list)
     starts: int = 0  # how often it was begun
-    format: Annotated[str, "in which convert writes the record beside columns; empty for no other"] = ""
+    format: Annotated[str, "additional output format of convert, or empty"] = ""
 
 
 _QUESTION = TypeAdapter(HostedQuestion)
@@ -89,7 +89,7 @@ _LOG_OF_SERVER = logging.getLogger(__name__)
 
 
 class QuestionDesk:
-    """Questions in a folder each, answered one after the other; safe to use from several threads."""
+    """Thread-safe queue of runs, each in its own folder."""
 
     def __init__(self, folder: Path, stores: tuple[RecordStore, ...], limits: Limits) -> None:
         self.folder = Path(folder) / "questions"
@@ -113,7 +113,7 @@ class QuestionDesk:
         project: str = "",
         format: str = "",
     ) -> HostedQuestion:
-        """Put a question in line; files: hashes of what was sent, by the names that the tables call them."""
+        """Queue a run; files: hashes of uploaded files, by their names in the tables."""
         if command not in OUTPUTS:
             raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
         if format and (command != "record convert" or format not in formats()):
@@ -156,7 +156,7 @@ class QuestionDesk:
         return question
 
     def all(self) -> list[HostedQuestion]:
-        """Return all questions, the last one first."""
+        """Return all runs, newest first."""
         with self._changed:
             return sorted(self._questions.values(), key=_age, reverse=True)
 
@@ -168,16 +168,16 @@ class QuestionDesk:
         return known
 
     def answer(self, question: str) -> bytes | None:
-        """Return the answer as JSON; None where there is none yet."""
+        """Return the answer as JSON, or None."""
         known = self.get(question)
         return (self.folder / known.id / _ANSWER).read_bytes() if known.state == "done" else None
 
     def tables(self, question: str) -> str:
-        """Return what was asked, as a file of the command line."""
+        """Return the inputs of a run as an input file."""
         return (self.folder / self.get(question).id / QUESTION).read_text(encoding="utf-8")
 
     def file(self, question: str, name: str) -> Path:
-        """Return where a file of an answer is."""
+        """Return the path of an output file."""
         known = self.get(question)
         if name not in known.files:
             raise NotFound(
@@ -187,7 +187,7 @@ class QuestionDesk:
         return self.folder / known.id / name
 
     def stop(self, question: str) -> HostedQuestion:
-        """Stop a question, or take it out of the line."""
+        """Stop a running or queued run."""
         with self._changed:
             known = self.get(question)
             if known.state not in {"waiting", "running"}:
@@ -200,14 +200,14 @@ class QuestionDesk:
         return self.get(question)
 
     def delete(self, question: str) -> None:
-        """Forget a question and its answer."""
+        """Delete a run and its answer."""
         known = self.stop(question)
         with self._changed:
             self._questions.pop(known.id, None)
         shutil.rmtree(self.folder / known.id, ignore_errors=True)
 
     def close(self) -> None:
-        """Stop what runs; it is answered when the server starts again."""
+        """Stop the current run; it restarts with the next server."""
         with self._changed:
             self._closed = True
             if self._process is not None:
@@ -217,7 +217,7 @@ class QuestionDesk:
         self._thread.join(10.0)
 
     def _kept(self) -> list[HostedQuestion]:
-        """Return the questions of an earlier server; one that ran waits again."""
+        """Return the runs of an earlier server; an interrupted run is queued."""
         found = []
         for place in list(self.folder.iterdir()):
             try:
@@ -264,7 +264,7 @@ class QuestionDesk:
             write_new(self.folder / question.id / _NOTE, json.dumps({"schema": SCHEMA, **asdict(question)}).encode())
 
     def _work(self) -> None:
-        """Answer what is in line, one after the other."""
+        """Compute the queued runs one after another."""
         while True:
             with self._changed:
                 while not self._line and not self._closed:
@@ -284,7 +284,7 @@ class QuestionDesk:
                 self._fail(question)
 
     def prepare(self) -> None:
-        """Start the process of the next question before it is asked: to load what it needs takes longer than to run."""
+        """Start the process of the next run in advance, to load its modules."""
         with self._changed, suppress(OSError):
             if self._closed or (self._ahead and self._ahead[0].poll() is None and self._ahead[1] == os.environ):
                 return
@@ -358,7 +358,7 @@ class QuestionDesk:
                 self._become(replace(question, state="refused", message=why))
 
     def _state(self, question: str) -> str | None:
-        """Return how far a question is; None where it was deleted."""
+        """Return the state of a run; None if deleted."""
         with self._changed:
             known = self._questions.get(question)
         return None if known is None else known.state
@@ -373,13 +373,13 @@ def _migrated(note: dict[str, Any]) -> dict[str, Any]:
 
 
 def _written(question: HostedQuestion) -> list[str]:
-    """Return what a question writes, as --output says it."""
+    """Return the output files of a run, as values of --output."""
     form = question.format
     return [*OUTPUTS[question.command], *([f"{form}=record{formats()[form].suffixes[0]}"] if form else [])]
 
 
 def _command(question: HostedQuestion) -> list[str]:
-    """Return the words of the command line that answer a question."""
+    """Return the command line of a run."""
     if question.command == WITHOUT_FILE:
         return [*question.command.split(), "--json", "--output", "."]
     outputs = [word for name in _written(question) for word in ("--output", name)]
@@ -387,7 +387,7 @@ def _command(question: HostedQuestion) -> list[str]:
 
 
 def refuse_outside(tables: dict[str, Any]) -> None:
-    """Refuse words of a question that would run code, or lead out of its folder."""
+    """Refuse texts of a run that name code or paths outside its folder."""
     for level in levels(tables):
         for word in level:
             if not isinstance(word, str):
@@ -401,7 +401,7 @@ def refuse_outside(tables: dict[str, Any]) -> None:
 
 
 def _refusal(place: Path, code: int | None) -> dict[str, Any]:
-    """Return why there is no answer, as data that a user may see."""
+    """Return the reason for a missing answer as data."""
     if code is None:
         why = Message(
             ("the run exceeded {minutes:.0f} minutes; use the command line"),
@@ -417,7 +417,7 @@ def _refusal(place: Path, code: int | None) -> dict[str, Any]:
 
 
 def _link(source: Path, target: Path) -> None:
-    """Put a file that was sent into a question, by a link where the disk can."""
+    """Link or copy an uploaded file into a run."""
     try:
         target.hardlink_to(source)
     except OSError:
@@ -425,7 +425,7 @@ def _link(source: Path, target: Path) -> None:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process, and close what it was told through."""
+    """End a process and close its input."""
     kill(process)
     process.wait()
     with suppress(OSError):

@@ -1,4 +1,4 @@
-"""Endpoints of questions that take longer: send files, ask, watch, stop, take away; and of the files that they need."""
+"""Endpoints of long runs and their files: upload, queue, progress, stop and export."""
 
 import json
 from dataclasses import asdict
@@ -31,20 +31,20 @@ The tables of a file that the command of the same name takes, as JSON; those of 
 `response` beside `body`, and `simulate` is of a body in space with friction; `paper` has none. Files in them are named
 as in `files`, and were sent to `/api/files` or `/api/records`."""
 QuestionFacts: Any = shape_of(
-    HostedQuestion, "QuestionFacts", without=("starts",), refusal=(Refusal | None, "why it is refused, as data")
+    HostedQuestion, "QuestionFacts", without=("starts",), refusal=(Refusal | None, "reason of a refusal, as data")
 )
-Questions: Any = shape("Questions", "All questions, the last one first.", questions=list[QuestionFacts])
+Questions: Any = shape("Questions", "All runs, newest first.", questions=list[QuestionFacts])
 WholeQuestion: Any = shape(
     "WholeQuestion",
-    "A question, and its answer.",
+    "A run and its answer.",
     QuestionFacts,
-    toml=(str, "what was asked, as a file of the command line"),
-    answer=(Any, "what the command prints with --json; null where there is none yet"),
+    toml=(str, "inputs of the run, as an input file"),
+    answer=(Any, "output of the command with --json, or null"),
 )
 
 
 class NewQuestion(BaseModel):
-    """A question to ask."""
+    """A new run."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
@@ -52,11 +52,11 @@ class NewQuestion(BaseModel):
     tables: Annotated[dict[str, Any], Field(description=_TABLES)]
     files: Annotated[
         dict[str, str],
-        Field(description="SHA-256 of each file, by the name that it has in the tables; records/NAME in a folder"),
+        Field(description="SHA-256 of each file, by its name in the tables; records/NAME in a folder"),
     ] = Field(default_factory=dict)
-    name: Annotated[str, Field(max_length=200, description="what people call it")] = ""
-    project: Annotated[str, Field(max_length=40, description="to which it belongs, if to one")] = ""
-    format: Annotated[str, Field(max_length=20, description="in which convert writes the record too")] = ""
+    name: Annotated[str, Field(max_length=200, description="display name")] = ""
+    project: Annotated[str, Field(max_length=40, description="project of the item")] = ""
+    format: Annotated[str, Field(max_length=20, description="additional output format of convert")] = ""
 
 
 def _desk(request: Request) -> QuestionDesk:
@@ -69,16 +69,16 @@ def _facts(question: HostedQuestion) -> dict[str, Any]:
 
 @router.post("/files", openapi_extra=FILE_SENT, summary="Send a file", responses=answered(RecordKept, "The file."))
 async def add_file(request: Request, name: Annotated[str, Query(max_length=500)] = "file") -> JsonAnswer:
-    """Keep a scan, a sound, a list or a table, by its hash; nothing of it is read before a question needs it."""
+    """Store a scan, sound, list or table by hash; it is read by the run."""
     content = await request.body()
     return JsonAnswer(asdict(await run_in_threadpool(state_of(request).files.add, content, name)))
 
 
 @router.post(
-    "/questions", status_code=202, summary="Ask a question", responses=answered(QuestionFacts, "It is in line.", 202)
+    "/questions", status_code=202, summary="Queue a run", responses=answered(QuestionFacts, "The item is queued.", 202)
 )
 async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
-    """Put a question in line; its answer is what the command of the same name prints with --json."""
+    """Queue a run; its answer is the output of the command with --json."""
     if asked.project:
         await run_in_threadpool(state_of(request).projects.get, asked.project)
     question = await run_in_threadpool(
@@ -87,16 +87,16 @@ async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
     return JsonAnswer(_facts(question), status_code=202)
 
 
-@router.get("/questions", summary="All questions", responses=answered(Questions, "The questions."))
+@router.get("/questions", summary="All runs", responses=answered(Questions, "The runs."))
 async def list_questions(request: Request) -> JsonAnswer:
-    """Return all questions, the last one first; whoever looks at them will ask one."""
+    """Return all runs, newest first."""
     await run_in_threadpool(_desk(request).prepare)
     return JsonAnswer({"questions": [*map(_facts, _desk(request).all())]})
 
 
-@router.get("/questions/{question}", summary="One question", responses=answered(WholeQuestion, "The question."))
+@router.get("/questions/{question}", summary="One run", responses=answered(WholeQuestion, "The run."))
 async def get_question(request: Request, question: str) -> JsonAnswer:
-    """Return a question, and its answer once it is done."""
+    """Return a run, and its answer if finished."""
 
     def whole() -> dict[str, Any]:
         desk = _desk(request)
@@ -109,15 +109,15 @@ async def get_question(request: Request, question: str) -> JsonAnswer:
     return JsonAnswer(await run_in_threadpool(whole))
 
 
-@router.post("/questions/{question}/stop", summary="Stop a question", responses=answered(QuestionFacts, "Stopped."))
+@router.post("/questions/{question}/stop", summary="Stop a run", responses=answered(QuestionFacts, "Stopped."))
 async def stop_question(request: Request, question: str) -> JsonAnswer:
-    """Stop a question, or take it out of the line."""
+    """Stop a running or queued run."""
     return JsonAnswer(_facts(await run_in_threadpool(_desk(request).stop, question)))
 
 
-@router.delete("/questions/{question}", summary="Delete a question", responses=answered(Deleted, "What is gone."))
+@router.delete("/questions/{question}", summary="Delete a run", responses=answered(Deleted, "The deleted run."))
 async def delete_question(request: Request, question: str) -> JsonAnswer:
-    """Forget a question and its answer."""
+    """Delete a run and its answer."""
     await run_in_threadpool(_desk(request).delete, question)
     return JsonAnswer({"deleted": question})
 
@@ -127,12 +127,12 @@ _ENDINGS = sorted({"dat", *(name.rpartition(".")[2] for names in OUTPUTS.values(
 
 @router.get(
     "/questions/{question}/{file}",
-    summary="A file of an answer",
+    summary="An output file",
     response_class=Response,
     responses=answered_with_file("The file.", *_ENDINGS),
 )
 async def question_file(request: Request, question: str, file: str) -> Response:
-    """Return a picture, a report or a table of an answer."""
+    """Return a picture, report or table of a run."""
     path = await run_in_threadpool(_desk(request).file, question, file)
     name = f"{_desk(request).get(question).name} {file}"
     media = MEDIA_TYPES.get(file.rpartition(".")[2], MEDIA_TYPES["dat"])

@@ -1,1 +1,1 @@
-"""Who may ask, and what may be asked."""
+"""Access control and limits of requests."""

@@ -1,4 +1,4 @@
-"""The gate: every request and every websocket passes these checks of its head before anything reads it."""
+"""The gate: checks of the head of every request and websocket."""
 
 import logging
 import re
@@ -79,22 +79,22 @@ class RequestHead:
 
     @property
     def unsafe(self) -> bool:
-        """Whether it may change something."""
+        """True if the request may change data."""
         return self.method not in SAFE
 
     @property
     def of_api(self) -> bool:
-        """Whether it asks the API and not for a page."""
+        """True if the target is the API."""
         return self.target.startswith("/api/")
 
     @property
     def has_body(self) -> bool:
-        """Whether a body follows, by its length or by its being chunked."""
+        """True if a body follows."""
         return "transfer-encoding" in self.headers or self.headers.get("content-length", "0") != "0"
 
 
 def check_method(head: RequestHead) -> None:
-    """Refuse methods that nothing here takes; OPTIONS too, as no other site may ask."""
+    """Refuse unsupported methods, including OPTIONS."""
     if head.method not in _METHODS:
         raise Refused("the method must be GET, HEAD, POST or DELETE", status=405)
     if head.method in SAFE and head.has_body:
@@ -102,7 +102,7 @@ def check_method(head: RequestHead) -> None:
 
 
 def check_target(head: RequestHead, most: int) -> None:
-    """Refuse paths of anything but letters, digits, dots, dashes and slashes; most: of path and query [bytes]."""
+    """Refuse paths with other characters than letters, digits, dots, dashes and slashes; most: length limit [bytes]."""
     if len(head.target) + len(head.query) > most:
         raise Refused("path and query are longer than {limit} bytes", limit=most, status=414)
     if not _PATH.fullmatch(head.target):
@@ -110,7 +110,7 @@ def check_target(head: RequestHead, most: int) -> None:
 
 
 def own_hosts(settings: ServerSettings) -> frozenset[str]:
-    """Return every Host header that is the server's own."""
+    """Return all valid Host headers of the server."""
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     names = {*_ALWAYS, host.lower()}
     with_port = {f"{name}:{settings.port}" for name in names}
@@ -118,7 +118,7 @@ def own_hosts(settings: ServerSettings) -> frozenset[str]:
 
 
 def check_host(head: RequestHead, own: frozenset[str]) -> None:
-    """Refuse a request that was sent to another name."""
+    """Refuse a request with a foreign Host header."""
     if head.headers.get("host", "").lower() not in own:
         raise Refused(
             "the Host header is not the address of this server; use the link that `rocking serve` prints", status=403
@@ -126,7 +126,7 @@ def check_host(head: RequestHead, own: frozenset[str]) -> None:
 
 
 def check_origin(head: RequestHead, own: frozenset[str]) -> None:
-    """Refuse a request of another page; one that may change something must say where it comes from."""
+    """Refuse a request with a foreign Origin header; unsafe requests need the header."""
     origin = head.headers.get("origin")
     if origin is None:
         if head.unsafe:
@@ -140,7 +140,7 @@ def check_origin(head: RequestHead, own: frozenset[str]) -> None:
 
 
 def check_site(head: RequestHead) -> None:
-    """Refuse what a browser sends on behalf of another site, but for somebody following a link to a page."""
+    """Refuse requests from other sites, except links to pages."""
     site = head.headers.get("sec-fetch-site")
     if site is None or site in _OWN_SITES:
         return
@@ -170,7 +170,7 @@ def check_content(head: RequestHead) -> None:
 
 
 def check_session(head: RequestHead, request: HTTPConnection) -> None:
-    """Refuse what is not public to somebody who is not signed in."""
+    """Refuse private targets without a session."""
     public = not head.of_api or ("GET" if head.method == "HEAD" else head.method, head.target) in _PUBLIC
     if not public and not is_signed_in(request):
         raise Refused(
@@ -190,7 +190,7 @@ CHECKS: dict[str, Check] = {
     "content": lambda gate, head, request: check_content(head),
     "session": lambda gate, head, request: check_session(head, request),
 }
-"""What is looked at, in this order."""
+"""Checks in their order."""
 
 _PAGE = (Path(__file__).parents[1] / "static" / "index.html").read_text(encoding="utf-8")
 _IMPORTS = re.findall(r'<script type="importmap">(.*?)</script>', _PAGE, re.DOTALL)
@@ -229,7 +229,7 @@ _LOG = logging.getLogger("rocking.app")
 
 
 class Gate:
-    """Let pass what our own page or a script with the key asks, and nothing else."""
+    """Pass requests of the own page and of scripts with the key only."""
 
     settings: ServerSettings
     own: frozenset[str]
@@ -240,7 +240,7 @@ class Gate:
         self.own = own_hosts(settings)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check a connection and hand it on, or refuse it."""
+        """Check a connection and pass it on, or refuse it."""
         if scope["type"] != "lifespan":
             try:
                 head = RequestHead.of(scope)
@@ -257,13 +257,13 @@ class Gate:
 
 
 class SafeHeaders:
-    """Put the headers on every answer."""
+    """Add security headers to every response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Hand a request on and complete its answer."""
+        """Pass a request on and complete its response."""
 
         async def complete(message: Message) -> None:
             if message["type"] == "http.response.start":
@@ -279,13 +279,13 @@ class SafeHeaders:
 
 
 class Failures:
-    """Answer 500, without a trace, where something raises that was not foreseen."""
+    """Return status 500, without a traceback, for unexpected errors."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Hand a request on, and answer if it fails."""
+        """Pass a request on, and respond if it fails."""
         started = False
 
         async def watched(message: Message) -> None:

@@ -1,4 +1,4 @@
-"""The body of a request: counted as it arrives, read whole, and plain JSON if it says so."""
+"""The body of a request: limited in size, read completely and checked as JSON."""
 
 import asyncio
 import json
@@ -23,7 +23,7 @@ _LARGEST = 2**63
 
 
 class BodyLimits:
-    """Read the body of every request up to a limit, and hand it on whole."""
+    """Read the body of every request up to a limit, and pass it on."""
 
     def __init__(self, app: ASGIApp, limits: Limits) -> None:
         self._app = app
@@ -31,7 +31,7 @@ class BodyLimits:
         self._held = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Read a body and hand the request on, or refuse it."""
+        """Read a body and pass the request on, or refuse it."""
         if scope["type"] != "http" or scope["method"] in SAFE:
             await self._app(scope, receive, send)
             return
@@ -92,7 +92,7 @@ async def _pieces(receive: Receive) -> AsyncIterator[bytes]:
 
 
 async def _drain(pieces: AsyncIterator[bytes]) -> None:
-    """Read on for a while: a browser shows the refusal only once it has sent what it wanted."""
+    """Read the remaining body, since browsers show a refusal only after sending."""
     drained = 0
     async for piece in pieces:
         drained += len(piece)

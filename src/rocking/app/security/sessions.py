@@ -35,11 +35,11 @@ class SignIn(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid")
 
-    token: str = Field(min_length=1, max_length=200, description="What follows #token= in the link.")
+    token: str = Field(min_length=1, max_length=200, description="Token after #token= in the link.")
 
 
-SignedIn: Any = shape("SignedIn", "Whether somebody is signed in.", signed_in=bool)
-Link: Any = shape("Link", "A link that signs one more browser in.", url=str)
+SignedIn: Any = shape("SignedIn", "State of the session.", signed_in=bool)
+Link: Any = shape("Link", "A sign-in link for another browser.", url=str)
 
 
 @router.post("", summary="Exchange a one-time token for a session cookie")
@@ -61,34 +61,34 @@ def sign_in(request: Request, token: SignIn) -> SignedIn:
     return answer  # the schema documents SignedIn, the answer carries the cookie
 
 
-@router.get("", summary="Whether this browser or script is signed in")
+@router.get("", summary="Check the session")
 def signed_in(request: Request) -> SignedIn:
-    """Return whether this browser or script is signed in."""
+    """Return True if the request has a valid session or key."""
     return SignedIn(signed_in=is_signed_in(request))
 
 
 @router.delete("", summary="Sign out")
 def sign_out(request: Request) -> SignedIn:
-    """Forget the session of this browser."""
+    """Delete the session of this browser."""
     state = state_of(request)
     state.sessions.sign_out(request.cookies.get(cookie_name(state.settings.port)))
     return SignedIn(signed_in=False)
 
 
-@router.post("/link", summary="Make a link that signs one more browser in")
+@router.post("/link", summary="Create a sign-in link for another browser")
 def link(request: Request) -> Link:
-    """Make a link that signs one more browser in, once, within 15 minutes."""
+    """Create a one-time sign-in link for another browser, valid for 15 minutes."""
     state = state_of(request)
     return Link(url=f"{state.settings.origin}/#token={state.sessions.new_link()}")
 
 
 def cookie_name(port: int) -> str:
-    """Return the name of the session's cookie: cookies do not tell ports apart."""
+    """Return the name of the session cookie, different for each port."""
     return f"rocking-{port}"
 
 
 def is_signed_in(request: HTTPConnection) -> bool:
-    """Return whether a request carries a live session's cookie or the key for scripts."""
+    """Return True if a request has the cookie of a live session or the key for scripts."""
     state = state_of(request)
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":

@@ -1,4 +1,4 @@
-"""What is said of studies: state, progress, what they found, and the history behind a point."""
+"""Answers of studies: state, progress, results, and the time history of a point."""
 
 from typing import Annotated, Any, Literal
 
@@ -20,7 +20,7 @@ _PEAK = "peak rotation over alpha"
 
 
 def _left_out(words: str, default: Any = None) -> Any:
-    """Return what describes a key that may be left out."""
+    """Return the description of an optional key."""
     return Field(default, description=words)
 
 
@@ -34,16 +34,16 @@ Coordinate: Any = shape(
 )
 Result: Any = shape(
     "Result",
-    "What every result tells.",
+    "Common keys of all results.",
     id=str,
     messages=Messages,
     name=str,
     restitutions=list[str],
-    contact=(str, _left_out("in how many histories the ground would have to pull; empty if in none", "")),
+    contact=(str, _left_out("number of simulations with a tensile contact force; empty if 0", "")),
 )
 PointsOfState: Any = shape(
     "PointsOfState",
-    "How many motions reach a state at each level.",
+    "Number of motions that reach a limit state at each level.",
     x=(list[float], f"level, {_MEASURE}"),
     reached=(list[float], "motions that reach it [-]"),
     trials=(list[float], "motions whose history could be computed [-]"),
@@ -255,28 +255,28 @@ StudyResult = (
     ]
     | OutcomesResult
 )
-"""What a study found, by its kind."""
+"""Result of a study, by kind."""
 
 StudyFacts: Any = shape(
     "StudyFacts",
     "State and progress of a study.",
     "name kind",
-    id=(str, "its name in addresses"),
-    created=(str, "when, in UTC"),
+    id=(str, "identifier in URLs"),
+    created=(str, "time in UTC"),
     histories=(int, "of an adaptive study those that are known so far"),
     state=Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"],
-    message=(str, "a sentence on the state; empty where there is nothing to say"),
-    project=(str, "to which it belongs; empty if to none"),
+    message=(str, "a sentence on the state, or empty"),
+    project=(str, "project of the item; empty if none"),
     histories_done=int,
     rate=(float | None, "while it runs [1/s]"),
     seconds_left=(float | None, "while it runs; null while that is measured, or cannot be known [s]"),
     seconds_left_between=(tuple[float, float] | None, "between which it probably is [s]"),
 )
-Studies: Any = shape("Studies", "All studies, the newest first.", studies=list[StudyFacts])
-Launched: Any = shape("Launched", "A study that was put in line.", id=(str, "its name in addresses"))
+Studies: Any = shape("Studies", "All studies, newest first.", studies=list[StudyFacts])
+Launched: Any = shape("Launched", "A queued study.", id=(str, "identifier in URLs"))
 StoredHistory: Any = shape(
     "StoredHistory",
-    "What a study has of one history, to the last digit.",
+    "Stored results of one simulation.",
     history=(int, "its number"),
     meaning=(str, "the mode in words"),
     outcome=int,
@@ -288,12 +288,12 @@ StoredHistory: Any = shape(
 )
 HistoryAnswer: Any = shape(
     "HistoryAnswer",
-    "The history behind a point of the picture of a study.",
+    "The simulation of one point of a study.",
     stored=StoredHistory,
     messages=Messages,
-    inputs=(Inputs | None, "what to ask for the same history; null where inputs cannot say it"),
+    inputs=(Inputs | None, "inputs of the same simulation; null if inputs cannot express it"),
     answer=(ResponseFacts | None, "null where there is no response"),
     difference=(float | None, "between the peaks of `stored` and `answer`"),
-    note=(str, "on what is missing; empty if nothing is"),
+    note=(str, "note on missing data, or empty"),
     units=Units,
 )

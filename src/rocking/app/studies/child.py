@@ -20,7 +20,7 @@ _PATIENCE = 3.0
 
 
 def main(arguments: list[str]) -> int:
-    """Begin or go on with the campaign of a study."""
+    """Start or continue the campaign of a study."""
     threading.Thread(target=end_with_the_server, daemon=True).start()
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
@@ -69,7 +69,7 @@ def _compute(study: Path, workers: int) -> None:
 
 
 def end_with_the_server() -> None:
-    """Wait for the end of the server, and end this process and its group with it."""
+    """Wait for the end of the server, then end this process group."""
     with contextlib.suppress(OSError):
         while os.read(0, 1):
             pass

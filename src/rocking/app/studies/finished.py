@@ -1,4 +1,4 @@
-"""Finished studies: their jobs and results in memory, the latest ones kept, and as files."""
+"""Finished studies: jobs and results in memory and as files."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -32,7 +32,7 @@ class OpenStudy:
 
     @classmethod
     def of(cls, folder: StudyFolder) -> "OpenStudy":
-        """Open a study; results are read when they are asked for."""
+        """Open a study; results are read on demand."""
         from rocking.campaigns.jobs import JobFolder
 
         try:
@@ -43,17 +43,17 @@ class OpenStudy:
 
     @property
     def job(self) -> "Job":
-        """What was computed."""
+        """The job of the study."""
         return self.opened.job
 
     @property
     def question(self) -> Any:
-        """The question, of its own class."""
+        """The question of the study."""
         return self.job.document
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Dimensions beside the restitutions that are compared: it may be an axis, too."""
+        """Dimensions without the compared restitutions."""
         study = self.job.study
         if self.job.document.axes:
             return tuple(study.dims)[-2:]
@@ -61,12 +61,12 @@ class OpenStudy:
 
     @cached_property
     def raw(self) -> Arrays:
-        """Results as the engine gave them, one entry a history."""
+        """Raw results of the engine, one entry per simulation."""
         return self.opened.campaign.results()
 
     @cached_property
     def results(self) -> Arrays:
-        """Results as users know them, over the dimensions of the study."""
+        """Results over the dimensions of the study."""
         study = self.job.study
         derived = study.derived(0, study.histories.count, self.raw)
         return {name: values.reshape(study.shape) for name, values in derived.items()}
@@ -83,13 +83,13 @@ class OpenStudy:
 
     @cached_property
     def answer(self) -> "AdaptiveResult":
-        """What an adaptive study has found, from all of its rounds."""
+        """Result of an adaptive study, from all rounds."""
         from rocking.campaigns.jobs import answer
 
         return answer(self.opened)
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
-        """Return the results with one restitution as the page takes them."""
+        """Return the results with one restitution."""
         label = list(self.job.problem.restitutions)[restitution]
         dataset = self.job.study.dataset(self.results).assign_attrs(restitution=label)
         return dataset.isel(restitution=restitution) if len(self.axes) < len(self.job.study.dims) else dataset
@@ -108,7 +108,7 @@ def written(
     restitution: int,
     crossing_curves: Crossing | None = None,
 ) -> None:
-    """Write a finished study into a file: its curves if it is incremental, else a picture compares its restitutions."""
+    """Write a finished study to a file; a picture shows incremental curves, or compares restitutions."""
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(

@@ -1,4 +1,4 @@
-"""The history behind a point of a picture: what was computed there, as inputs that anybody can go on with."""
+"""The simulation of a point of a study, with inputs for further use."""
 
 import tomllib
 import warnings
@@ -42,10 +42,10 @@ _ACROSS = {
 _OF_RECORDS = ("format", "units", "time_step", "component", "vertical")
 _OF_FAMILIES = ("pga", "pgv", "time_step")
 _TIMES = {"period", "duration", "velocity"}
-"""Parameters of pulses that grow with their time while the acceleration stays."""
+"""Parameters of pulses that scale with time at constant acceleration."""
 
 _STARTS = {"rotation": "rotation", "angular_velocity": "velocity"}
-"""How a history starts, by the names of rows."""
+"""Initial conditions, by the names of rows."""
 
 _CLOSE = 1e-12
 POINTS = 1000  # samples of the curves
@@ -63,7 +63,7 @@ class HistoryPlace:
 
     @classmethod
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
-        """Return the history at a point of a picture."""
+        """Return the simulation at a point of a study."""
         dims, choices = study.job.study.dims, len(study.job.problem.restitutions)
         across = _ACROSS.get(study.job.document.kind, study.axes[::-1])
         index = {"motion": motion} | dict(zip(across, (x, y), strict=False))
@@ -84,7 +84,7 @@ class HistoryPlace:
 
 @dataclass(frozen=True)
 class Variation:
-    """What a history is made of."""
+    """Inputs of one simulation."""
 
     body: Body
     table: dict[str, Any]  # the same, as inputs tell it
@@ -98,7 +98,7 @@ class Variation:
 
     @classmethod
     def of(cls, study: OpenStudy, place: HistoryPlace) -> "Variation":
-        """Return what a history is made of."""
+        """Return the inputs of one simulation."""
         job = study.job
         label, restitution, choice = _choice(study, place)
         rows = job.study.histories.rows(place.number, place.number + 1)
@@ -121,7 +121,7 @@ class Variation:
 
 
 def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
-    """Return the variation of a cell of a map: its axes change it."""
+    """Return the inputs of a cell of a map."""
     job = study.job
     x, y = job.document.axes
     question = Question(variation.body, job.problem.motions[0], variation.restitution, job.problem.settings)
@@ -139,13 +139,13 @@ def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Vari
 
 
 def body_table(body: Body) -> dict[str, Any]:
-    """Return a body as inputs tell it, in m and kg/m3: the same to the last bit, but for sections that were scaled."""
+    """Return a body as a table of inputs, in m and kg/m3."""
     table = tomllib.loads(body_to_toml(body))
     return {"units": table["units"], **table["block"]} if "block" in table else table
 
 
 def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
-    """Return label, restitution, and what inputs say of it."""
+    """Return label, restitution and its table of inputs."""
     table, number = study.job.document.restitution, place.restitution
     label, restitution = list(study.job.problem.restitutions.items())[number]
     tables: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
@@ -158,7 +158,7 @@ def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, 
 
 
 def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, dict[str, Any] | None, float]:
-    """Return a motion of a study, its time stretched; how inputs name it, None where they cannot; its table's scale."""
+    """Return a motion with stretched time, its table of inputs or None, and its scale."""
     place = number
     for table in study.job.document.motions:
         if place < table.size:
@@ -200,7 +200,7 @@ def stretched_words(words: str, stretch: float) -> str:
 
 
 def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
-    """Return the history behind a point of a picture, `HistoryAnswer`."""
+    """Return the simulation of a point, `HistoryAnswer`."""
     # ``difference`` is of the peak rotations of the study and of the response here, which take other steps to the
     # same accuracy
     cell: dict[str, Any] = {
@@ -232,7 +232,7 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
 
 
 def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
-    """Return what a study has of a history, as it was computed, `StoredHistory`."""
+    """Return the stored results of a simulation, `StoredHistory`."""
     history = study.history(place.number)
     results = {name: plain(history[name]) for name in _STORED}
     return {"history": place.number, "meaning": mode_words(results["mode"]), **results}
@@ -253,7 +253,7 @@ def _responded(
 
 
 def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:
-    """Return why inputs cannot say this history; empty where they can."""
+    """Return the reason why inputs cannot express this simulation, or an empty text."""
     if source is None:
         return (
             f"the time of the motion is stretched by {variation.stretch:.6g} here, which inputs cannot say of a motion "

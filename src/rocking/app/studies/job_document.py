@@ -1,4 +1,4 @@
-"""The job that a browser sends: checked before anything is opened, and written as the job file of a campaign."""
+"""Jobs from browsers, checked and written as job files of campaigns."""
 
 import math
 from collections.abc import Callable
@@ -29,26 +29,26 @@ _BODY_KEYS = {
     "slenderness_angle", "semi_diagonal", *BodyInput.model_fields, *RegionTable.model_fields,
     *(key for table in TABLES.values() for key in table.model_fields),
 } - {*_FILES, "layers"}  # fmt: skip
-"""Keys of a body that a request may use; none of them can name a file of the server."""
+"""Keys of a body that a request may use; none names a file of the server."""
 
 _DEEPEST, _MOST_VALUES = 12, 500_000
 
 
 def launched_kinds() -> tuple[str, ...]:
-    """Return the kinds of campaigns that the application launches: those whose own table names no file."""
+    """Return the kinds of campaigns without file names in their own table."""
     return tuple(kind for kind, question in questions().items() if not question.names_files)
 
 
 @dataclass(frozen=True)
 class JobDocument:
-    """A job as it came, and as its tables say it."""
+    """A job: received tables and checked document."""
 
     tables: dict[str, Any]  # as it came; records are named by their hashes
     document: StudyQuestion  # the same, checked
 
     @classmethod
     def of(cls, tables: object) -> "JobDocument":
-        """Return a job that names no file, opens nothing, and fits its own kind."""
+        """Return a checked job without file names."""
         if not isinstance(tables, dict):
             raise InvalidValueError(
                 parameter="job", allowed="an object of tables, as a job file has them", value=tables
@@ -65,7 +65,7 @@ class JobDocument:
         return job
 
     def _check_counts(self) -> None:
-        """Refuse what takes long to be made, however few its histories are."""
+        """Refuse jobs with too many elements."""
         document = self.document
         counts = {"restitutions": document.choices, "bodies": len(document.bodies), **document.elements}
         counts |= {"motions": document.motion_count} if document.needs_motions else {}
@@ -79,27 +79,27 @@ class JobDocument:
 
     @property
     def needs_long(self) -> bool:
-        """Whether its motions take so long to be made that only its own process checks them."""
+        """True if its motions are checked in its own process only."""
         return self.document.needs_motions and self.document.motion_count > _QUICKLY_MADE
 
     @property
     def kind(self) -> str:
-        """What it computes."""
+        """Kind of the study."""
         return self.document.kind
 
     @property
     def records(self) -> list[str]:
-        """Hashes of the records that it names, each once."""
+        """Unique hashes of the records."""
         return list(dict.fromkeys(name for table in self.document.motions for name in table.records or []))
 
     @property
     def histories(self) -> int:
-        """How many histories it has, from its tables alone; of an adaptive study those of the first round."""
+        """Number of simulations, of an adaptive study in the first round."""
         return math.prod(self.document.sizes)
 
     @property
     def most(self) -> int:
-        """How many histories it may come to, roughly: a refined map goes on along its boundaries."""
+        """Approximate largest number of simulations."""
         return self.histories + self.document.later_histories
 
     def toml(self, path_of: Callable[[str], str]) -> str:
@@ -116,7 +116,7 @@ def _listed(value: Any) -> list[Any]:
 
 
 def _check_extent(tables: Any) -> None:
-    """Refuse what is nested or long beyond any job, before anything walks through it by recursion."""
+    """Refuse jobs with too many values or too deep nesting."""
     count = -1  # the job itself is none of its values
     for depth, level in enumerate(levels(tables)):
         count += len(level)
@@ -133,7 +133,7 @@ def _check_extent(tables: Any) -> None:
 
 
 def _refuse_files(tables: dict[str, Any]) -> None:
-    """Refuse files by name: what is not on this page is uploaded, and then named by its hash."""
+    """Refuse file names; files are uploaded and named by hash."""
     for each in chain.from_iterable(levels(tables.get("body"))):
         for key in each if isinstance(each, dict) else ():
             if key in _FILES:
@@ -154,7 +154,7 @@ def _refuse_files(tables: dict[str, Any]) -> None:
 
 
 def _refuse_record_files(table: dict[str, Any]) -> None:
-    """Refuse whatever of a motion may name a file; keys that no motion has are refused later on, in other words."""
+    """Refuse keys of a motion that name a file."""
     if table.get("files") is not None:
         raise InvalidValueError(
             "motions.files is not allowed here; write one table of motions per unit, with the hashes of its records"
@@ -173,7 +173,7 @@ def _refuse_record_files(table: dict[str, Any]) -> None:
 
 
 def _checked_regions(table: dict[str, Any]) -> int:
-    """Return the regions of a body, unless the body alone is larger than a page takes."""
+    """Return the number of regions of a body, 0 for an invalid body."""
     try:
         body = BodyInput.model_validate(table)
     except ValidationError:  # the job is read later on, and refused in its own words

@@ -1,4 +1,4 @@
-"""The studies of a server: in a queue, each in a process of its own; what is there, and how much room there is."""
+"""The studies of a server: queue, processes, storage and limits."""
 
 import errno
 import shutil
@@ -41,7 +41,7 @@ _UNREADABLE = f"its {META} cannot be read; nothing was changed: mend it and star
 
 
 class StudyManager:
-    """Launches studies, so many at once, watches them, stops them, and knows all that are on disk."""
+    """Launch, watch and stop studies, and list all studies on disk."""
 
     def __init__(
         self, folder: Path, limits: Limits, records: RecordStore, *, workers: int | None = None, at_once: int = 1
@@ -55,7 +55,7 @@ class StudyManager:
             self.queue.changed()  # what an earlier server left goes on by itself
 
     def create(self, name: str | None, job: object, project: str = "", *, brought: bool = False) -> str:
-        """Put a new study in the queue, however long it is if a file of a project brought it."""
+        """Put a new study in the queue; imported studies ignore its length."""
         document = JobDocument.of(job)
         count = document.most
         if count > self._limits.histories:
@@ -67,12 +67,12 @@ class StudyManager:
         return self.queue.enter(lambda: self._new_study(words, document, project), brought=brought).folder.id
 
     def of_project(self, project: str) -> list[tuple[str, dict[str, Any]]]:
-        """Return names and jobs of the studies of a project, the oldest first."""
+        """Return names and jobs of the studies of a project, oldest first."""
         mine = [facts for facts in self.overview() if facts["project"] == project]
         return [(facts["name"], self.queue.study(facts["id"]).folder.asked()) for facts in reversed(mine)]
 
     def overview(self) -> list[dict[str, Any]]:
-        """Return name, kind, state and progress of all studies, the newest first; nothing is read for it."""
+        """Return name, kind, state and progress of all studies, newest first."""
         return list(self.queue.published.values())
 
     def get(self, study: str) -> dict[str, Any]:
@@ -93,11 +93,11 @@ class StudyManager:
         return self.queue.study(study).folder
 
     def open(self, folder: StudyFolder) -> OpenStudy:
-        """Return a study that is done; one that was opened lately is not opened again."""
+        """Return a finished study; recent studies are cached."""
         return self.opened.get(folder.id, lambda: OpenStudy.of(folder))
 
     def cancel(self, study: str) -> None:
-        """Stop a study within a second; what is finished is safe, and it can be resumed."""
+        """Stop a study within a second; finished simulations are kept."""
         with self.queue.lock:
             hosted = self.queue.study(study)
             if hosted.meta.state not in {WAITING, RUNNING}:
@@ -113,7 +113,7 @@ class StudyManager:
         self.queue.changed()
 
     def resume(self, study: str) -> None:
-        """Put a study in the queue again; it goes on where it stopped."""
+        """Put a study in the queue again; it continues."""
 
         def again() -> HostedStudy:
             with self.queue.lock:
@@ -129,7 +129,7 @@ class StudyManager:
         self.queue.enter(again)
 
     def delete(self, study: str) -> None:
-        """Forget a study and all its results; one that runs is stopped."""
+        """Delete a study and its results; a running study is stopped."""
         hosted, process = self.queue.leave(study)
         if process is not None:
             process.stop()
@@ -140,7 +140,7 @@ class StudyManager:
         self.queue.changed()
 
     def close(self) -> None:
-        """Stop what runs, so that it can be resumed, and watch no longer."""
+        """Stop running studies, which can be resumed, and stop watching."""
         self.queue.close()
 
     def _new_study(self, name: str, document: JobDocument, project: str) -> HostedStudy:
@@ -176,7 +176,7 @@ def studies_in(folder: Path) -> dict[str, HostedStudy]:
 
 
 def _is_half_written(path: Path) -> bool:
-    """Return whether its server was killed while it was made: there is nothing in it that anybody would miss."""
+    """Return True if the folder was created incompletely."""
     try:
         return not {META, CAMPAIGN} & {each.name for each in path.iterdir()}
     except OSError:
@@ -184,7 +184,7 @@ def _is_half_written(path: Path) -> bool:
 
 
 def _unknown(path: Path) -> Meta:
-    """Return what can be said of a study that is not understood, perhaps of a later version, and is left as it is."""
+    """Return the data of an unreadable study."""
     created = _instant(datetime.fromtimestamp(path.lstat().st_mtime, UTC))
     return Meta(f"study {path.name}", "unknown", created, 0, FAILED, _UNREADABLE)
 
@@ -194,7 +194,7 @@ def _instant(time: datetime) -> str:
 
 
 def remove(study: HostedStudy) -> None:
-    """Remove a study from the disk; a server that is killed meanwhile does not find half of one."""
+    """Remove a study from the disk, safe against interruption."""
     path = study.folder.path
     aside = path.with_name(f"{_DELETED}{path.name}")
     with suppress(FileNotFoundError):  # somebody was quicker

@@ -1,4 +1,4 @@
-"""The queue of studies: one after another is computed, watched, and told of."""
+"""The queue of studies: computed, watched and published one after another."""
 
 import logging
 import threading
@@ -16,7 +16,7 @@ GONE = "study not found; it may have been deleted"
 
 
 class StudyQueue:
-    """Studies of which a few run at once, some (up to the longest) wait and the others do neither; thread-safe."""
+    """Thread-safe queue of studies, with limits of running and queued studies."""
 
     def __init__(self, studies: dict[str, HostedStudy], workers: int, at_once: int, longest: int) -> None:
         self.lock = threading.RLock()
@@ -35,7 +35,7 @@ class StudyQueue:
         return self._studies[name]
 
     def enter(self, make: Callable[[], HostedStudy], *, brought: bool = False) -> HostedStudy:
-        """Put a study in the queue; its place is kept while it is made."""
+        """Put a study in the queue; a place is reserved during its creation."""
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
             if waiting >= self._longest and not brought:
@@ -56,31 +56,31 @@ class StudyQueue:
         return study
 
     def leave(self, name: str) -> tuple[HostedStudy, StudyProcess | None]:
-        """Take a study out for good, and return it with its process."""
+        """Remove a study, and return it with its process."""
         with self.lock:
             study = self.study(name)
             study.cancelled = study.left = True
             return self._studies.pop(name), study.process
 
     def end(self, study: HostedStudy, process: StudyProcess) -> None:
-        """Note how a study ended, once its process has; nothing if it was noted, or another process computes it."""
+        """Store the end of a study after its process has ended."""
         with self.lock:
             if study.process is process:
                 study.end(closed=self.closed)
 
     def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
-        """Be told of every change, from whatever thread."""
+        """Subscribe to changes, called from any thread."""
         with self.lock:
             self._listeners.add(tell)
         return lambda: self._listeners.discard(tell)
 
     @property
     def watchers(self) -> int:
-        """How many are told of changes."""
+        """Number of subscribers."""
         return len(self._listeners)
 
     def changed(self) -> None:
-        """Look at the queue at once."""
+        """Process the queue now."""
         with self.lock:
             dead = self._thread is None or not self._thread.is_alive()
             if dead and not self.closed:
@@ -90,7 +90,7 @@ class StudyQueue:
         self._wake.set()
 
     def publish(self) -> None:
-        """Tell of what has changed since it was told."""
+        """Publish changes to subscribers."""
         with self.lock:
             studies = sorted(self._studies.values(), key=lambda each: (each.meta.created, each.folder.id), reverse=True)
             now = {each.folder.id: each.facts for each in studies}
@@ -102,7 +102,7 @@ class StudyQueue:
             tell()
 
     def close(self) -> None:
-        """Stop what runs, so that it can be resumed, and watch no longer."""
+        """Stop running studies, which can be resumed, and stop watching."""
         self.closed = True
         self._wake.set()
         if self._thread is not None:
@@ -136,7 +136,7 @@ class StudyQueue:
             self._wake.clear()
 
     def _tend(self, each: HostedStudy) -> None:
-        """Look at a study that runs; whatever goes wrong with one does not touch the others."""
+        """Update a running study; an error does not affect other studies."""
         process = each.process
         try:
             each.look()

@@ -1,4 +1,4 @@
-"""What the browser is told of a finished study, by its kind."""
+"""Results of finished studies for the browser, by kind."""
 
 import base64
 import math
@@ -44,7 +44,7 @@ def plain(value: Any) -> Any:
 
 
 def packed(values: np.ndarray) -> Any:
-    """Return a large array as bytes in base64, in the smallest kind of whole number or single precision; others plain.
+    """Return a large array as base64 bytes of the smallest type, a small array as a list.
 
     >>> packed(np.array([[2, 300]]))
     [[2, 300]]
@@ -60,25 +60,25 @@ def packed(values: np.ndarray) -> Any:
 
 
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
-    """Return what is known of a dimension of a study."""
+    """Return name, values and unit of a dimension of a study."""
     axis = study.job.study.coordinates[name]
     return {"name": name, "values": axis.values, "unit": axis.unit, "words": axis.meaning}
 
 
 def coordinates(study: OpenStudy, **names: str) -> dict[str, Any]:
-    """Return what is known of some dimensions, by the keys of an answer."""
+    """Return dimensions of a study by the keys of an answer."""
     return {key: coordinate(study, name) for key, name in names.items()}
 
 
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
-    """Return a result with the restitution as its first dimension, also where there is only one."""
+    """Return a result with the restitution as its first dimension."""
     values, dims = study.results[name], list(study.job.study.dims)
     several = len(study.axes) < len(dims)
     return np.moveaxis(values, dims.index("restitution"), 0) if several else values[None]
 
 
 def kept_result(folder: StudyFolder) -> bytes | None:
-    """Return the result that was kept."""
+    """Return the stored result, or None."""
     try:
         return (folder.path / NAME).read_bytes()
     except OSError:
@@ -86,7 +86,7 @@ def kept_result(folder: StudyFolder) -> bytes | None:
 
 
 def keep_result(study: OpenStudy) -> bytes:
-    """Make the result of a finished study, and keep it."""
+    """Compute and store the result of a finished study."""
     data = to_json(result_of(study))  # the process of a study needs no more of an answer than its bytes
     disk.write_new(study.folder.path / NAME, data)
     return data
@@ -154,7 +154,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def outcomes_result(study: OpenStudy) -> dict[str, Any]:
-    """Return the outcomes of a study that has no picture on the page, `OutcomesResult`."""
+    """Return the outcomes of a study without a picture, `OutcomesResult`."""
     known = study.job.study.coordinates
     return {
         "dimensions": [coordinate(study, name) for name in study.axes if name in known],
@@ -187,7 +187,7 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
 def contours_of(
     inside: np.ndarray, x: FloatArray, y: FloatArray, known: np.ndarray | None = None
 ) -> list[list[list[float]]]:
-    """Return polylines of x and y halfway between what is inside and what is not; closed ones end where they begin."""
+    """Return polylines of x and y between inside and outside; closed lines repeat their first point."""
     if min(inside.shape) < 2:
         return []
     corners = _corners(inside)

@@ -1,4 +1,4 @@
-"""Endpoints of studies: launch, watch, cancel, resume, look at, take away; the list is pushed whenever it changes."""
+"""Endpoints of studies: launch, progress, cancel, resume, results and export."""
 
 import asyncio
 import contextlib
@@ -42,30 +42,32 @@ class StudyRequest(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
-    name: Annotated[str | None, Field(max_length=200, description="what it is called; as the job says by default")] = (
-        None
-    )
+    name: Annotated[str | None, Field(max_length=200, description="name; default: name in the job")] = None
     job: Annotated[dict[str, Any], Field(description=_JOB)]
-    project: Annotated[str, Field(max_length=40, description="to which it belongs, if to one")] = ""
+    project: Annotated[str, Field(max_length=40, description="project of the item")] = ""
 
 
 class PointRequest(BaseModel):
-    """A point of the picture of a study: numbers of values along its axes."""
+    """A point of a study: indices along its axes."""
 
     model_config = ConfigDict(extra="forbid")
 
     x: Whole = 0
     y: Whole = 0
     restitution: Whole = 0
-    motion: Annotated[Whole, Field(description="where the motion is no axis of the picture")] = 0
-    points: Annotated[int, Field(ge=10, le=2000, description="dots over which curves are drawn")] = 1000
+    motion: Annotated[Whole, Field(description="index of the motion, unless it is an axis")] = 0
+    points: Annotated[int, Field(ge=10, le=2000, description="pixels of the curves")] = 1000
 
 
 @router.post(
-    "", status_code=202, summary="Launch a study", description=_JOB, responses=answered(Launched, "It is in line.", 202)
+    "",
+    status_code=202,
+    summary="Launch a study",
+    description=_JOB,
+    responses=answered(Launched, "The item is queued.", 202),
 )
 async def create_study(request: Request, study: StudyRequest) -> JsonAnswer:
-    """Put a study in line."""
+    """Put a study in the queue."""
     if study.project:
         await run_in_threadpool(state_of(request).projects.get, study.project)
     name = await heavy(request, _studies(request).create, study.name, study.job, study.project)
@@ -74,13 +76,13 @@ async def create_study(request: Request, study: StudyRequest) -> JsonAnswer:
 
 @router.get("", summary="All studies", responses=answered(Studies, "The studies."))
 async def list_studies(request: Request) -> JsonAnswer:
-    """Return all studies, the newest first."""
+    """Return all studies, newest first."""
     return JsonAnswer({"studies": _studies(request).overview()})
 
 
 @router.websocket("/live")
 async def live_studies(socket: WebSocket) -> None:
-    """Push the list of studies whenever it changes."""
+    """Send the list of studies at every change."""
     await serve(state_of(socket).studies, socket)
 
 
@@ -97,27 +99,25 @@ async def cancel_study(request: Request, study: str) -> JsonAnswer:
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.post("/{study}/resume", summary="Go on with a study", responses=_ONE)
+@router.post("/{study}/resume", summary="Resume a study", responses=_ONE)
 async def resume_study(request: Request, study: str) -> JsonAnswer:
-    """Put a study in line again."""
+    """Put a study in the queue again."""
     await run_in_threadpool(_studies(request).resume, study)
     return JsonAnswer(_studies(request).get(study))
 
 
 @router.delete(
-    "/{study}", summary="Delete a study and its results", responses=answered(Deleted, "What is no longer there.")
+    "/{study}", summary="Delete a study and its results", responses=answered(Deleted, "Identifier of the deleted item.")
 )
 async def delete_study(request: Request, study: str) -> JsonAnswer:
-    """Forget a study."""
+    """Delete a study."""
     await run_in_threadpool(_studies(request).delete, study)
     return JsonAnswer({"deleted": study})
 
 
-@router.get(
-    "/{study}/result", summary="What a study found, by its kind", responses=answered(StudyResult, "What it found.")
-)
+@router.get("/{study}/result", summary="Result of a study, by kind", responses=answered(StudyResult, "The result."))
 async def study_result(request: Request, study: str) -> Response:
-    """Return what a finished study found."""
+    """Return the result of a finished study."""
     manager = _studies(request)
     manager.finished(study)
     known = manager.answers.known((study, "result"))
@@ -127,11 +127,11 @@ async def study_result(request: Request, study: str) -> Response:
 
 @router.get(
     "/{study}/cell",
-    summary="The history behind a point of its picture",
-    responses=answered(HistoryAnswer, "The history."),
+    summary="Simulation of a point of a study",
+    responses=answered(HistoryAnswer, "The simulation."),
 )
 async def study_cell(request: Request, study: str, point: Annotated[PointRequest, Query()]) -> Response:
-    """Return inputs and response of one history of a finished study."""
+    """Return inputs and response of one simulation of a finished study."""
     manager = _studies(request)
     manager.finished(study)
     return Response(await heavy(request, _cell, manager, study, point), media_type="application/json")
@@ -151,9 +151,9 @@ async def export_study(
         str | None,
         Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
     ] = None,
-    restitution: Annotated[Whole, Query(description="of curves, counted from 0")] = 0,
+    restitution: Annotated[Whole, Query(description="index of the restitution of curves")] = 0,
     crossing_curves: Annotated[
-        Crossing | None, Query(description="what to do with fragility curves that cross")
+        Crossing | None, Query(description="treatment of crossing fragility curves")
     ] = None,
 ) -> Response:
     """Return a finished study as a file."""
@@ -174,7 +174,7 @@ def _studies(request: Request) -> StudyManager:
 
 @contextmanager
 def _there(manager: StudyManager, study: str) -> Iterator[StudyFolder]:
-    """Say that a study is not there, rather than whatever comes of it, where it is deleted while it is read."""
+    """Raise `NotFound` if the study is deleted during the access."""
     folder = manager.finished(study)
     try:
         yield folder
@@ -216,7 +216,7 @@ def _file(
 
 
 async def serve(manager: StudyManager, socket: WebSocket) -> None:
-    """Send the list of studies now and after every change, until the browser goes."""
+    """Send the list of studies now and after every change, until the browser disconnects."""
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
     def tell() -> None:
@@ -247,7 +247,7 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
 
 
 async def _gone(socket: WebSocket) -> None:
-    """Return when the browser has gone; what it says is not listened to."""
+    """Return when the browser has disconnected; its messages are ignored."""
     while True:
         message = await socket.receive()
         if message["type"] == "websocket.disconnect":

@@ -1,4 +1,4 @@
-"""A study as the server knows it: its state, how fast it is, and its process while it has one."""
+"""A study of the server: state, speed and process."""
 
 import contextlib
 import json
@@ -57,7 +57,7 @@ class StudyPace:
 
 
 class StudyProcess:
-    """A process, and the group of its workers, that computes a study."""
+    """A process group that computes a study."""
 
     def __init__(self, folder: StudyFolder, workers: int) -> None:
         self.folder = folder
@@ -75,7 +75,7 @@ class StudyProcess:
         return self._process.poll()
 
     def stop(self, patience: float = GRACE) -> int:
-        """Ask it to stop, and make it stop if it does not within so long [s]: what is finished is safe either way."""
+        """Interrupt the process, and kill it after `patience` [s]; finished simulations are kept."""
         if self._process.poll() is None:
             with contextlib.suppress(OSError, ValueError):  # some systems have no such signal
                 self._process.send_signal(signal.SIGINT)
@@ -87,12 +87,12 @@ class StudyProcess:
         return self._process.wait()
 
     def close(self) -> None:
-        """Let go of the pipe, once it has ended."""
+        """Close the pipe of the ended process."""
         if self._process.stdin:
             self._process.stdin.close()
 
     def refusal(self) -> str:
-        """Return why it ended, in words that a user may see, or where to look for more."""
+        """Return the reason of its end, or the path of its log."""
         try:
             with (self.folder.path / LOG).open("rb") as log:
                 log.seek(self._begin)
@@ -130,7 +130,7 @@ class HostedStudy:
         self.become(RUNNING)
 
     def become(self, state: str, message: str = "") -> None:
-        """Change the state, here and on disk; where the disk does not take it, here alone until `save` is called."""
+        """Change the state in memory and on disk; `save` repeats a failed write."""
         self.meta = replace(self.meta, state=state, message=message)
         self.saved = False
         self.save()
@@ -138,7 +138,7 @@ class HostedStudy:
             _LOG.warning("the state of study %s could not be written; it is tried again", self.folder.id)
 
     def save(self) -> None:
-        """Write the state if the disk does not know it yet; a full disk, or a folder that is gone, is no error."""
+        """Write an unsaved state; a full disk or a missing folder is ignored."""
         if self.saved or self.left:
             return
         try:
@@ -148,7 +148,7 @@ class HostedStudy:
             self.saved = isinstance(error, FileNotFoundError)  # there is no folder to write it in, nor will there be
 
     def look(self) -> bool:
-        """See how far it is."""
+        """Update the progress; return True if complete."""
         try:
             status, complete = self.folder.status()
         except (RockingError, OSError):  # the ledger is being made, or is damaged or gone: its process will say so
@@ -160,7 +160,7 @@ class HostedStudy:
         return complete
 
     def end(self, *, closed: bool) -> None:
-        """Note how it ended, once its process has; nothing if that was noted before."""
+        """Store the final state after the process has ended."""
         process, self.process = self.process, None
         if process is None:
             return
@@ -179,7 +179,7 @@ class HostedStudy:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What the application answers."""
+        """State and progress for answers."""
         running = self.meta.state == RUNNING
         total = max(self.meta.histories, self.begun)  # an adaptive study finds out on the way how many there are
         left = self.estimate if running else None

@@ -1,4 +1,4 @@
-"""A study on disk: its id, what it is, its job, the records that it needs, and its campaign."""
+"""A study on disk: identifier, data, job, records and campaign."""
 
 import json
 import re
@@ -40,13 +40,13 @@ def new_id() -> str:
 
 
 def is_id(text: str) -> bool:
-    """Return whether words can be the name of a study's folder."""
+    """Return True if a text can be the name of a study folder."""
     return _ID.match(text) is not None
 
 
 @dataclass(frozen=True)
 class Meta:
-    """What is known of a study beside its campaign."""
+    """Data of a study outside its campaign."""
 
     name: str  # name, kind: what it is called, fit to be shown, and what it computes
     kind: str
@@ -76,7 +76,7 @@ class StudyFolder:
         return self.path / CAMPAIGN
 
     def create(self, meta: Meta, job: "JobDocument", records: "RecordStore") -> None:
-        """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`."""
+        """Write a self-contained study; `meta.json` is written last."""
         from rocking.campaigns.jobs import Job
 
         try:
@@ -99,7 +99,7 @@ class StudyFolder:
             raise
 
     def asked(self) -> dict[str, Any]:
-        """Return the tables of the job, with records by their hashes, as they were sent."""
+        """Return the tables of the job, with records by hash."""
         tables = migrated(tomllib.loads((self.path / JOB).read_text(encoding="utf-8")))
         for motions in tables.get("motions", []):
             if "records" in motions:
@@ -107,7 +107,7 @@ class StudyFolder:
         return tables
 
     def _keep(self, sha256: str, source: Path) -> str:
-        """Copy a record into the study, by a link where the disk can, and return its path in the study."""
+        """Link or copy a record into the study, and return its path in the study."""
         name = f"{RECORDS}/{sha256}/{record_file_name(source.name)}"
         target = self.path / name
         disk.make_folder(target.parent)
@@ -121,11 +121,11 @@ class StudyFolder:
         return name
 
     def write(self, meta: Meta) -> None:
-        """Write what is known of the study, as a whole or not at all."""
+        """Write the data of the study atomically."""
         disk.write_new(self.path / META, (json.dumps(asdict(meta), indent=1) + "\n").encode())
 
     def read(self) -> Meta | None:
-        """Return what is known of the study; None where there is nothing, or nothing that can be read."""
+        """Return the data of the study; None if missing or unreadable."""
         try:
             meta = _META.validate_json((self.path / META).read_bytes(), strict=True)
         except (OSError, ValueError):
@@ -133,14 +133,14 @@ class StudyFolder:
         return meta if meta.state in STATES else None
 
     def status(self) -> tuple[CampaignStatus | None, bool]:
-        """Return how far the campaign is (None where nothing has begun), and whether it is complete."""
+        """Return the progress of the campaign, None before its start, and True if complete."""
         if not (self.campaign / JOB).is_file():
             return None, False
         campaign = status_of(self.campaign, verify=False)
         return campaign.status, campaign.complete
 
     def ended(self) -> Meta | None:
-        """Return what is known when the server starts, None of no study: what its end interrupted waits to go on."""
+        """Return the data of the study at the start of the server; interrupted studies are queued."""
         meta = self.read()
         if meta is None or meta.state not in {WAITING, RUNNING, INTERRUPTED}:
             return meta
@@ -156,7 +156,7 @@ class StudyFolder:
 
 
 def without_paths(error: RockingError, study: Path) -> RockingError:
-    """Take the folders of a study, and the name of its job, out of an error: its user has not chosen them."""
+    """Remove the paths of a study from an error."""
     for folder in (study / CAMPAIGN, study):
         error.without_folder(folder, "the study")
     return error.without_file(JOB)
