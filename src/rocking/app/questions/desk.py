@@ -364,7 +364,7 @@ class QuestionDesk:
         return None if known is None else known.state
 
 
-def _migrated(note: dict[str, Any]) -> dict[str, Any]:
+def _migrated(note: Any) -> dict[str, Any]:
     """Return the note of a question of any schema as one of the present schema."""
     if not isinstance(note, dict) or (schema := note.pop("schema", 1)) not in range(1, SCHEMA + 1):
         raise ValueError

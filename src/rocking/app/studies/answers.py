@@ -143,7 +143,7 @@ FragilityResult: Any = shape(
     "Fragility curves.",
     Result,
     kind=Literal["stripes", "cloud", "incremental"],
-    measure=QuantityAnswer,
+    im=QuantityAnswer,
     motions=Coordinate,
     definition=str,
     uplift_threshold=(float | None, f"least level that lifts, {_MEASURE}; null where none is known"),

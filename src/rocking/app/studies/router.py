@@ -152,9 +152,7 @@ async def export_study(
         Query(max_length=40, description="WHAT of `rocking campaign export --output WHAT=FILE`"),
     ] = None,
     restitution: Annotated[Whole, Query(description="index of the restitution of curves")] = 0,
-    crossing_curves: Annotated[
-        Crossing | None, Query(description="treatment of crossing fragility curves")
-    ] = None,
+    crossing_curves: Annotated[Crossing | None, Query(description="treatment of crossing fragility curves")] = None,
 ) -> Response:
     """Return a finished study as a file."""
     manager = _studies(request)
