@@ -1,4 +1,4 @@
-"""Predict what an impact costs a rocking body, how it rocks in an earthquake, and whether it overturns."""
+"""Predict the energy loss of rocking bodies at impact, simulate rocking, and assess overturning."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""Answers: every result that is shown, by the names of its quantities, and its numbers as a reader sees them."""
+"""Answers: displayed results by the names of their quantities, and their numbers in the units of the reader."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -20,18 +20,18 @@ class AnswerRows:
     {'time': 0.1, 'foot': 'left'}
     """
 
-    columns: Mapping[str, Sequence[Any]]  # columns of one length by the names of their quantities
+    columns: Mapping[str, Sequence[Any]]  # columns of equal length by the names of their quantities
 
     @classmethod
     def of_records(cls, records: Iterable[Mapping[str, Any]]) -> "AnswerRows":
-        """Return values by the names of their quantities as a table; what a record lacks does not exist."""
+        """Return records of values by the names of quantities as a table; None for missing values."""
         listed = list(records)
         names = dict.fromkeys(name for record in listed for name in record)
         return cls({name: [record.get(name) for record in listed] for name in names})
 
     @classmethod
     def of(cls, records: np.ndarray, *, without: Sequence[str] = ()) -> "AnswerRows":
-        """Return a structured array whose fields are quantities."""
+        """Return the rows of a structured array with quantities as fields."""
         return cls({name: records[name].tolist() for name in records.dtype.names or () if name not in without})
 
     def __len__(self) -> int:
@@ -39,28 +39,30 @@ class AnswerRows:
 
     @property
     def records(self) -> list[dict[str, Any]]:
-        """AnswerRows, as values by the names of their quantities."""
+        """Rows, as values by the names of their quantities."""
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*self.columns.values(), strict=True)]
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:
-        """Columns as files contain them: numbers, or text; lists as text with dashes between."""
+        """Columns for files: numbers, or text; lists as text with dashes."""
         return {name: _array(name, values) for name, values in self.columns.items()}
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What is shown of a result.
+    """The displayed values of a result.
 
     >>> block = Answer({"kind": "Block", "sides": {"left": {"semi_diagonal": 0.5}}})
     >>> block.plain()
     {'kind': 'Block', 'sides': {'left': {'semi_diagonal': 0.5}}, 'units': {'semi_diagonal': 'm'}}
     """
 
-    # by the name of a quantity a number, array, word, message, or such values by a label; None for what does not
-    # exist; by the name of a part another answer, rows, or such values
+    # by the name of a quantity: a number, array, text, message, or such values by a label; None for missing values
+    # by the name of a section: another answer, rows, or such values
     values: Mapping[str, Any]
-    quantities: Mapping[str, Quantity] = field(default_factory=dict)  # those of the answer alone, such as Sa(0.5 s)
+    quantities: Mapping[str, Quantity] = field(
+        default_factory=dict
+    )  # quantities of this answer only, such as Sa(0.5 s)
 
     def __getitem__(self, name: str) -> Any:
         return self.values[name]
@@ -74,7 +76,7 @@ class Answer:
         return Answer({**self.values, **other.values}, {**self.quantities, **other.quantities})
 
     def plain(self) -> dict[str, Any]:
-        """Return the values as JSON has them, null where there is no finite number, with units and messages beside."""
+        """Return the values for JSON, null for numbers that are not finite, with units and messages."""
         own = dict(self.quantities)
         tree = plain(self, own)
         owners = dict.fromkeys(name for _, name in _owners(tree, (), own) if name)
@@ -84,7 +86,7 @@ class Answer:
 
     @property
     def bare(self) -> list[str]:
-        """Numbers without an entry in `rocking.quantities`, by their keys; none if all is well."""
+        """Keys of numbers without an entry in `rocking.quantities`; empty in a correct answer."""
         own = dict(self.quantities)
         tree = plain(self, own)
         return [path for path, name in _owners(tree, (), own) if not name]
@@ -95,13 +97,13 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
     if codes := {word: code for code, word in entry.codes.items()}:
         return np.array([codes[word if word in codes else entry.spelled[word]] for word in values], dtype=np.int8)
     if entry.is_text:
-        return np.array([each if isinstance(each, str) else "-".join(map(str, each)) for each in values], dtype=str)
+        return np.array([value if isinstance(value, str) else "-".join(map(str, value)) for value in values], dtype=str)
     array = np.array(values)
     return array.astype(np.int8) if array.dtype == bool else array
 
 
 def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:
-    """Return a value as JSON has it, null where there is no finite number; own: takes quantities of answers in it."""
+    """Return a value for JSON, null for numbers that are not finite; own: receives the quantities of answers."""
     own = {} if own is None else own
     if isinstance(value, Answer):
         own |= value.quantities
@@ -109,40 +111,40 @@ def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:
     if isinstance(value, AnswerRows):
         return plain(value.records, own)
     if isinstance(value, Mapping):
-        return {str(name): plain(each, own) for name, each in value.items()}
+        return {str(name): plain(item, own) for name, item in value.items()}
     if hasattr(value, "tolist"):
-        whole = getattr(getattr(value, "dtype", None), "kind", "") in "iub" or np.isfinite(value).all()
-        return value.tolist() if whole else plain(value.tolist(), own)
+        is_finite = getattr(getattr(value, "dtype", None), "kind", "") in "iub" or np.isfinite(value).all()
+        return value.tolist() if is_finite else plain(value.tolist(), own)
     if isinstance(value, (list, tuple)):
-        return [plain(each, own) for each in value]
+        return [plain(item, own) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _owners(value: Any, path: tuple[str, ...], own: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Yield the keys of every number, and the last of them that is a quantity; empty if none is."""
+    """Yield the keys of every number, and the last key with a quantity; empty without one."""
     if isinstance(value, dict):
-        for name, each in value.items():
-            yield from _owners(each, (*path, name), own)
+        for name, item in value.items():
+            yield from _owners(item, (*path, name), own)
     elif isinstance(value, list):
-        # the numbers of a list have one quantity
-        number = next((each for each in value if isinstance(each, (int, float)) and not isinstance(each, bool)), None)
-        for each in value if number is None else [number]:
-            yield from _owners(each, path, own)
+        # all numbers of a list have one quantity
+        number = next((item for item in value if isinstance(item, (int, float)) and not isinstance(item, bool)), None)
+        for item in value if number is None else [number]:
+            yield from _owners(item, path, own)
     elif isinstance(value, (int, float)) and not isinstance(value, bool):
-        name, entry = next(((each, entry) for each in reversed(path) if (entry := quantity(each, own))), ("", None))
+        name, entry = next(((item, entry) for item in reversed(path) if (entry := quantity(item, own))), ("", None))
         has_unit = entry is not None and (isinstance(value, int) or bool(entry.unit))
         yield ".".join(path), name if has_unit else ""
 
 
 @dataclass(frozen=True)
 class Display:
-    """Units in which a reader sees lengths, accelerations and angles.
+    """Units of lengths, accelerations and angles for the reader.
 
     >>> display = Display(length="mm")
     >>> display.text("semi_diagonal", 0.5), display.text("slenderness_angle", 0.25), display.heading("duration")
     ('500 mm', '14.32 deg', 'duration [s]')
 
-    An acceleration in another unit than g stands in g too.
+    An acceleration in another unit than g has a value in g too.
 
     >>> display.text("uplift_acceleration", 2.94199), Display(acceleration="g").text("uplift_acceleration", 2.94199)
     ('2.942 m/s2 (0.3 g)', '0.3 g')
@@ -151,15 +153,15 @@ class Display:
     length: str = "m"
     acceleration: str = "m/s2"
     angle: str = "deg"
-    own: Mapping[str, Quantity] = field(default_factory=dict)  # quantities of the answer alone
+    own: Mapping[str, Quantity] = field(default_factory=dict)  # quantities of the answer only
     units: Mapping[str, str] = field(default_factory=dict)  # units of single quantities, by name
 
     def entry(self, name: str) -> Quantity:
-        """Return the quantity of a column; a part or a label is text."""
+        """Return the quantity of a column; sections and labels are text."""
         return quantity(name, self.own) or Quantity(name, "", "")
 
     def unit(self, entry: Quantity) -> str:
-        """Return the unit of a quantity for the reader; empty for numbers without one."""
+        """Return the unit of a quantity for the reader; empty for dimensionless numbers."""
         own = {"m": self.length, "m/s2": self.acceleration, "rad": self.angle, "1": ""}
         return self.units.get(entry.name) or own.get(entry.unit, entry.unit)
 
@@ -168,8 +170,8 @@ class Display:
         entry = self.entry(name)
         return f"{entry.heading} [{unit}]" if (unit := self.unit(entry)) else entry.heading
 
-    def cell(self, name: str, value: Any) -> str:  # noqa: PLR0911 - one a kind
-        """Return a value in the unit of the reader, without the unit; what does not exist is a dash."""
+    def cell(self, name: str, value: Any) -> str:  # noqa: PLR0911 - one per kind
+        """Return a value in the unit of the reader, without the unit; a dash for missing values."""
         value = value.tolist() if hasattr(value, "tolist") else value
         if value is None or (isinstance(value, float) and math.isnan(value)):
             return "-"
@@ -179,7 +181,7 @@ class Display:
         if isinstance(value, str):
             return entry.spelled.get(value, value.replace("_", " ") if entry.codes else value)
         if isinstance(value, (list, tuple)):
-            return ("-" if entry.is_text else ", ").join(self.cell(name, each) for each in value)
+            return ("-" if entry.is_text else ", ").join(self.cell(name, item) for item in value)
         if entry.words is not None:
             return entry.words(value)
         if math.isinf(value):
@@ -194,15 +196,15 @@ class Display:
     def text(self, name: str, value: Any) -> str:
         """Return a value with its unit."""
         cell, unit = self.cell(name, value), self.unit(self.entry(name))
-        beside = f" ({self._in_g(name).text(name, value)})" if self._is_beside_g(name) and cell != "-" else ""
-        return f"{cell} {unit}{beside}" if unit and cell != "-" else cell
+        in_g = f" ({self._in_g(name).text(name, value)})" if self._is_beside_g(name) and cell != "-" else ""
+        return f"{cell} {unit}{in_g}" if unit and cell != "-" else cell
 
     def lines(
         self, values: Mapping[str, Any], names: Sequence[str], *, in_full: bool = False
     ) -> Iterator[tuple[str, str]]:
-        """Return label and text of those of some quantities that an answer has, of a body also those of its sides.
+        """Yield label and text of the named quantities in an answer, of a body also by side.
 
-        In full: the label is the meaning of the quantity.
+        With `in_full`, the label is the meaning of the quantity.
 
         >>> sides = {"left": {"semi_diagonal": 0.5}, "right": {"semi_diagonal": 0.6}}
         >>> list(Display().lines({"mass": 2.0, "sides": sides}, ("mass", "semi_diagonal")))
@@ -214,7 +216,7 @@ class Display:
                         if name in side}  # fmt: skip
             value = values.get(name)
             if len({*of_sides.values()}) > 1:
-                text = ", ".join(f"{each} {foot}" for foot, each in of_sides.items())
+                text = ", ".join(f"{text} {foot}" for foot, text in of_sides.items())
             elif of_sides:
                 text = next(iter(of_sides.values()))
             elif value is None or (isinstance(value, float) and math.isnan(value)):
@@ -224,10 +226,10 @@ class Display:
             yield entry.meaning if in_full else entry.heading, text
 
     def table(self, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = ()) -> "list[ShownColumn]":
-        """Return the columns of a table as a reader sees them: of those named that it has; of all if none are named.
+        """Return the columns of a table for the reader: the named columns that exist; all without names.
 
-        A quantity with an interval, as value, low and high or in columns of their own, has a second column for it;
-        an acceleration in another unit than g has one in g.
+        The interval of a quantity is in a second column. An acceleration in another unit than g has a second column
+        in g.
 
         >>> rows = [{"observed": 0.5, "observed_low": 0.25, "observed_high": 0.75}]
         >>> [(column.heading, column.cells) for column in Display().table(rows)]
@@ -236,26 +238,26 @@ class Display:
         rows = rows if isinstance(rows, AnswerRows) else AnswerRows.of_records(rows)
         ends = {f"{name}{end}" for name in rows.columns for end in ("_low", "_high", "_95")}
         shown = names or [name for name in rows.columns if name not in ends]
-        columns = [each for name in shown if name in rows.columns for each in self._columns(name, rows)]
+        columns = [column for name in shown if name in rows.columns for column in self._columns(name, rows)]
         intervals = [k for k, column in enumerate(columns) if column.heading == "95 %"]
-        for k in intervals if len(intervals) > 1 else ():  # each with the heading of its quantity
+        for k in intervals if len(intervals) > 1 else ():  # add the heading of the quantity
             columns[k] = replace(columns[k], heading=f"{columns[k - 1].heading.partition(' [')[0]} 95 %")
         return columns
 
     def _columns(self, name: str, rows: AnswerRows) -> "Iterator[ShownColumn]":
         values, lows, highs = (rows.columns.get(f"{name}{end}") for end in ("", "_low", "_high"))
-        if any(isinstance(each, Mapping) for each in values or ()):
-            values, lows, highs = ([each[key] for each in values or ()] for key in ("value", "low", "high"))
+        if any(isinstance(value, Mapping) for value in values or ()):
+            values, lows, highs = ([value[key] for value in values or ()] for key in ("value", "low", "high"))
         if pairs := rows.columns.get(f"{name}_95"):
-            lows, highs = zip(*(each or (None, None) for each in pairs), strict=True)
-        entry, cells = self.entry(name), [self.cell(name, each) for each in values or ()]
+            lows, highs = zip(*(value or (None, None) for value in pairs), strict=True)
+        entry, cells = self.entry(name), [self.cell(name, value) for value in values or ()]
         yield ShownColumn(self.heading(name), cells, entry.is_text or entry.words is not None, name)
         if self._is_beside_g(name):
-            yield ShownColumn(f"{entry.heading} [g]", [self._in_g(name).cell(name, each) for each in values or ()])
+            yield ShownColumn(f"{entry.heading} [g]", [self._in_g(name).cell(name, value) for value in values or ()])
         if lows is not None and highs is not None:
             end = f"{name}_low" if f"{name}_low" in self.own else name
-            ends = ([self.cell(end, each) for each in column] for column in (lows, highs))
-            # an end that does not exist is open
+            ends = ([self.cell(end, value) for value in column] for column in (lows, highs))
+            # a missing bound is open
             texts = [" to ".join("open" if end == "-" else end for end in pair) for pair in zip(*ends, strict=True)]
             texts = ["-" if text == "open to open" else text for text in texts]
             yield from [ShownColumn("95 %", texts)] if {*texts} != {"-"} else []
@@ -270,9 +272,9 @@ class Display:
 
 @dataclass(frozen=True)
 class ShownColumn:
-    """A column of a table as a reader sees it."""
+    """A column of a table for the reader."""
 
     heading: str
     cells: list[str]
-    is_text: bool = False  # whether its cells are words, set flush left
-    name: str = ""  # of its quantity
+    is_text: bool = False  # True for left-aligned text
+    name: str = ""  # name of the quantity

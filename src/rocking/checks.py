@@ -1,4 +1,4 @@
-"""What is refused at the door: one function per kind of value, one sentence per refusal."""
+"""Checks of input values: one function per kind of value, with one error each."""
 
 import difflib
 import math
@@ -15,7 +15,7 @@ from rocking.messages import Message, Range
 
 Word = TypeVar("Word", bound=str)
 SMALLEST, LARGEST = 1e-9, 1e9
-"""No body is smaller or larger than this [m]: squares and fourth powers stay far from overflow."""
+"""Smallest and largest dimension of a body [m]: fourth powers do not overflow."""
 
 
 def number(name: str, value: Any, unit: str = "-") -> float:
@@ -24,7 +24,7 @@ def number(name: str, value: Any, unit: str = "-") -> float:
         raise InvalidValueError(parameter=name, allowed=Message("a number [{unit}]", {"unit": unit}), value=value)
     try:
         if getattr(value, "ndim", 0):
-            raise TypeError  # numpy before 2.4 takes an array of one number for it
+            raise TypeError  # numpy before 2.4 converts an array of one number
         result = float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidValueError(
@@ -35,11 +35,11 @@ def number(name: str, value: Any, unit: str = "-") -> float:
     return result
 
 
-def of_kind(name: str, value: object, kind: type | tuple[type, ...], words: str) -> None:
-    """Refuse what is of another kind than the one that the words say."""
+def of_kind(name: str, value: object, kind: type | tuple[type, ...], description: str) -> None:
+    """Refuse a value of another type; words: description of the allowed type."""
     if not isinstance(value, kind):
         raise InvalidValueError(
-            "{parameter} must be {allowed}, got {given}", parameter=name, allowed=words, value=value,
+            "{parameter} must be {allowed}, got {given}", parameter=name, allowed=description, value=value,
             given=given(name, value),
         )  # fmt: skip
 
@@ -48,20 +48,20 @@ _READERS = {"motion": "read_motion", "motions": "read_motion", "body": "read_bod
 
 
 def given(name: str, value: object, where: str = "") -> str:
-    """Return what was given for a parameter, and the function that makes a motion or a body of it.
+    """Return the text of an input value, and the function for its conversion to a motion or a body.
 
     >>> given("motion", "x.at2"), given("body", 3.0)
     ("'x.at2'; rocking.read_motion('x.at2') reads a file", '3.0')
     """
-    reader, shown = _READERS.get(name), f"{value!r:.60}{where}"
+    reader, text = _READERS.get(name), f"{value!r:.60}{where}"
     if reader and isinstance(value, (str, os.PathLike)):
         path = str(value)
         if reader == "read_motion" and re.match(r"[a-z-]+:\w+=", path):
-            return f"{shown}; rocking.pulses.pulse({path!r:.60}) makes a pulse of words"
-        return f"{shown}; rocking.{reader}({path!r:.60}) reads a file"
+            return f"{text}; rocking.pulses.pulse({path!r:.60}) creates the pulse"
+        return f"{text}; rocking.{reader}({path!r:.60}) reads a file"
     if reader == "read_motion" and isinstance(value, (list, np.ndarray)) and not np.ndim(value) > 1:
-        return f"{shown}; rocking.GroundMotion(acceleration, time_step) makes a motion of samples [m/s2] and step [s]"
-    return shown
+        return f"{text}; rocking.GroundMotion(acceleration, time_step) creates a motion [m/s2, s]"
+    return text
 
 
 def whole(name: str, value: Any, low: int = 0, high: int = 2**63 - 1) -> int:
@@ -82,15 +82,15 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
 
 
 def length(name: str, value: Any) -> float:
-    """Return `value` as a length that a body can have [m]."""
+    """Return `value` as a valid length of a body [m]."""
     positive(name, value, "m")
-    return within(name, value, SMALLEST, LARGEST, unit="m", hint="wrong unit?")
+    return within(name, value, SMALLEST, LARGEST, unit="m", hint="check the unit")
 
 
 def density(name: str, value: Any) -> float:
-    """Return `value` as a density that a body can have [kg/m3]."""
+    """Return `value` as a valid density of a body [kg/m3]."""
     result = positive(name, value, "kg/m3")
-    within(name, result, 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
+    within(name, result, 0.0, LARGEST, unit="kg/m3", open_low=True, hint="check the unit")
     return value if isinstance(value, Assumed) else result
 
 
@@ -114,12 +114,16 @@ def within(
 
 
 def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
-    """Refuse a row of values that does not increase: the first value that is not above the one before."""
-    falls = np.flatnonzero(np.diff(values) <= 0.0)
-    if falls.size:
-        before, after = values[falls[0] : falls[0] + 2].tolist()
+    """Refuse values that do not increase; the error contains the first such value."""
+    wrong = np.flatnonzero(np.diff(values) <= 0.0)
+    if wrong.size:
+        before, after = values[wrong[0] : wrong[0] + 2].tolist()
         descending = values.size > 1 and bool((np.diff(values) < 0.0).all())
-        hint = "these decrease: reverse them" if descending else f"{after:g} follows {before:g} at index {falls[0] + 1}"
+        hint = (
+            "reverse the order: the values decrease"
+            if descending
+            else f"{after:g} follows {before:g} at index {wrong[0] + 1}"
+        )
         shown = "" if unit in {"-", "1", ""} else f" [{unit}]"
         raise InvalidValueError(
             "{parameter} must increase{unit} from value to value", parameter=name, hint=hint, unit=shown
@@ -136,41 +140,41 @@ def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
 def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     """Return `values` as float64 of the same shape, finite or not; no copy if they already are."""
     try:
-        given = np.asarray(values)
+        array = np.asarray(values)
     except ValueError as error:
         raise InvalidValueError(parameter=name, allowed=f"numbers [{unit}]", value=values) from error
-    if given.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf":
         raise InvalidValueError(parameter=name, allowed=f"numbers [{unit}]", value=values)
-    return np.asarray(given, dtype=np.float64)
+    return np.asarray(array, dtype=np.float64)
 
 
 def finite(
-    name: str, values: Any, unit: str = "-", shape: tuple[int | None, ...] = (None,), least: int = 1
+    name: str, values: Any, unit: str = "-", shape: tuple[int | None, ...] = (None,), minimum: int = 1
 ) -> FloatArray:
-    """Return `values` as a frozen copy of finite numbers of a shape; None is any size of at least `least`."""
+    """Return `values` as a read-only copy of finite numbers of a shape; None is any size >= `minimum`."""
     result = real_array(name, values, unit).copy()
-    wanted = [max(count, least) if size is None else size for count, size in zip(result.shape, shape, strict=False)]
-    if result.ndim != len(shape) or list(result.shape) != wanted:
-        words = " x ".join(f"at least {least}" if size is None else f"{size}" for size in shape)
+    expected = [max(count, minimum) if size is None else size for count, size in zip(result.shape, shape, strict=False)]
+    if result.ndim != len(shape) or list(result.shape) != expected:
+        sizes = " x ".join(f"at least {minimum}" if size is None else f"{size}" for size in shape)
         row = "a row of " if len(shape) == 1 else ""
         raise InvalidValueError(
             "{parameter} must be {allowed}, got shape {shape}", parameter=name, value=values, shape=result.shape,
-            allowed=f"{row}{words} finite numbers [{unit}]",
+            allowed=f"{row}{sizes} finite numbers [{unit}]",
         )  # fmt: skip
     bad = np.argwhere(~np.isfinite(result)).tolist()
     if bad:
-        where = bad[0] if len(shape) > 1 else bad[0][0]
+        index = bad[0] if len(shape) > 1 else bad[0][0]
         raise InvalidValueError(
             "{parameter} must be {allowed}, got {value} at index {index}", parameter=name, allowed=f"finite [{unit}]",
-            value=float(result[tuple(bad[0])]), index=where,
+            value=float(result[tuple(bad[0])]), index=index,
         )  # fmt: skip
     result.setflags(write=False)
     return result
 
 
 def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
-    """Refuse an array that holds anything but finite numbers above zero."""
-    # min() and max() carry NaN along, so two reductions settle it
+    """Refuse an array unless all numbers are finite and above zero."""
+    # min() and max() propagate NaN: two reductions suffice
     if not values.size or (values.min() > 0.0 and values.max() < math.inf):
         return
     bad = tuple(int(i) for i in np.argwhere(~((values > 0.0) & np.isfinite(values)))[0])
@@ -181,16 +185,16 @@ def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
     )  # fmt: skip
 
 
-def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:
-    """Refuse an array that holds anything but numbers between two positive ends; return the least of them."""
+def all_within(name: str, values: FloatArray, low: float, high: float, array: FloatArray) -> float:
+    """Refuse an array unless all numbers are between two positive limits; return the smallest number."""
     if not values.size:
         return high
-    least = float(values.min())
-    if least >= low and values.max() <= high:
-        return least
-    all_positive(name, whole)
-    bad = tuple(int(i) for i in np.argwhere((whole < low) | (whole > high))[0])
-    raise InvalidValueError(parameter=name, allowed=Range(low, high), value=float(whole[bad]))
+    smallest = float(values.min())
+    if smallest >= low and values.max() <= high:
+        return smallest
+    all_positive(name, array)
+    bad = tuple(int(i) for i in np.argwhere((array < low) | (array > high))[0])
+    raise InvalidValueError(parameter=name, allowed=Range(low, high), value=float(array[bad]))
 
 
 def foot(name: str, value: Any) -> Foot:
@@ -205,31 +209,35 @@ def length_unit(value: Any) -> float:
     return LENGTH_UNITS[one_of("length unit", value, LENGTH_UNITS)]
 
 
-def one_of(name: str, value: Any, known: Iterable[Word]) -> Word:
-    """Return the one of some words that was meant, upper or lower case alike, as it is spelt there.
+def one_of(name: str, value: Any, allowed: Iterable[Word]) -> Word:
+    """Return the allowed word that equals a value, case-insensitive.
 
     >>> one_of("engine", "Fast", ["auto", "fast"])
     'fast'
     """
-    words = list(known)
-    found = spelling(value, words)
-    if not isinstance(found, str) or found not in words:  # an array has no truth value
+    options = list(allowed)
+    match = spelling(value, options)
+    if not isinstance(match, str) or match not in options:  # an array has no truth value
         raise InvalidValueError(
-            parameter=name, allowed=f"one of {', '.join(words)}", value=value, hint=nearest(value, words)
+            parameter=name, allowed=f"one of {', '.join(options)}", value=value, hint=nearest(value, options)
         )
-    return found
+    return match
 
 
-def spelling(word: Any, known: Iterable[str]) -> Any:
-    """Return a word as it is spelt among some others if capitals alone differ; otherwise as it is."""
+def spelling(word: Any, allowed: Iterable[str]) -> Any:
+    """Return the allowed word that differs from a word only in case; otherwise the word itself."""
     if not isinstance(word, str):
         return word
-    words = list(known)
-    return word if word in words else next((each for each in words if each.casefold() == word.strip().casefold()), word)
+    options = list(allowed)
+    return (
+        word
+        if word in options
+        else next((option for option in options if option.casefold() == word.strip().casefold()), word)
+    )
 
 
-def nearest(word: Any, known: Iterable[str]) -> str:
-    """Return the hint about an unknown word: what was probably meant; empty if nothing is near.
+def nearest(word: Any, allowed: Iterable[str]) -> str:
+    """Return the hint about an unknown word with the most similar one; empty without a similar word.
 
     >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
     ("did you mean 'housner'?", 'numbers have a decimal point: 0.9')
@@ -238,22 +246,22 @@ def nearest(word: Any, known: Iterable[str]) -> str:
         return ""
     if comma := number_hint(word):
         return comma
-    near = difflib.get_close_matches(word[:60].casefold(), list(known), n=1)
+    near = difflib.get_close_matches(word[:60].casefold(), list(allowed), n=1)
     return Message("did you mean {name}?", {"name": f"{near[0]!r}"}) if near else ""
 
 
-def number_hint(words: str) -> str:
-    """Return the hint about words in which a number has a decimal comma, or a unit; empty for others.
+def number_hint(text: str) -> str:
+    """Return the hint about a text with a decimal comma or a unit after a number; empty for other texts.
 
     >>> number_hint("sine:amplitude=0,5,period=1"), number_hint("50 cm")
-    ('numbers have a decimal point: 0.5', 'it takes no unit behind the number, 50: the help says how to give one')
+    ('numbers have a decimal point: 0.5', 'remove the unit after the number, 50; see the help for units')
     """
-    if unit := re.fullmatch(r"([+-]?[0-9.]+) ?(?!e\d+$)([a-zA-Z][a-zA-Z/0-9]*)", words):
-        return Message("it takes no unit behind the number, {unit}: the help says how to give one", {"unit": unit[1]})
-    found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
+    if unit := re.fullmatch(r"([+-]?[0-9.]+) ?(?!e\d+$)([a-zA-Z][a-zA-Z/0-9]*)", text):
+        return Message("remove the unit after the number, {unit}; see the help for units", {"unit": unit[1]})
+    match = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", text)
     return (
-        Message("numbers have a decimal point: {whole}.{fraction}", {"whole": found[1], "fraction": found[2]})
-        if found
+        Message("numbers have a decimal point: {whole}.{fraction}", {"whole": match[1], "fraction": match[2]})
+        if match
         else ""
     )
 
@@ -262,17 +270,17 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][
 
 
 def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
-    """Return one number [unit], and the unit in which it was written, empty if none.
+    """Return a number [unit], and the unit in its text; empty without one.
 
     >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
     ((0.4, 'cm'), (2.0, ''))
     """
-    match, known = _NUMBER.fullmatch(text.strip()), UNITS[unit]
-    if match is None or (match[2] and match[2] not in known):
-        allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
+    match, units = _NUMBER.fullmatch(text.strip()), UNITS[unit]
+    if match is None or (match[2] and match[2] not in units):
+        allowed = f", without unit or with one of {', '.join(units)}" if units else " without a unit"
         hint = "" if match else number_hint(text)
         raise InvalidValueError(parameter=name, allowed=f"a number{allowed}", value=text, hint=hint)
-    value = float(match[1]) * (known[match[2]] if match[2] else 1.0)
+    value = float(match[1]) * (units[match[2]] if match[2] else 1.0)
     if not math.isfinite(value):
         raise InvalidValueError(parameter=name, allowed="a finite number", value=text)
     return value, match[2] or ""

@@ -1,7 +1,7 @@
-"""Signs, units and constants that hold everywhere in this package.
+"""Signs, units and constants of this package.
 
-Inside, lengths are in m, masses in kg, angles in rad, times in s, all float64. The rotation theta is positive
-**clockwise**: a body with ``theta > 0`` stands on its **right** foot, with ``theta < 0`` on its left one. The
+Internal lengths are in m, masses in kg, angles in rad, times in s, all float64. The rotation theta is positive
+**clockwise**: a body with ``theta > 0`` rocks about its **right** foot, with ``theta < 0`` about its left foot. The
 coefficient of restitution is the ratio of angular velocities, ``theta_dot_after / theta_dot_before``; its square
 is the energy ratio only for symmetric bodies.
 """
@@ -21,13 +21,13 @@ g: Final = 9.80665
 """Standard gravity [m/s2] (exact by definition, 3rd CGPM 1901)."""
 
 FEET: Final[tuple[Foot, Foot]] = ("left", "right")
-"""The two feet of a plane body, in the order of arrays by foot."""
+"""The two feet of a plane body, in array order."""
 
 NORMAL_95: Final = 1.959963984540054
-"""Standard deviations of a normal distribution within which 95 % of it lie, on either side [-]."""
+"""Half-width of the 95 % interval of a normal distribution, in standard deviations [-]."""
 
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
-"""Length of one unit in metres; units are always named, never guessed."""
+"""Length of one unit in metres; units are always explicit."""
 
 ACCELERATION_UNITS: Final[dict[str, float]] = {
     "m/s2": 1.0,
@@ -38,7 +38,7 @@ ACCELERATION_UNITS: Final[dict[str, float]] = {
     "g/10": 0.1 * g,
     "mg": 0.001 * g,
 }
-"""One unit of acceleration in m/s2; `g/10` is what BHRC files hold, `mg` is a thousandth of g."""
+"""One unit of acceleration in m/s2; `g/10` is the unit of BHRC files, `mg` is 0.001 g."""
 
 
 UNITS: Final[dict[str, dict[str, float]]] = {
@@ -50,15 +50,15 @@ UNITS: Final[dict[str, dict[str, float]]] = {
     "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
     "1": {},
 }
-"""By the unit in which a value is computed: the units in which it may be written."""
+"""Allowed input units by SI unit, with their values in SI units."""
 
 
 class Assumed(float):
-    """A value that nobody gave: a float that is told apart wherever it is printed."""
+    """An assumed value: a float that output marks as assumed."""
 
 
 DEFAULT_FRICTION: Final = Assumed(0.5)
-"""Coefficient of friction where nobody gave one [-]."""
+"""Default coefficient of friction [-]."""
 
 
 DEFAULT_RESTITUTION: Final = "calibrated"
@@ -69,25 +69,25 @@ COMPARED_RESTITUTIONS: Final = ("ked", "housner")
 
 
 def given_or_assumed(value: float) -> str:
-    """Return "given", or "assumed" of a value that nobody gave."""
+    """Return "assumed" for a default value, otherwise "given"."""
     return "assumed" if isinstance(value, Assumed) else "given"
 
 
-def percent(share: float) -> str:
-    """Return a share in percent, with as many digits as a reader needs; what is not quite all is not told as 100 %.
+def percent(fraction: float) -> str:
+    """Return a fraction in percent with about three digits; only 1 gives 100 %.
 
     >>> percent(0.14), percent(0.0078), percent(0.00031), percent(1.0), percent(0.99987)
     ('14 %', '0.78 %', '0.031 %', '100 %', '99.987 %')
     """
-    value = 100.0 * share
-    rest = 100.0 - value
-    if 0.0 < rest < 0.5:
-        return f"{100.0 - float(f'{rest:.2g}'):.10g} %"
+    value = 100.0 * fraction
+    remaining = 100.0 - value
+    if 0.0 < remaining < 0.5:
+        return f"{100.0 - float(f'{remaining:.2g}'):.10g} %"
     return f"{float(f'{value:.{3 if abs(value) >= 1.0 else 2}g}'):.10g} %"
 
 
 def opposite(foot: Foot) -> Foot:
-    """Return the other foot.
+    """Return the opposite foot.
 
     >>> opposite("left")
     'right'

@@ -1,4 +1,4 @@
-"""One family of errors: everything this package refuses is a `RockingError`."""
+"""Errors and warnings of this package; all errors are subclasses of `RockingError`."""
 
 import math
 import reprlib
@@ -33,17 +33,17 @@ _EXTRAS = {
 
 Family = TypeVar("Family", bound="RockingError")
 _SHORT = reprlib.Repr()
-_LONGEST = 500  # characters of a text that is a value
+_LONGEST = 500  # largest number of characters of a value in `data`
 
 
 class RockingError(Exception):
-    """Base of every error that this package raises on purpose.
+    """Base class of all errors of this package.
 
     Parameters
     ----------
     text : str
-        What is wrong, in English; if empty, that `parameter` must be `allowed`. With a parameter or facts it is a
-        template, which has them by name in braces.
+        Error text in English; the default is "`parameter` must be `allowed`". With a parameter or facts, the text is a
+        template with their names in braces.
     parameter : str
         Name of the refused parameter.
     value : object
@@ -51,14 +51,14 @@ class RockingError(Exception):
     allowed : Range or str
         The allowed values.
     hint : str or Message
-        What to do about it, or the likely cause.
+        Remedy or likely cause.
     **facts : object
-        The facts of the text by name.
+        Facts of the text by name.
 
     Attributes
     ----------
     places : tuple of Place
-        Tables and files in which the refused value stands, the outermost first.
+        Tables and files of the refused value, the outermost first.
     more : int
         Number of further errors in the same input.
 
@@ -89,7 +89,7 @@ class RockingError(Exception):
 
     @property
     def parameter(self) -> str:
-        """Path of the refused parameter in its question, such as body.block.width; empty if none is known."""
+        """Path of the refused parameter in the input, such as body.block.width; empty if unknown."""
         tables = [place.name for place in self.places if place.kind in {"table", "key"}]
         return ".".join([*tables, *([self._name] if self._name else [])])
 
@@ -102,12 +102,12 @@ class RockingError(Exception):
 
     @property
     def cause(self) -> str:
-        """The sentence without the hint."""
+        """Sentence without the hint."""
         return ": ".join([*map(str, self.places), str(self.message)])
 
     @property
     def message(self) -> Message:
-        """What is wrong, without place and hint."""
+        """Message without location and hint."""
         if not self._name:
             return Message(self.text, self.facts)
         parameter = Parameter(self.parameter, self._name)
@@ -123,7 +123,7 @@ class RockingError(Exception):
 
     def _sentence(self, places: Sequence[Place]) -> Message:
         sentence = self.message
-        if isinstance(self.value, float) and self._name:  # with the decimal mark of its reader
+        if isinstance(self.value, float) and self._name:  # for the decimal mark of the reader
             sentence = Message(sentence.text, {**sentence.facts, "value": Amount(self.value)} | self.facts)
         for place in reversed(places):
             sentence = Message("{place}: {fault}", {"place": str(place), "fault": sentence})
@@ -158,14 +158,14 @@ class RockingError(Exception):
         Parameters
         ----------
         spelling : callable
-            Takes a fact of `rocking.messages` and returns it as text; by default as Python has it.
+            Function from a fact of `rocking.messages` to text; the default is the spelling of Python.
         within : bool
-            Whether the sentence names the tables that are not in a file.
+            True to include tables outside files.
 
         Returns
         -------
         str
-            Places, fault and hint.
+            Places, error and hint.
         """
         places = list(self.places)
         while places and not within and places[0].kind == "table":
@@ -176,31 +176,31 @@ class RockingError(Exception):
         return self.spelt()
 
     def copied(self, kind: type[Family]) -> Family:
-        """Return the same as an error of another class.
+        """Return the error as an error of another class.
 
         Parameters
         ----------
         kind : type
-            The class.
+            Class of the new error.
 
         Returns
         -------
         RockingError
-            The new error.
+            New error.
         """
-        made = kind(
+        new = kind(
             self.text, parameter=self._name, value=self.value, allowed=self.allowed, hint=self.hint, **self.facts
         )
-        made.places, made.more = self.places, self.more
-        return made
+        new.places, new.more = self.places, self.more
+        return new
 
     def add_hint(self, hint: str) -> None:
-        """Add a hint to those that there are.
+        """Add a hint to the existing hints.
 
         Parameters
         ----------
         hint : str
-            What to do about the fault.
+            Remedy.
         """
         self.hint = Message("{first}; {second}", {"first": self.hint, "second": hint}) if self.hint else hint
 
@@ -212,7 +212,7 @@ class RockingError(Exception):
         name : str
             Name of the file.
         line : int
-            Line of the file, from 1; 0 for all of it.
+            Line of the file, from 1; 0 for the entire file.
 
         Returns
         -------
@@ -247,9 +247,9 @@ class RockingError(Exception):
         Parameters
         ----------
         folder : path
-            The folder.
+            Folder to remove.
         name : str
-            What stands in its place where the folder itself is named.
+            Replacement for the folder itself.
 
         Returns
         -------
@@ -268,7 +268,7 @@ class RockingError(Exception):
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as JSON has it: a number, a text, true, false or None; else as Python writes it."""
+    """Return a value for JSON: a number, a text, true, false or None; else its Python representation."""
     value = value.value if isinstance(value, Amount) else value
     value = _scalar(value)
     if value is None or isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
@@ -277,12 +277,12 @@ def _plain(value: Any) -> Any:
 
 
 def _scalar(value: Any) -> Any:
-    """Return a number of numpy as one of Python, and other values as they are."""
+    """Return a number of numpy as a Python number, other values unchanged."""
     return value.item() if hasattr(value, "dtype") and not value.ndim else value
 
 
 def _ends(allowed: Any) -> dict[str, Any]:
-    """Return the ends of a range; None for one that is not finite."""
+    """Return the limits of a range; None for infinite limits."""
     if not isinstance(allowed, Range):
         return {}
     low, high = (end if math.isfinite(end) else None for end in (allowed.low, allowed.high))
@@ -290,7 +290,7 @@ def _ends(allowed: Any) -> dict[str, Any]:
 
 
 def _shown(value: Any) -> str:
-    """Return a refused value as Python writes it, cut where it is long."""
+    """Return the Python representation of a refused value, shortened."""
     value = _scalar(value)
     if isinstance(value, float):
         return f"{value:g}"
@@ -300,14 +300,14 @@ def _shown(value: Any) -> str:
 
 @contextmanager
 def located(name: str, kind: Literal["table", "file", "step"] = "table", number: int = 0) -> Iterator[None]:
-    """Add a table, a file or a step to the places of each error that is raised inside.
+    """Add a table, a file or a step to the places of errors raised in the context.
 
     Parameters
     ----------
     name : str
-        Name of the table, path of the file, or the step.
+        Name of the table, path of the file, or name of the step.
     kind : {"table", "file", "step"}
-        What it is.
+        Kind of the place.
     number : int
         Number of the step, from 1.
 
@@ -341,27 +341,27 @@ class InvalidValueError(RockingError, ValueError):
 
 
 class GeometryError(InvalidValueError):
-    """An outline, a hole, a foot or a set of regions does not describe a body."""
+    """An outline, a hole, a foot or a set of regions is no valid body."""
 
 
 class AsymmetricBodyError(RockingError, AttributeError):
-    """A body that is not symmetric was asked for a quantity that depends on the side."""
+    """A quantity of an asymmetric body depends on the side."""
 
 
 class UnknownModelError(RockingError, LookupError):
-    """No restitution model of that name, or a model was given parameters it does not have."""
+    """A restitution model, or one of its parameters, is unknown."""
 
 
 class BodyFileError(RockingError):
-    """A body file (TOML, WKT, GeoJSON, DXF) cannot be read as a body."""
+    """A body file (TOML, WKT, GeoJSON, DXF) is not readable as a body."""
 
 
 class RecordError(RockingError):
-    """A ground-motion file cannot be read: not recognised, ambiguous, damaged, or at odds with its own header."""
+    """A ground-motion file is of unknown or ambiguous format, damaged, or contradicts its header."""
 
 
 class MeasurementError(RockingError):
-    """A file of a measurement cannot be read, is damaged, or what it holds is no free rocking."""
+    """A measurement file is unreadable or damaged, or contains no free rocking."""
 
 
 class MissingExtraError(RockingError, ImportError):
@@ -369,31 +369,31 @@ class MissingExtraError(RockingError, ImportError):
 
 
 class PureRockingWarning(UserWarning):
-    """Pure rocking is not credible for a response: the body would slide or fly, see `friction` of `simulate`."""
+    """Pure rocking is not credible for a response: the body slides or flies, see `friction` of `simulate`."""
 
 
 class PlausibilityWarning(UserWarning):
-    """A value can be computed with but was hardly meant: a wrong unit, most likely."""
+    """A value is allowed but implausible, for example because of a wrong unit."""
 
 
 class SlowEngineWarning(UserWarning):
-    """The fast engine was not built, and the reference engine serves in its place."""
+    """The fast engine is not built; the reference engine is used."""
 
 
 def how_to_install(what: str, module: str, error: ImportError) -> str:
-    """Say what is missing and how to install it, for a `MissingExtraError`.
+    """Return the sentence about a missing package and its installation, for a `MissingExtraError`.
 
     Parameters
     ----------
     what, module : str
-        What was asked for, and the optional dependency that it takes.
+        Feature, and its optional dependency.
     error : ImportError
-        Why that cannot be imported; it may itself miss another package.
+        Error of the import; another package may be missing.
 
     Returns
     -------
     str
-        One sentence.
+        Sentence with the command for the installation.
 
     Examples
     --------
@@ -404,9 +404,9 @@ def how_to_install(what: str, module: str, error: ImportError) -> str:
     """
     package = module.partition(".")[0]
     missing = (error.name or package).partition(".")[0]
-    # quoted twice as every shell understands it; brackets alone are a pattern to some
-    wanted = f'"rocking[{_EXTRAS[package]}]"' if package in _EXTRAS else missing
-    return f"{what} needs {missing}: pip install {wanted}"
+    # double quotes for all shells; in some shells brackets are a pattern
+    package_name = f'"rocking[{_EXTRAS[package]}]"' if package in _EXTRAS else missing
+    return f"{what} needs {missing}: pip install {package_name}"
 
 
 def extra(module: str, what: str) -> ModuleType:
@@ -415,12 +415,12 @@ def extra(module: str, what: str) -> ModuleType:
     Parameters
     ----------
     module, what : str
-        The dependency, and what it is needed for; one that is not installed raises `MissingExtraError`.
+        Dependency and feature; a missing dependency raises `MissingExtraError`.
 
     Returns
     -------
     module
-        The dependency.
+        Imported module.
     """
     try:
         return import_module(module)
@@ -429,12 +429,12 @@ def extra(module: str, what: str) -> ModuleType:
 
 
 def warn(sentence: str, category: type[Warning]) -> None:
-    """Warn at the line outside this package that asked.
+    """Warn at the calling line outside this package.
 
     Parameters
     ----------
     sentence : str
-        What to say.
+        Text of the warning.
     category : type
         Class of the warning.
     """
@@ -449,7 +449,7 @@ def warn(sentence: str, category: type[Warning]) -> None:
 
 
 def silenced(category: type[Warning]) -> bool:
-    """Whether warnings of a class are ignored wherever they come from: their sentences need not be computed.
+    """Return True if warnings of a class are always ignored, so that their sentences are not needed.
 
     Parameters
     ----------
@@ -459,7 +459,7 @@ def silenced(category: type[Warning]) -> bool:
     Returns
     -------
     bool
-        False where a filter depends on the sentence or on the module that warns.
+        False if a filter depends on the sentence or on the module.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Results on their way out: what can say what its files hold reopens in xarray, pandas, Excel, MATLAB and netCDF."""
+"""Export of results to xarray, pandas, CSV, MATLAB and netCDF."""
 
 from abc import ABC, abstractmethod
 from os import PathLike
@@ -13,90 +13,90 @@ if TYPE_CHECKING:
 
 
 class Exported(ABC):
-    """A result whose table says what files and frames of it hold."""
+    """A result with a table for files and data frames."""
 
-    _blank: ClassVar[bool] = True  # whether what is not known is blank in CSV, or nan
+    _blank: ClassVar[bool] = True  # True if missing values are empty in CSV, else nan
 
     @abstractmethod
     def exported(self) -> "Table":
-        """Return what files and frames of it hold.
+        """Return the table for files and data frames.
 
         Returns
         -------
         Table
-            Columns with units, what has other rows beside them, and where it comes from.
+            Columns with units, further tables with other rows, and provenance.
         """
 
     def to_xarray(self) -> "xr.Dataset":
-        """Return it as a labelled dataset with units and provenance.
+        """Return the result as a labelled dataset with units and provenance.
 
         Returns
         -------
         xarray.Dataset
-            Its rows and those beside them each have a dimension of their own.
+            Dataset with one dimension for the rows of each table.
         """
         from rocking.tables import to_dataset
 
         return to_dataset(self.exported())
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return its rows as a table.
+        """Return the rows as a data frame.
 
         Returns
         -------
         pandas.DataFrame
-            Units in the column names.
+            Rows, with units in the column names.
         """
         from rocking.tables import to_dataframe
 
         return to_dataframe(self.exported())
 
     def to_csv(self, path: str | PathLike[str]) -> Path:
-        """Write its rows as comma-separated values.
+        """Write the rows as comma-separated values.
 
         Parameters
         ----------
         path : str or path
-            The file.
+            Path of the file.
 
         Returns
         -------
         Path
-            The file.
+            Path of the file.
         """
         from rocking.tables import target_of, to_csv
 
         return to_csv(self.exported(), target_of(path), blank=self._blank)
 
     def to_mat(self, path: str | PathLike[str]) -> Path:
-        """Write a file that MATLAB loads.
+        """Write a MATLAB file.
 
         Parameters
         ----------
         path : str or path
-            The file.
+            Path of the file.
 
         Returns
         -------
         Path
-            The file.
+            Path of the file.
         """
         from rocking.tables import target_of, to_mat
 
         return to_mat(self.exported(), target_of(path))
 
     def to_netcdf(self, path: str | PathLike[str]) -> Path:
-        """Write a netCDF file, which xarray and MATLAB open.
+        """Write a netCDF file, for xarray and MATLAB.
 
         Parameters
         ----------
         path : str or path
-            The file.
+            Path of the file.
 
         Returns
         -------
         Path
-            The file.
+            Path of the file.
         """
         from rocking.tables import target_of, to_netcdf
 

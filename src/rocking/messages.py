@@ -1,4 +1,4 @@
-"""Sentences that are made from facts: an English text with named fields, and the facts that fill them."""
+"""Messages: an English text with named fields, and the facts for these fields."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -7,23 +7,23 @@ from typing import Any, Literal, Self
 
 
 class Fact:
-    """What a message names and each door spells in its own way; `str` is the spelling of Python."""
+    """A fact of a message; each interface has its own spelling, `str` is that of Python."""
 
 
 @dataclass(frozen=True)
 class Parameter(Fact):
-    """A parameter by its place in a question.
+    """A parameter by its path in the input.
 
     >>> str(Parameter("body.block.width", "width"))
     'width'
     """
 
     path: str
-    shown: str  # the end of the path that a sentence has
+    shown: str  # end of the path in the sentence
 
     @property
     def name(self) -> str:
-        """The last part of the path."""
+        """Last element of the path."""
         return self.path.rpartition(".")[2]
 
     def __str__(self) -> str:
@@ -32,18 +32,18 @@ class Parameter(Fact):
 
 @dataclass(frozen=True)
 class Option(Fact):
-    """A parameter that the reader is told to state, and the value that it should have.
+    """A parameter for the reader to add, and its value.
 
     >>> str(Option("motion.units", "g")), str(Option("motion.component")), str(Option("identify.trend", True))
     ('units="g"', 'component=', 'trend=True')
     """
 
     path: str
-    value: Any = None  # None: the reader chooses
+    value: Any = None  # None: any value
 
     @property
     def name(self) -> str:
-        """The last part of the path."""
+        """Last element of the path."""
         return self.path.rpartition(".")[2]
 
     def __str__(self) -> str:
@@ -92,11 +92,11 @@ class Range(Fact):
 
     @property
     def bounded(self) -> bool:
-        """Whether both ends are finite."""
+        """True if both limits are finite."""
         return math.isfinite(self.low) and math.isfinite(self.high)
 
     def limits(self, separator: str = ", ") -> str:
-        """Return both ends in brackets, or the finite one after its sign."""
+        """Return both limits in brackets, or the finite limit with its comparison sign."""
         unit = f" {self.unit}" if self.unit else ""
         if self.high == math.inf:
             return f"{'>' if self.low_open else '>='} {self.low:g}{unit}"
@@ -112,7 +112,7 @@ class Range(Fact):
 
 @dataclass(frozen=True)
 class Place:
-    """Where a refused value stands: a table of a question, a key within it, a file, or a step of processing.
+    """Location of an invalid value: a table of the input, a key in it, a file, or a processing step.
 
     >>> str(Place("a.txt", "file", 3)), str(Place("map.x"))
     ('a.txt, line 3', 'map.x')
@@ -120,7 +120,7 @@ class Place:
 
     name: str
     kind: Literal["table", "key", "file", "step"] = "table"
-    number: int = 0  # of the line of a file, or of the step, from 1; 0 for none
+    number: int = 0  # number of a line or a step, from 1; 0 for none
 
     def __str__(self) -> str:
         line = f"line {self.number}" if self.kind == "file" and self.number else ""
@@ -129,7 +129,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Index(Fact):
-    """The number of a region, a hole or a point; Python and files count from zero, a page from one.
+    """The index of a region, a hole or a point; from zero in Python and files, from one on the page.
 
     >>> str(Index(2))
     '2'
@@ -143,7 +143,7 @@ class Index(Fact):
 
 @dataclass(frozen=True)
 class WrittenFile(Fact):
-    """A file that a command wrote, of which only its readers need to know."""
+    """A file written by a command, a fact only for its readers."""
 
     name: str
 
@@ -155,7 +155,7 @@ Spelling = Callable[[Fact], str]
 
 
 def by_key(fact: Fact) -> str:
-    """Return a fact with the key of a question in place of an option, for readers at any door.
+    """Return a fact with the input key in place of an option, for all interfaces.
 
     >>> by_key(Option("motion.units", "g"))
     'motion.units = g'
@@ -166,7 +166,7 @@ def by_key(fact: Fact) -> str:
 
 
 class Message(str):
-    """An English sentence that keeps the text it was made from, with named fields, and what stands in them.
+    """An English sentence with its text of named fields and the facts of these fields.
 
     >>> units = Message(
     ...     "{file} does not state its unit; give {option}", {"file": "a.txt", "option": Option("units", "g")}
@@ -175,13 +175,13 @@ class Message(str):
     ('a.txt does not state its unit; give units="g"', 'a.txt does not state its unit; give --units g')
     """
 
-    text: str  # the English text; its translations are found by it
+    text: str  # the English text, the key of its translations
     facts: Mapping[str, Any]
-    many: str  # the text where the fact `count` is not 1; empty if there is no such form
-    context: str  # what tells it from a message of the same text that is translated otherwise
+    many: str  # the text if the fact `count` is not 1; empty without such a form
+    context: str  # distinguishes equal texts with different translations
 
     def __new__(cls, text: str, facts: Mapping[str, Any] | None = None, many: str = "", context: str = "") -> Self:
-        """Return a message; facts by the names of the fields."""
+        """Return a message with facts by the names of the fields."""
         facts = facts or {}
         message = super().__new__(cls, _filled(text, facts, many, str))
         message.text, message.facts, message.many, message.context = text, facts, many, context
@@ -191,12 +191,12 @@ class Message(str):
         return self.text, self.facts, self.many, self.context
 
     def data(self) -> dict[str, Any]:
-        """Return the text and its facts as plain values; a fact of a class has the name of the class as its kind."""
+        """Return text and facts as plain values; `kind` is the class name of a fact."""
         more = {name: text for name, text in (("many", self.many), ("context", self.context)) if text}
         return {"text": self.text, "facts": {name: _data(fact) for name, fact in self.facts.items()}, **more}
 
     def spelt(self, spelling: Spelling) -> str:
-        """Return the sentence with its facts as a door spells them."""
+        """Return the sentence with its facts in the spelling of an interface."""
         return _filled(self.text, self.facts, self.many, spelling)
 
     def of(self, facts: Mapping[str, Any]) -> "Message":
@@ -204,13 +204,13 @@ class Message(str):
         return Message(self.text, facts, self.many, self.context)
 
     @classmethod
-    def followed(cls, sentence: str, more: str) -> str:
-        """Return a sentence and what follows it after a semicolon; the sentence alone if nothing does."""
-        return cls("{sentence}; {more}", {"sentence": sentence, "more": more}) if more else sentence
+    def followed(cls, sentence: str, addition: str) -> str:
+        """Return a sentence and another one after a semicolon; only the sentence without another."""
+        return cls("{sentence}; {more}", {"sentence": sentence, "more": addition}) if addition else sentence
 
     @classmethod
     def joined(cls, sentences: Iterable[str]) -> str:
-        """Return sentences as one text, with a space between them."""
+        """Return sentences as one text, separated by spaces."""
         first, *others = filter(None, sentences)
         for sentence in others:
             first = cls("{first} {second}", {"first": first, "second": sentence})
@@ -218,7 +218,7 @@ class Message(str):
 
 
 def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values with plain texts in place of messages, which files do not take.
+    """Return values with plain texts in place of messages, for files.
 
     >>> type(plain_texts({"motion": Message("sine pulse")})["motion"])
     <class 'str'>
@@ -227,7 +227,7 @@ def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def as_message(text: str) -> Message:
-    """Return a text as a message; a message as it is."""
+    """Return a text as a message; messages are unchanged."""
     return text if isinstance(text, Message) else Message(text)
 
 
@@ -239,7 +239,7 @@ def messages_of(value: Any) -> dict[str, dict[str, Any]]:
         value = value.values()
     elif not isinstance(value, (list, tuple)):
         return {}
-    return {sentence: data for part in value for sentence, data in messages_of(part).items()}
+    return {sentence: data for item in value for sentence, data in messages_of(item).items()}
 
 
 def _filled(text: str, facts: Mapping[str, Any], many: str, spelling: Spelling) -> str:
@@ -254,8 +254,8 @@ def _spelt(fact: Any, spelling: Spelling) -> Any:
         return spelling(fact)
     if isinstance(fact, Message):
         return fact.spelt(spelling)
-    if fact and isinstance(fact, tuple) and all(isinstance(part, (Fact, Message, str)) for part in fact):
-        return "; ".join(str(_spelt(part, spelling)) for part in fact)
+    if fact and isinstance(fact, tuple) and all(isinstance(item, (Fact, Message, str)) for item in fact):
+        return "; ".join(str(_spelt(item, spelling)) for item in fact)
     return fact
 
 
@@ -263,7 +263,7 @@ def _data(fact: Any) -> Any:
     if isinstance(fact, Message):
         return {"kind": "message", **fact.data()}
     if isinstance(fact, tuple):
-        return [_data(part) for part in fact]
+        return [_data(item) for item in fact]
     if isinstance(fact, Fact):
         values = {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in vars(fact).items()}
         return {"kind": type(fact).__name__.lower(), **values}

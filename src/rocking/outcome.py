@@ -1,6 +1,6 @@
-"""How a history ends, whether it could be computed, and on what the body stands: in the plane and in space.
+"""Outcome and status of time histories, and contact of the body: plane and 3D.
 
-The values are the sentences that a user reads.
+The values are sentences for users.
 """
 
 from enum import Enum
@@ -13,18 +13,18 @@ from rocking.messages import Message
 
 
 class Coded(Enum):
-    """Words for arrays, files and the C++ engines, in which their numbers stand, so that what comes new comes last."""
+    """Texts with codes for arrays, files and the C++ engines; new members follow the existing ones."""
 
     @property
     def code(self) -> int:
-        """Number in arrays."""
+        """Code in arrays."""
         return list(type(self)).index(self)
 
 
 class Outcome(Coded):
-    """How a history ends; of several that apply, overturned, then flew, then rocked and slid."""
+    """Outcome of a time history; priority: overturned, flew, rocked and slid."""
 
-    NO_UPLIFT = "stayed at rest: the ground never lifted it"
+    NO_UPLIFT = "stayed at rest without uplift"
     ROCKED = "rocked and stayed standing"
     OVERTURNED = "overturned"
     FAILED = "no result"
@@ -34,14 +34,14 @@ class Outcome(Coded):
 
 
 class Status(Coded):
-    """Whether a history could be computed."""
+    """Status of the computation of a time history."""
 
     GOOD = "computed"
     INVALID = "refused: a value is not finite or outside its range, or there is no such body"
     NOT_FINITE = "stopped: the motion of the body is no longer a finite number"
     TOO_MANY_EVENTS = "stopped: more impacts and changes of contact than allowed"
     NOT_RESOLVED = "stopped: the motion changes too fast for the steps; a shorter longest_step may help"
-    LOST_CONTACT = "stopped: the ground would have to pull; the body leaves it, and flight is not modelled here"
+    LOST_CONTACT = "stopped: the contact force becomes tensile; this model has no flight"
     STUCK = "stopped: changes of contact follow each other without time passing"
     NO_CONTACT_FORCE = "stopped: no contact force obeys Coulomb's law with a rigid body here (Painleve's paradox)"
     AMBIGUOUS = "stopped: several contact forces obey Coulomb's law with a rigid body here (Painleve's paradox)"
@@ -49,7 +49,7 @@ class Status(Coded):
 
 
 class Regime(Coded):
-    """What a body in the plane does that may slide and hop, in words."""
+    """Motion of a plane body with sliding and hopping."""
 
     REST = "at rest"
     SLIDE = "sliding on its base"
@@ -59,7 +59,7 @@ class Regime(Coded):
 
 
 class ContactMode(Coded):
-    """On what a body in space stands."""
+    """Contact of a 3D body with the ground."""
 
     REST = "at rest on its whole base"
     EDGE = "turning about an edge"
@@ -68,7 +68,7 @@ class ContactMode(Coded):
 
 
 UNCOUNTED = 1_000_000
-"""Impacts, and mode, of a body in space that has overturned: they go on as it falls, and are not counted."""
+"""Number of impacts, and mode, of an overturned 3D body: its impacts are not counted."""
 
 
 _MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact",
@@ -76,7 +76,7 @@ _MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: 
 
 
 def mode_words(mode: int) -> str:
-    """Return in words how a history ends.
+    """Return the outcome of a mode as text.
 
     >>> mode_words(-1), mode_words(2)
     ('rocks, stays standing', 'overturns after 2 impacts')
@@ -85,8 +85,8 @@ def mode_words(mode: int) -> str:
 
 
 def mode_shares(modes: Any) -> list[dict[str, Any]]:
-    """Return mode, meaning, count and share [-] of the histories that end in each way."""
-    counted = zip(*(part.tolist() for part in np.unique(modes, return_counts=True)), strict=True)
+    """Return mode, meaning, count and fraction [-] of the histories of each mode."""
+    counted = zip(*(array.tolist() for array in np.unique(modes, return_counts=True)), strict=True)
     return [
         {"mode": mode, "meaning": mode_words(mode), "count": count, "share": count / modes.size}
         for mode, count in counted
@@ -95,7 +95,7 @@ def mode_shares(modes: Any) -> list[dict[str, Any]]:
 
 def overturned(outcome: Any) -> FloatArray:
     """Return 1 for histories that overturned, 0 for others."""
-    # NaN without a result, which is neither a fall nor a stand
+    # NaN without a result
     return of_results(outcome, np.asarray(outcome) == Outcome.OVERTURNED.code)
 
 
@@ -105,9 +105,7 @@ def of_results(outcome: Any, flags: Any) -> FloatArray:
 
 
 def lost_contact(results: Any) -> FloatArray:
-    """Return in which histories the ground would have to pull.
-
-    Returns 1 where it would, 0 where not, NaN where there is no result [-].
+    """Return 1 for histories with a tensile contact force, 0 for others, NaN without a result [-].
 
     >>> lost_contact({"outcome": [1, 1, 0, 3], "least_force": [-0.1, 0.2, np.nan, np.nan]}).tolist()
     [1.0, 0.0, 0.0, nan]
@@ -125,18 +123,18 @@ def flags(results: Any) -> dict[str, FloatArray]:
 
 
 def contact_words(lost: Any) -> str:
-    """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts."""
-    known = np.asarray(lost, dtype=np.float64)
-    known = known[np.isfinite(known)]
-    return contact_sentence(int((known == 1.0).sum()), known.size)
+    """Return a sentence with the number of histories with a tensile contact force; empty for none."""
+    results = np.asarray(lost, dtype=np.float64)
+    results = results[np.isfinite(results)]
+    return contact_sentence(int((results == 1.0).sum()), results.size)
 
 
 def contact_sentence(lost: int, known: int) -> str:
-    """Return the same of two counts: where the ground would have to pull, and all that have a result."""
+    """Return the sentence from two counts: histories with a tensile contact force, and with a result."""
     if not lost:
         return ""
-    share = percent(lost / known)
+    fraction = percent(lost / known)
     return Message(
-        ("in {lost} of {known} histories ({share}) the ground would have to pull; their verdicts assume contact"),
-        {"lost": lost, "known": known, "share": share},
+        "the contact force becomes tensile in {lost} of {known} histories ({share}); their results assume contact",
+        {"lost": lost, "known": known, "share": fraction},
     )

@@ -1,10 +1,9 @@
-"""Arithmetic that gives the same bits on every processor.
+"""Arithmetic with the same bits on every processor.
 
-Sums, products, quotients and square roots are rounded by IEEE 754 everywhere alike, and numpy takes the terms of a sum
-in one order. BLAS and LAPACK choose a kernel by the processor, and each rounds in its own order; numpy's exp, log, tan,
-arctan2 and powers have a version of their own for AVX-512, one unit in the last place away. What decides an event, and
-what is handed out as a result, does without them: vectors of three need no library, and functions of one number are
-those of the C library.
+IEEE 754 defines the rounding of sums, products, quotients and square roots, and numpy has a fixed order of summation.
+BLAS and LAPACK select kernels by processor, with different rounding. In numpy, exp, log, tan, arctan2 and powers have
+other versions for AVX-512, with differences of one unit in the last place. Events and results therefore use none of
+them: the functions here need no library for three-vectors, and functions of one number are those of the C library.
 """
 
 import math
@@ -21,7 +20,7 @@ _FEW, _SHORT = 16, 4
 
 
 def _sum(terms: Iterable[float]) -> float:
-    """First terms first; Python's own sum rounds in another way from 3.12 on."""
+    """Return the sum in order; the rounding of `sum` differs since Python 3.12."""
     return reduce(add, terms, 0.0)
 
 
@@ -36,7 +35,7 @@ def norm(vector: FloatArray) -> float:
 
 
 def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return matrices times vectors; of points, their products with one vector.
+    """Return matrices times vectors; for points, their products with one vector.
 
     >>> applied(np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([1.0, -1.0])).tolist()
     [-1.0, -1.0]
@@ -56,7 +55,7 @@ def times(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def trapezoid(values: FloatArray, widths: FloatArray | float) -> float:
-    """Return the integral of what is sampled, by the trapezoidal rule; of numpy's two names for it no version has both.
+    """Return the integral of samples by the trapezoidal rule; the name in numpy depends on its version.
 
     >>> trapezoid(np.array([0.0, 1.0, 4.0]), 1.0)
     3.0
@@ -66,10 +65,10 @@ def trapezoid(values: FloatArray, widths: FloatArray | float) -> float:
 
 def gram(rows: FloatArray, weights: FloatArray) -> FloatArray:
     """Return the sum of the weighted outer products of vectors with themselves."""
-    weighted, made = (rows * weights[:, None]).T.copy(), np.empty((rows.shape[1], rows.shape[1]))
+    weighted, result = (rows * weights[:, None]).T.copy(), np.empty((rows.shape[1], rows.shape[1]))
     for i, row in enumerate(rows.T):
-        made[i, i:] = made[i:, i] = (weighted[i:] * row).sum(axis=1)
-    return made
+        result[i, i:] = result[i:, i] = (weighted[i:] * row).sum(axis=1)
+    return result
 
 
 def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -105,29 +104,29 @@ def inverse(matrix: FloatArray) -> FloatArray:
 
 
 def powers(x: Any, count: int) -> FloatArray:
-    """Return 1, x, x^2 and so on, each the one before times x."""
+    """Return the powers 1, x, x^2, ... by repeated multiplication."""
     base = np.repeat(np.asarray(x, dtype=np.float64)[..., None], count, axis=-1)
     base[..., :1] = 1.0
     return np.asarray(np.multiply.accumulate(base, axis=-1))
 
 
 def each(function: Callable[..., float], *values: Any) -> FloatArray:
-    """Return a function of `math` of every number.
+    """Return a function from `math` of every number.
 
     >>> each(math.atan2, [0.0, 0.0], 1.0).tolist()
     [0.0, 0.0]
     """
     arrays = np.broadcast_arrays(*[np.asarray(v, dtype=np.float64) for v in values])
-    made = list(map(function, *[array.ravel().tolist() for array in arrays]))
-    return np.array(made, dtype=np.float64).reshape(arrays[0].shape)
+    results = list(map(function, *[array.ravel().tolist() for array in arrays]))
+    return np.array(results, dtype=np.float64).reshape(arrays[0].shape)
 
 
 def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss's rule of a measure of mass one, given by the recurrence of its orthogonal polynomials."""
-    # Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on alike
-    # everywhere, whatever LAPACK left in the last digits
+    """Return the Gauss rule of a measure of mass one, from the recurrence of its orthogonal polynomials."""
+    # nodes from eigenvalues (Golub and Welsch) to eight digits; Newton iterations from these have the same bits
+    # everywhere, independent of the last digits from LAPACK
     x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
-    ahead = [*side.tolist(), 1.0]  # the last polynomial may have any scale
+    ahead = [*side.tolist(), 1.0]  # the scale of the last polynomial is arbitrary
     for _ in range(4):
         before, p, slope_before, slope, size = 0.0 * x, 1.0 + 0.0 * x, 0.0 * x, 0.0 * x, 0.0 * x
         for k, (a, b) in enumerate(zip(diagonal.tolist(), ahead, strict=True)):
@@ -144,7 +143,7 @@ def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, Floa
 
 
 def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss's rule on [-1, 1], exact for polynomials of degree ``2 count - 1``.
+    """Return the Gauss rule on [-1, 1], exact for polynomials of degree ``2 count - 1``.
 
     >>> nodes, weights = gauss_legendre(3)
     >>> (nodes**2).round(12).tolist(), (9.0 * weights).round(12).tolist()

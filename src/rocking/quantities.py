@@ -1,4 +1,4 @@
-"""Every result once: its name, unit and meaning, and what its codes stand for; tables, files, answers read it here."""
+"""All quantities of results: name, unit, meaning and codes, for tables, files and answers."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -10,21 +10,21 @@ from rocking.outcome import UNCOUNTED, ContactMode, Outcome, Regime, Status, mod
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a number or word among the results is.
+    """A quantity of the results: number or text.
 
     >>> QUANTITIES["peak_rotation"].attributes
-    {'units': 'rad', 'long_name': 'rotation of largest size; a quarter turn if it overturned'}
+    {'units': 'rad', 'long_name': 'rotation of largest magnitude; pi/2 if overturned'}
     """
 
-    name: str  # what it is called in arrays, tables and files
-    unit: str  # its unit, of the SI; 1 for numbers without one, empty for words
+    name: str  # name in arrays, tables and files
+    unit: str  # SI unit; 1 if dimensionless, empty for text
     meaning: str
-    codes: dict[int, str] = field(default_factory=dict)  # what whole numbers stand for
-    standard_name: str = ""  # its name in the table of the CF conventions, which knows nothing that rocks
-    label: str = ""  # heading of a column or a line for readers; the name, if empty
-    digits: str = ".4g"  # how a number is written for readers; % in percent, with as many digits as a reader needs
-    spelled: dict[str, str] = field(default_factory=dict)  # words for readers in place of short ones
-    words: Callable[[int], str] | None = None  # of numbers that readers see as words
+    codes: dict[int, str] = field(default_factory=dict)  # meanings of integer codes
+    standard_name: str = ""  # name in the table of the CF conventions, if any
+    label: str = ""  # heading for readers; the name, if empty
+    digits: str = ".4g"  # number format for readers; % in percent with about three digits
+    spelled: dict[str, str] = field(default_factory=dict)  # texts for readers in place of short words
+    words: Callable[[int], str] | None = None  # function from numbers to texts for readers
 
     @property
     def heading(self) -> str:
@@ -33,27 +33,27 @@ class Quantity:
 
     @property
     def is_text(self) -> bool:
-        """Whether readers see words."""
+        """True if readers see text."""
         return not self.unit or bool(self.codes)
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Unit, meaning and codes, as xarray and the CF conventions name them."""
-        made: dict[str, Any] = {"units": self.unit, "long_name": self.meaning, "standard_name": self.standard_name}
-        made = {key: value for key, value in made.items() if value}
+        """Unit, meaning and codes as attributes of xarray and the CF conventions."""
+        values: dict[str, Any] = {"units": self.unit, "long_name": self.meaning, "standard_name": self.standard_name}
+        values = {key: value for key, value in values.items() if value}
         if self.codes:
-            made["flag_values"] = list(self.codes)
-            made["flag_meanings"] = " ".join(word.replace(" ", "_") for word in self.codes.values())
-        return made
+            values["flag_values"] = list(self.codes)
+            values["flag_meanings"] = " ".join(word.replace(" ", "_") for word in self.codes.values())
+        return values
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """Return what the files say of a result: unit, meaning and codes, as xarray and the CF conventions name them."""
+    """Return the file attributes of a result: unit, meaning and codes, by xarray and the CF conventions."""
     return QUANTITIES[name].attributes
 
 
 def with_units(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return attributes of a file with the units of quantities beside them.
+    """Return the attributes of a file with the units of quantities.
 
     >>> with_units({"mass": 2.0, "engine": "fast", "semi_diagonal_left": 1.0})
     {'mass': 2.0, 'engine': 'fast', 'semi_diagonal_left': 1.0, 'mass_units': 'kg', 'semi_diagonal_left_units': 'm'}
@@ -64,7 +64,7 @@ def with_units(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 _ENDS = {
-    "_low": "lower end of the 95 % interval", "_high": "upper end of the 95 % interval", "_left": "left foot",
+    "_low": "lower bound of the 95 % interval", "_high": "upper bound of the 95 % interval", "_left": "left foot",
     "_right": "right foot",
 }  # fmt: skip
 
@@ -72,14 +72,14 @@ _ENDS = {
 def quantity(name: str, own: Mapping[str, Quantity] = MappingProxyType({})) -> Quantity | None:
     """Return the entry of a name; own: entries of one answer, which take precedence.
 
-    A name with _low, _high, _left or _right after it is that of an end of the interval, or of one foot.
+    The endings _low, _high, _left and _right mean a bound of the interval, or one foot.
 
     >>> quantity("scatter_low").meaning
-    'logarithmic scatter, lower end of the 95 % interval'
+    'logarithmic scatter, lower bound of the 95 % interval'
     """
     if entry := own.get(name) or QUANTITIES.get(name):
         return entry
-    end = next((each for each in _ENDS if name.endswith(each)), "")
+    end = next((ending for ending in _ENDS if name.endswith(ending)), "")
     entry = quantity(name.removesuffix(end), own) if end else None
     label = f"{entry.heading} {end[1:]}" if entry else ""
     return entry and replace(entry, name=name, meaning=f"{entry.meaning}, {_ENDS[end]}", label=label)
@@ -101,86 +101,86 @@ _HISTORY = (
     Quantity(
         "status", "1", ", ".join(f"{status.code} {status.value}" for status in Status), _words(Status), "status_flag"
     ),
-    Quantity("overturned", "1", "1 it overturned, 0 it did not, NaN where there is no result: neither"),
+    Quantity("overturned", "1", "1 overturned, 0 not overturned, NaN without a result"),
     Quantity(
-        "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts, "
-        f"{UNCOUNTED} overturned in space, where they are not counted", label="outcome", words=mode_words,
+        "mode", "1", "-3 failed, -2 no uplift, -1 rocked without overturning, n >= 0 overturned after n impacts, "
+        f"{UNCOUNTED} overturned in 3D without a count of impacts", label="outcome", words=mode_words,
     ),
-    Quantity("side", "1", "side to which it overturned: 1 right, -1 left, 0 it did not"),
-    Quantity("peak_rotation", "rad", "rotation of largest size; a quarter turn if it overturned"),
+    Quantity("side", "1", "side of overturning: 1 right, -1 left, 0 not overturned"),
+    Quantity("peak_rotation", "rad", "rotation of largest magnitude; pi/2 if overturned"),
     Quantity(
-        "peak_ratio", "1", "peak rotation over the slenderness angle of its side; beyond 1 is not overturning",
+        "peak_ratio", "1", "peak rotation over the slenderness angle of its side; can exceed 1 without overturning",
         label="peak / alpha",
     ),
-    Quantity("peak_time", "s", "time of the peak rotation; the end of the motion if it comes later"),
+    Quantity("peak_time", "s", "time of the peak rotation; at most the end of the motion"),
     Quantity(
-        "peak_velocity", "rad/s", "largest angular velocity at samples and impacts, the first after the motion included"
+        "peak_velocity", "rad/s", "largest angular velocity at samples and impacts, and the first later impact"
     ),
     Quantity(
         "overturning_time", "s",
-        "when the centre of mass passed over the foot for good; the end of the motion if it is later",
+        "last time the centre of mass passed over the foot; at most the end of the motion",
     ),
-    Quantity("first_uplift", "s", "first uplift"),
+    Quantity("first_uplift", "s", "time of the first uplift"),
     Quantity(
         "impacts", "1",
-        "number of impacts; of those after the end of the motion only the ones that end in overturning count",
+        "number of impacts; impacts after the motion count only before overturning",
     ),
     Quantity("uplifts", "1", "number of uplifts from rest"),
     Quantity(
         "still_rocking", "1",
-        "1 where it stands, but did not yet rest at the end, after which no impact counts; NaN without a result",
+        "1 if not overturned but still rocking at the end of the motion; NaN without a result",
     ),
-    Quantity("truncation", "rad", "sum of what the series of the steps leave out; no measure of accuracy"),
-    Quantity("twin_change", "rad", "change of the size of the peak rotation if every step is halved"),
-    Quantity("twin_flips", "1", "1 where only one of history and twin overturns, 0 not, NaN where one has no result"),
+    Quantity("truncation", "rad", "sum of the truncated terms of the series; no measure of accuracy"),
+    Quantity("twin_change", "rad", "change of the peak rotation with half the time step"),
+    Quantity("twin_flips", "1", "1 if only one of history and twin overturns, else 0; NaN without a result of both"),
     Quantity(
-        "least_force", "1", "smallest normal force of the ground while rocking, over the weight; below 0 it would pull",
+        "least_force", "1", "smallest normal contact force during rocking, over the weight; tensile below 0",
         label="smallest normal force / weight",
     ),
     Quantity(
-        "friction_demand", "1", "largest horizontal over normal force while rocking; infinite where contact is lost"
+        "friction_demand", "1", "largest ratio of horizontal to normal force during rocking; infinite for lost contact"
     ),
     Quantity(
         "lost_contact", "1",
-        "1 where the ground would have to pull, so that the verdict assumes contact; NaN no result",
+        "1 if the contact force becomes tensile, so that the result assumes contact; NaN without a result",
     ),
 )  # fmt: skip
 _HISTORY_WITH_FRICTION = (
     Quantity("residual_displacement", "m", "displacement of the centre of mass at the end, relative to the ground"),
-    Quantity("friction_usage", "1", "largest horizontal force over friction times the vertical one; 1 where it slides"),
+    Quantity("friction_usage", "1", "largest ratio of horizontal force to friction capacity; 1 during sliding"),
     Quantity(
-        "impacts_replaced", "1", "impacts in which Stronge's law stood in for one that has no solution or gains energy"
+        "impacts_replaced",
+        "1",
+        "number of impacts with the law of Stronge in place of a law without a solution or with energy gain",
     ),
-    Quantity("shocks", "1", "impacts without collision: of a foot that slides where no contact force is possible"),
+    Quantity("shocks", "1", "number of impacts without collision, of a sliding foot without a possible contact force"),
 )
 _HISTORY_IN_SPACE = (
-    Quantity("over_contact", "1", f"{_spelled(_CONTACTS)} over which it fell, -1 none"),
-    Quantity("over_number", "1", "number of that edge or vertex; -1 where there is none"),
+    Quantity("over_contact", "1", f"contact of overturning: {_spelled(_CONTACTS)}, -1 none"),
+    Quantity("over_number", "1", "number of the edge or vertex of overturning; -1 for none"),
     Quantity(
         "peak_tilt",
         "rad",
-        "largest angle from the vertical; a quarter turn if it overturned; with friction from the pose at the start",
+        "largest angle from the vertical, with friction from the initial pose; pi/2 if overturned",
     ),
     Quantity("peak_spin", "rad/s", "largest angular velocity at ends of steps and at impacts"),
-    Quantity("direction", "rad", "direction in which it lies, from x towards y"),
+    Quantity("direction", "rad", "direction of the overturned body, from x towards y"),
     Quantity("end_time", "s", "end of the history"),
-    Quantity(
-        "held", "s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"
-    ),
+    Quantity("held", "s", "time with a fixed corner or nearly flat rim in place of slip or hop"),
     Quantity("events", "1", "number of impacts, uplifts and changes of contact"),
     Quantity("steps", "1", "number of steps of the engine"),
 )
 _HISTORY_ON_THE_HULL = (
-    Quantity("pose", "1", "number of the stable pose in which it ends; 0 has the lowest centre, -1 there is no result"),
-    Quantity("contacts_held", "1", "impacts and changes where no contact obeyed every law, and what touched was held"),
-    Quantity("landings_replaced", "1", "impacts in which Housner's law stood in for one without a solution"),
+    Quantity("pose", "1", "number of the final stable pose, by increasing height of the centre; -1 without a result"),
+    Quantity("contacts_held", "1", "number of impacts and changes with fixed contacts, as no law has a solution"),
+    Quantity("landings_replaced", "1", "number of impacts with the law of Housner for lack of a solution"),
 )  # fmt: skip
 _SAMPLES = (
     Quantity("time", "s", "time", digits=".6f"),
     Quantity("rotation", "rad", "rotation theta, positive clockwise"),
     Quantity("angular_velocity", "rad/s", "angular velocity"),
     Quantity("displacement", "m", "displacement of the centre of mass to the right, relative to the ground"),
-    Quantity("rise", "m", "height of the centre of mass above its place at rest"),
+    Quantity("rise", "m", "height of the centre of mass above its position at rest"),
     Quantity("horizontal_velocity", "m/s", "velocity of the centre of mass to the right, relative to the ground"),
     Quantity("vertical_velocity", "m/s", "velocity of the centre of mass upwards, relative to the ground"),
     Quantity(
@@ -210,7 +210,7 @@ _SAMPLES = (
     *(Quantity(f"centre_{axis}", "m", f"centre of mass, {axis}") for axis in "xyz"),
     *(Quantity(f"ground_acceleration_{axis}", "m/s2", f"acceleration of the ground, {axis}") for axis in "xyz"),
     Quantity("tilt", "rad", "angle between the axis of the body and the vertical"),
-    Quantity("azimuth", "rad", "direction in which the body leans, from x towards y"),
+    Quantity("azimuth", "rad", "direction of the tilt, from x towards y"),
     Quantity(
         "contact",
         "1",
@@ -219,14 +219,14 @@ _SAMPLES = (
         spelled={contact.name.lower(): contact.value for contact in ContactMode},
     ),
     Quantity("touching", "1", "number of vertices on the ground"),
-    Quantity("sliding", "1", "number of vertices that slide on the ground"),
+    Quantity("sliding", "1", "number of sliding vertices"),
 )
 _BODY = (
     Quantity("kind", "", "kind of the body, motion or base"),
     Quantity("name", "", "name"),
-    Quantity("assumed", "", "assumed values that no input gave, a sentence each"),
-    Quantity("warnings", "", "doubts about the input or the result, a sentence each; none if all is well"),
-    Quantity("repairs", "", "changes of the mesh, a sentence each"),
+    Quantity("assumed", "", "assumed values without an input, one sentence each"),
+    Quantity("warnings", "", "warnings about the input or the result, one sentence each"),
+    Quantity("repairs", "", "changes of the mesh, one sentence each"),
     Quantity("mass", "kg", "mass", digits=".6g"),
     Quantity("half_width", "m", "horizontal distance of the centre of mass from a foot"),
     Quantity("volume", "m3", "volume", digits=".6g"),
@@ -244,7 +244,7 @@ _BODY = (
     Quantity("points", "m", "x, y of points"),
     Quantity("masses", "kg", "masses of the points"),
     Quantity("ground", "m", "height of the ground"),
-    Quantity("base_contact", "m", "stretches of the base that touch the ground, from x to x"),
+    Quantity("base_contact", "m", "intervals of the base in contact with the ground, from x to x"),
     Quantity("base_centre", "m", "centre x, y of a round base", digits=".5g"),
     Quantity("base_radius", "m", "radius of a round base", digits=".5g"),
     Quantity("gravity", "m/s2", "acceleration of gravity", digits=".6g"),
@@ -255,10 +255,10 @@ _BODY = (
     Quantity("uplift_acceleration", "m/s2", "ground acceleration at uplift, g tan(alpha)", label="uplift at"),
 )
 _IMPACT_MODELS = (
-    Quantity("impulse_ratio", "1", "distance of the impulse over the lever of the new foot", label="k"),
+    Quantity("impulse_ratio", "1", "distance of the impulse over the lever arm of the new foot", label="k"),
     Quantity("impulse_position", "m", "x of the impulse on the ground"),
-    Quantity("energy_loss", "1", "fraction of the kinetic energy that is lost at the impact", digits=".2%"),
-    Quantity("admissible", "1", "1 if one impulse on the base can cause the impact without creating energy, 0 if not"),
+    Quantity("energy_loss", "1", "fraction of the kinetic energy lost at the impact", digits=".2%"),
+    Quantity("admissible", "1", "1 if one impulse on the base can cause the impact without energy gain, else 0"),
     Quantity("energy_ratio", "1", "kinetic energy after over before the impact"),
     Quantity("energy", "J", "energy"),
     Quantity("share", "1", "fraction", digits=".2%"),
@@ -267,26 +267,26 @@ _IMPACT_MODELS = (
     Quantity("energy_left", "1", "fraction of the energy after an impact on each foot"),
     Quantity("impacts_to_half", "1", "number of impacts that halve the energy"),
     Quantity("bias", "1", "bias: mean of model minus measurement", digits="+.4f"),
-    Quantity("within", "1", "whether a value is within the 95 % interval", label="within 95 %"),
+    Quantity("within", "1", "1 if a value is within the 95 % interval, else 0", label="within 95 %"),
     Quantity("rmse", "1", "root mean square error of the coefficient", label="RMSE", digits=".4f"),
     Quantity("loss_rmse", "1", "root mean square error of the energy loss", label="loss", digits=".4f"),
-    Quantity("behind_closest", "1", "error beyond that of the closest model: value, low, high"),
+    Quantity("behind_closest", "1", "additional error compared with the closest model: value, low, high"),
     Quantity("measurements", "1", "number of measurements"),
     Quantity("rounding", "1", "half of the last printed digit of the measurements"),
     Quantity("edge_start", "m", "first corner x, y of the edge", label="from", digits=".5g"),
     Quantity("edge_end", "m", "second corner x, y of the edge", label="to", digits=".5g"),
     Quantity("nearest_edge", "m", "distance of the plumb line from the nearest edge of the support polygon"),
-    Quantity("barrier", "m", "rise of the centre of mass that leaves the pose", label="energy barrier"),
+    Quantity("barrier", "m", "rise of the centre of mass required to leave the pose", label="energy barrier"),
     Quantity("down", "1", "direction of gravity in axes of the body"),
     Quantity("saddles", "1", "number of saddles: balanced on an edge"),
     Quantity("summits", "1", "number of summits: balanced on a corner"),
-    Quantity("stands_in", "1", "number of the pose in which the body stands"),
-    Quantity("straight_rise", "m", "rise of the centre of mass if the body is toppled in one direction"),
-    Quantity("lowest_rise", "m", "smallest rise of the centre of mass of all ways to topple there"),
-    Quantity("topples_into", "1", "number of the pose into which the body topples", label="into pose"),
-    Quantity("tolerance", "m", "distance from the ground up to which points touch it", label="within"),
+    Quantity("stands_in", "1", "number of the current pose of the body"),
+    Quantity("straight_rise", "m", "rise of the centre of mass for toppling in one direction"),
+    Quantity("lowest_rise", "m", "smallest rise of the centre of mass for toppling into this pose"),
+    Quantity("topples_into", "1", "number of the pose after toppling", label="into pose"),
+    Quantity("tolerance", "m", "largest distance from the ground of contact points", label="within"),
     Quantity("corners", "1", "number of corners of the support polygon"),
-    Quantity("edges_left_out", "1", "number of less slender edges, which are not computed"),
+    Quantity("edges_left_out", "1", "number of less slender edges, not computed"),
 )
 _STUDIES = (
     Quantity("uplift_ratio", "1", "PGA over that of uplift", label="/ uplift", digits=".6f"),
@@ -297,8 +297,8 @@ _STUDIES = (
     Quantity("certain_acceleration", "m/s2", "PGA above which every history overturns"),
     Quantity("overturning_intervals", "m/s2", "intervals of PGA with overturning"),
     Quantity("safe_intervals", "m/s2", "intervals of PGA without overturning above the first with overturning"),
-    Quantity("min_pga", "m/s2", "smallest PGA that is computed"),
-    Quantity("max_pga", "m/s2", "largest PGA that is computed"),
+    Quantity("min_pga", "m/s2", "smallest computed PGA"),
+    Quantity("max_pga", "m/s2", "largest computed PGA"),
     Quantity("resolution", "1", "resolution of the samples, over the PGA"),
     Quantity("resolution_below", "1", "resolution below the first crossing"),
     Quantity("failed", "1", "number of histories without a result"),
@@ -307,25 +307,25 @@ _STUDIES = (
     Quantity("cells", "1", "number of cells"),
     Quantity("area", "1", "area of an island over that of the map"),
     Quantity("refined_points", "1", "number of points along boundaries"),
-    Quantity("only_first", "1", "number of histories that overturn only with the first"),
-    Quantity("only_second", "1", "number of histories that overturn only with the second"),
-    Quantity("compared", "1", "number of histories that are compared"),
+    Quantity("only_first", "1", "number of histories with overturning only for the first"),
+    Quantity("only_second", "1", "number of histories with overturning only for the second"),
+    Quantity("compared", "1", "number of compared histories"),
     Quantity("unknown", "1", "number of histories without a result in one of both"),
     Quantity("not_lifted", "1", "number of histories without uplift"),
     Quantity("rocked", "1", "number of histories with rocking and without overturning"),
     Quantity("largest_peak_ratio", "1", "largest peak ratio without overturning", label="peak / alpha"),
-    Quantity("largest_overturned_period", "s", "largest 2 pi / p of a block that overturns", label="overturns up to"),
+    Quantity("largest_overturned_period", "s", "largest 2 pi / p of a block with overturning", label="overturns up to"),
     Quantity("seed", "1", "random seed"),
     Quantity("limit_states", "1", "limit states: peak rotation over the slenderness angle"),
     Quantity("trials", "1", "number of histories at each level"),
-    Quantity("reached", "1", "number of histories that reach a state"),
+    Quantity("reached", "1", "number of histories that reach a limit state"),
     Quantity("dispersion", "1", "logarithmic standard deviation", digits=".3g"),
     Quantity("dispersion_95", "1", "95 % interval of the dispersion"),
     Quantity("failures", "1", "number of failures"),
     Quantity("observations", "1", "number of observations"),
     Quantity("log_likelihood", "1", "logarithm of the likelihood"),
     Quantity("resurrected_motions", "1", "number of motions with an interval without overturning above overturning"),
-    Quantity("resurrected_motions_over_1_percent", "1", "number of these whose interval is wider than 1 %"),
+    Quantity("resurrected_motions_over_1_percent", "1", "number of these motions with an interval wider than 1 %"),
     Quantity("slope", "1", "slope of the regression in logarithms"),
     Quantity("intercept", "1", "intercept of the regression in logarithms"),
     Quantity("scatter", "1", "logarithmic scatter", digits=".4f"),
@@ -342,17 +342,17 @@ _STUDIES = (
 _DECISIONS = (
     Quantity("probability", "1", "probability"),
     Quantity("beside", "1", "probability of overturning with another restitution model"),
-    Quantity("sliding_beyond", "m", "sliding distance of which the probability is given"),
+    Quantity("sliding_beyond", "m", "sliding distance of the probability"),
     Quantity("per_motion", "1", "probability under each motion", digits="%"),
     Quantity("first", "1", "first-order index of the variance of overturning", label="alone", digits=".2f"),
     Quantity("total", "1", "total index of the variance of overturning", label="with the others", digits=".2f"),
     Quantity("input_low", "1", "mean of the input in the lowest fifth of its samples, in the unit of the input"),
     Quantity("input_high", "1", "mean of the input in the highest fifth of its samples, in the unit of the input"),
-    Quantity("probability_low", "1", "probability of overturning there, lowest fifth"),
-    Quantity("probability_high", "1", "probability of overturning there, highest fifth"),
+    Quantity("probability_low", "1", "probability of overturning in the lowest fifth"),
+    Quantity("probability_high", "1", "probability of overturning in the highest fifth"),
     Quantity("pairs", "1", "number of pairs of histories under each motion"),
-    Quantity("pairs_rocking", "1", "number of pairs that rock"),
-    Quantity("pairs_apart", "1", "number of pairs that end differently, or whose peaks differ by more than 1 %"),
+    Quantity("pairs_rocking", "1", "number of pairs with rocking"),
+    Quantity("pairs_apart", "1", "number of pairs with different outcomes, or peaks that differ by more than 1 %"),
     Quantity("relative_change", "1", "relative change of the peak over that of the motion, median"),
     Quantity("motions", "1", "number of motions"),
     Quantity("record_index", "1", "index of the record of each motion"),
@@ -361,25 +361,25 @@ _DECISIONS = (
     Quantity("min_factor", "1", "smallest scale factor with overturning", label="smallest factor", digits=".3g"),
     Quantity("min_factor_in_plane", "1", "smallest scale factor with overturning of the plane body"),
     Quantity("plane_azimuth", "rad", "direction of the plane body, from x towards y"),
-    Quantity("barrier_energy", "J", "energy that topples the body"),
+    Quantity("barrier_energy", "J", "energy required to topple the body"),
     Quantity("barrier_azimuth", "rad", "direction of the smallest energy barrier, from x towards y"),
-    Quantity("code_methods", "1", "scale factor that a code method allows", label="up to factor", digits=".3g"),
-    Quantity("margin", "1", "margin that is required"),
+    Quantity("code_methods", "1", "largest scale factor allowed by a code method", label="up to factor", digits=".3g"),
+    Quantity("margin", "1", "required margin"),
     Quantity("tension", "N", "tension of anchors on each edge"),
     Quantity("shear", "N", "shear of anchors"),
     Quantity("no_overturning", "m", "length that prevents overturning"),
     Quantity("no_uplift", "m", "length that prevents uplift"),
     Quantity("isolation_period", "s", "shortest period of isolation"),
-    Quantity("isolation_displacement", "m", "displacement of that isolation"),
+    Quantity("isolation_displacement", "m", "displacement of the isolation"),
     Quantity("levels", "1", "levels of the motions"),
-    Quantity("safe", "1", "number of histories that are called safe", label="rated safe"),
+    Quantity("safe", "1", "number of histories rated safe", label="rated safe"),
     Quantity("histories_known", "1", "number of histories with a result"),
-    Quantity("limit_ratio", "1", "level over that which the method allows", label="D/C", digits=".3g"),
-    Quantity("share_95", "1", "95 % interval of the share"),
+    Quantity("limit_ratio", "1", "level over the level allowed by the method", label="D/C", digits=".3g"),
+    Quantity("share_95", "1", "95 % interval of the fraction"),
     Quantity("median", "1", "median"),
     Quantity("median_95", "1", "95 % interval of the median"),
     Quantity("censored", "1", "number of histories without overturning at any level"),
-    Quantity("worse_side_counts", "1", "whether only the worse side is rated"),
+    Quantity("worse_side_counts", "1", "1 if only the worse side is rated, else 0"),
 )
 _INVENTORY = (
     Quantity("rank", "1", "rank of the object"),
@@ -393,10 +393,10 @@ _INVENTORY = (
     Quantity("lifted", "1", "number of histories with uplift"),
     Quantity("slid", "1", "number of histories with sliding"),
     Quantity("overturned_share", "1", "fraction of the histories with overturning"),
-    Quantity("overturned_interval", "1", "95 % interval of that fraction"),
+    Quantity("overturned_interval", "1", "95 % interval of the fraction with overturning"),
     Quantity("median_rotation_over_angle", "1", "median of the peak ratio; infinite if it overturns"),
     Quantity("high_rotation_over_angle", "1", "84 % quantile of the peak ratio; infinite if it overturns"),
-    Quantity("approximate", "m", "dimensions that are approximate"),
+    Quantity("approximate", "m", "approximate dimensions"),
     Quantity("pieces_spared", "1", "number of falls prevented"),
     Quantity("gain", "1", "falls prevented, weighted by the consequence"),
     Quantity("base_wider_each_side", "m", "widening of the base on each side"),
@@ -405,10 +405,10 @@ _INVENTORY = (
     Quantity("anchors_of_one_edge", "N", "tension of the anchors of one edge"),
     Quantity("anchors_of_one_edge_over_weight", "1", "tension of the anchors of one edge over the weight"),
     Quantity("anchors_across_over_weight", "1", "shear of the anchors over the weight"),
-    Quantity("moved_to_share_of_shaking", "1", "intensity at another place over that here"),
+    Quantity("moved_to_share_of_shaking", "1", "intensity at another location over the intensity at this location"),
 )
 _MOTION = (
-    Quantity("support", "", "what moves: the ground, or a floor of a building"),
+    Quantity("support", "", "support of the motion: the ground, or a floor of a building"),
     Quantity("provenance", "", "source of the motion, and each processing step, in order"),
     Quantity("scale", "1", "scale factor of the motion"),
     Quantity("duration", "s", "duration of the motion", digits=".6g"),
@@ -432,18 +432,18 @@ _MOTION = (
 _RESPONSE = (
     Quantity("restitution", "", "restitution model, or coefficient"),
     Quantity("model", "", "restitution model"),
-    Quantity("error", "", "why there is no result, in a sentence"),
+    Quantity("error", "", "reason for a missing result, as a sentence"),
     Quantity("engine", "", "engine and its options"),
-    Quantity("linear", "1", "whether the equations are linearised"),
-    Quantity("summary", "", "outcome in a sentence"),
+    Quantity("linear", "1", "1 if the equations are linearised, else 0"),
+    Quantity("summary", "", "outcome as a sentence"),
     Quantity("initial_rotation", "rad", "rotation at the start"),
     Quantity("initial_tilt", "rad", "tilt at the start"),
     Quantity("initial_azimuth", "rad", "direction of the tilt at the start, from x towards y"),
     Quantity("start_height", "m", "height of the lowest point above the ground at the start"),
     Quantity("start_velocity", "m/s", "velocity at the start, upwards last"),
     Quantity("friction", "1", "coefficient of friction between body and ground"),
-    Quantity("friction_assumed", "1", "whether the coefficient of friction is assumed"),
-    Quantity("friction_of_motion", "1", "friction demand while rocking", label="friction while rocking", digits=".3f"),
+    Quantity("friction_assumed", "1", "1 if the coefficient of friction is assumed, else 0"),
+    Quantity("friction_of_motion", "1", "friction demand during rocking", label="friction while rocking", digits=".3f"),
     Quantity("friction_of_impacts", "1", "friction demand at impacts", label="friction at impacts", digits=".3f"),
     Quantity("normal_restitution", "1", "coefficient of normal restitution"),
     Quantity("normal_restitution_law", "", "law of the coefficient of normal restitution"),
@@ -453,17 +453,17 @@ _RESPONSE = (
         digits=".1e",
     ),
     Quantity(
-        "error_estimate", "rad", "largest change of the rotation if every step is halved; infinite if the outcome "
+        "error_estimate", "rad", "largest change of the rotation with half the time step; infinite if the outcome "
         "changes", label="numerical error", digits=".1e",
     ),
     Quantity("overturned_over", "", "edge, vertex or rim over which the body overturned"),
-    Quantity("unfinished", "", "how the body moves when the computation ends, in a sentence"),
-    Quantity("ends_early", "1", "whether the computation ends before the body rests, since impacts lose no energy"),
+    Quantity("unfinished", "", "motion of the body at the end of the computation, as a sentence"),
+    Quantity("ends_early", "1", "1 if the computation ends before rest because impacts lose no energy, else 0"),
     Quantity("quaternion", "1", "attitude: unit quaternion (s, x, y, z)"),
     Quantity("ground_displacement", "m", "displacement of the ground"),
     Quantity("history", "1", "number of the history"),
     Quantity("difference", "rad", "difference of peak rotations"),
-    Quantity("lying", "rad", "rotation of a body that lies on its left and on its right side"),
+    Quantity("lying", "rad", "rotation of a body lying on its left and on its right side"),
     Quantity("samples", "1", "number of samples"),
     Quantity("samples_shown", "1", "number of samples in the answer"),
 )  # fmt: skip
@@ -471,40 +471,40 @@ _IMPACTS_AND_INTERVALS = (
     Quantity("velocity_before", "rad/s", "angular velocity before the impact", digits="+.6f"),
     Quantity("velocity_after", "rad/s", "angular velocity after the impact", digits="+.6f"),
     Quantity("coefficient", "1", "coefficient of restitution, a ratio of velocities", label="r", digits=".4f"),
-    Quantity("foot", "1", "foot landed on: 1 right, -1 left", _SIDES),
+    Quantity("foot", "1", "foot of the landing: 1 right, -1 left", _SIDES),
     *(Quantity(f"normal_{foot}", "N s", f"vertical impulse on the {foot} foot") for foot in ("left", "right")),
     *(Quantity(f"tangential_{foot}", "N s", f"horizontal impulse on the {foot} foot") for foot in ("left", "right")),
     Quantity("energy_before", "J", "kinetic energy before the impact"),
     Quantity("energy_after", "J", "kinetic energy after the impact"),
     Quantity("impulse", "N s", "vertical impulse of the impact"),
-    Quantity("pull", "N s", "part of the impulse with which the ground would have to pull"),
-    Quantity("slips", "1", "whether the feet slid in the impact: 1 yes, 0 no", label="feet slide"),
-    Quantity("feet", "", "feet that touch the ground"),
-    Quantity("slip", "1", "direction in which the feet slide: 1 right, -1 left, 0 they stick"),
+    Quantity("pull", "N s", "tensile part of the impulse"),
+    Quantity("slips", "1", "1 if the feet slide during the impact, else 0", label="feet slide"),
+    Quantity("feet", "", "feet in contact with the ground"),
+    Quantity("slip", "1", "direction of sliding: 1 right, -1 left, 0 no sliding"),
     Quantity("vertices", "", "numbers of the vertices on the ground"),
-    Quantity("sliding_vertices", "", "numbers of the vertices that slide on the ground", label="sliding"),
+    Quantity("sliding_vertices", "", "numbers of the sliding vertices", label="sliding"),
     Quantity("start", "s", "start of the interval", label="from", digits=".6f"),
     Quantity("end", "s", "end of the interval", label="to", digits=".6f"),
     Quantity("distance", "m", "path of the feet along the ground in the interval", label="sliding distance"),
 )
 _IDENTIFICATION = (
-    Quantity("no_scatter", "1", "probability that the coefficient does not scatter", digits=".3g"),
+    Quantity("no_scatter", "1", "probability of a coefficient without scatter", digits=".3g"),
     Quantity("trend", "1", "slope of the logarithm of the coefficient over that of the speed"),
     Quantity("independent", "1", "number of independent measured values"),
-    Quantity("advantage", "1", "logarithm of the likelihood over that of times with a constant mean interval"),
+    Quantity("advantage", "1", "logarithm of the likelihood ratio to times with a constant mean interval"),
     Quantity("residual_times", "s", "times of the residuals"),
     Quantity("number", "1", "number of the impact, from zero", label="no."),
     Quantity("speed", "rad/s", "angular velocity before the impact, without sign"),
     Quantity("release_ratio", "1", "initial rotation over the slenderness angle", digits="g"),
     Quantity("timing_noise", "s", "standard deviation of a measured time", digits=".2g"),
     Quantity("deviation", "1", "standard deviation of the mean coefficient", digits=".2g"),
-    Quantity("clock", "s", "lead of the clock of the measurement over that of the motion"),
+    Quantity("clock", "s", "time offset of the measurement ahead of the motion"),
     Quantity("gain", "1", "measured over true rotation"),
-    Quantity("stretches", "1", "number of measured states at which half cycles begin anew"),
-    Quantity("half_cycles_left_out", "1", "number of half cycles that rocking alone does not explain"),
-    Quantity("used", "s", "duration of the half cycles that are used"),
+    Quantity("stretches", "1", "number of measured states at the start of half cycles"),
+    Quantity("half_cycles_left_out", "1", "number of half cycles that pure rocking does not explain"),
+    Quantity("used", "s", "duration of the used half cycles"),
     Quantity("measured", "s", "duration of the measurement"),
-    Quantity("predictable", "s", "time up to which the rotation can be predicted from rest"),
+    Quantity("predictable", "s", "time up to which the rotation from rest is predictable"),
     Quantity("common", "1", "standard deviation of the logarithm of the coefficient, common to all trials"),
 )
 _SCORES = (
@@ -528,40 +528,40 @@ _LEAGUE = (
     Quantity("bic", "1", "Bayesian information criterion", label="BIC", digits=".1f"),
     Quantity("by_group", "1", "root mean square error of each group"),
     Quantity("by_band", "1", "root mean square error in each band of h/b", digits=".3f"),
-    Quantity("ahead_of_ked", "1", "error of KED beyond that of the model: value, low, high"),
+    Quantity("ahead_of_ked", "1", "additional error of KED compared with the model: value, low, high"),
     Quantity("fitted", "1", "fitted parameters of a model"),
-    Quantity("shares", "1", "shares of the scatter"),
+    Quantity("shares", "1", "fractions of the scatter"),
     Quantity("inside", "1", "number of measurements within their intervals"),
     Quantity("interval_width", "1", "mean width of the intervals", digits=".3f"),
     Quantity("covered", "1", "number of measurements within their intervals, and of all"),
-    Quantity("printed", "1", "values that the paper prints"),
-    Quantity("recomputed", "1", "values that are recomputed"),
+    Quantity("printed", "1", "values printed in the paper"),
+    Quantity("recomputed", "1", "recomputed values"),
 )
 _CAMPAIGN = (
-    Quantity("histories_done", "1", "number of histories that are recorded"),
+    Quantity("histories_done", "1", "number of recorded histories"),
     Quantity("all_histories", "1", "number of histories of all rounds"),
-    Quantity("verified", "1", "number of histories that were read and are what was written"),
-    Quantity("missing", "1", "first and last number of histories that are missing"),
+    Quantity("verified", "1", "number of histories that are equal when read again"),
+    Quantity("missing", "1", "first and last number of missing histories"),
     Quantity("later", "1", "usual range of the number of histories of later rounds"),
     Quantity("chunk", "1", "number of histories of a chunk"),
     Quantity("chunks", "1", "number of chunks"),
     *(Quantity(f"{done}_chunks", "1", f"number of chunks {done}") for done in ("computed", "resumed", "adopted")),
-    Quantity("chunks_done", "1", "number of chunks that are recorded"),
+    Quantity("chunks_done", "1", "number of recorded chunks"),
     Quantity("rounds", "1", "number of rounds"),
-    Quantity("rounds_begun", "1", "number of rounds that have begun"),
-    Quantity("retried", "1", "number of chunks that were computed again"),
+    Quantity("rounds_begun", "1", "number of started rounds"),
+    Quantity("retried", "1", "number of chunks computed again"),
     Quantity("worker_seconds", "s", "computing time of all workers"),
     Quantity("run_seconds", "s", "duration of the run"),
     Quantity("seconds", "s", "estimated duration"),
     Quantity("between", "s", "range of the estimated duration"),
     Quantity("rate", "1/s", "histories per second of one worker"),
-    *(Quantity(name, "B", f"{name} that is needed") for name in ("memory", "disk")),
-    Quantity("free", "B", "disk that is free"),
+    *(Quantity(name, "B", f"required {name}") for name in ("memory", "disk")),
+    Quantity("free", "B", "free disk space"),
     Quantity("bytes", "B", "size of the file"),
 )
 QUANTITIES: dict[str, Quantity] = {
-    each.name: each
-    for each in (
+    entry.name: entry
+    for entry in (
         *_BODY,
         *_IMPACT_MODELS,
         *_STUDIES,
@@ -581,19 +581,19 @@ QUANTITIES: dict[str, Quantity] = {
         *_IMPACTS_AND_INTERVALS,
     )
 }
-"""All of them, by name."""
+"""All quantities by name."""
 
 
 def closely(**digits: str) -> dict[str, Quantity]:
-    """Return quantities with other digits for readers, for an answer that states them more closely.
+    """Return quantities with other digits for readers, for answers with higher precision.
 
     >>> closely(time=".2f")["time"].digits
     '.2f'
     """
-    return {name: replace(QUANTITIES[name], digits=each) for name, each in digits.items()}
+    return {name: replace(QUANTITIES[name], digits=format_spec) for name, format_spec in digits.items()}
 
 
-# what answers have besides: parts, sentences, labels, and numbers whose quantity is of their answer alone
+# other keys of answers: sections, sentences, labels, and numbers with a quantity of their answer only
 _PARTS = """
     adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body
     by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
@@ -613,11 +613,11 @@ PARTS = frozenset(_PARTS.split())
 
 
 def is_named(key: str) -> bool:
-    """Return whether a key of an answer is a quantity or a part."""
+    """Return True if a key of an answer is a quantity or a section."""
     return key in PARTS or quantity(key) is not None
 
 
-TIMES = tuple(each.name for each in _HISTORY if each.unit == "s")
-"""Those of a history that are times, which a motion that is stretched stretches."""
-HISTORY = tuple(each.name for each in _HISTORY if not each.name.startswith("twin"))
-"""What is known of every history of a study in the plane, in the order of its tables."""
+TIMES = tuple(entry.name for entry in _HISTORY if entry.unit == "s")
+"""Times of a history, which scale with the time of the motion."""
+HISTORY = tuple(entry.name for entry in _HISTORY if not entry.name.startswith("twin"))
+"""Quantities of every history of a study of plane bodies, in the order of tables."""

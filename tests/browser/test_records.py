@@ -122,7 +122,7 @@ def test_what_is_no_record(open_page: Callable[..., Any], tmp_path: Path) -> Non
     section.get_by_label(DROP).set_input_files(letter)
     expect(section.get_by_role("list", name="Files")).to_contain_text("letter.txt")
     asked(section, "refused")
-    expect(section.get_by_role("alert")).to_contain_text("etter.txt: not recognised as any of")
+    expect(section.get_by_role("alert")).to_contain_text("etter.txt: unknown format, allowed are")
     section.get_by_role("button", name="Remove letter.txt").click()
     section.get_by_label(DROP).set_input_files(record(tmp_path / "hall.txt", 1.0))
     expect(section.get_by_role("list", name="Files")).to_contain_text("hall.txt")

@@ -24,19 +24,28 @@ SLOW, BOX, HEIGHTS = PULSE.scaled(0.5), rk.dynamics.SpatialBody.box(0.5, 0.5, 2.
 STATUE_2_CM = [(0.0, 0.0), (0.008, 0.0), (0.005, 0.02)]
 
 DOUBTFUL = {
-    "mm for m": (lambda: rk.Block(width=500.0, height=2000.0), "1000 m above the ground.*mm or cm taken for m"),
-    "cm for m": (lambda: rk.Block(width=50.0, height=200.0), "100 m above the ground.*mm or cm taken for m"),
-    "statue of 2 cm": (lambda: rk.Section.from_points(STATUE_2_CM), "less than the 0.025 m.*m taken for mm or cm"),
+    "mm for m": (
+        lambda: rk.Block(width=500.0, height=2000.0),
+        "1000 m above the ground.*check that lengths are in m, not mm or cm",
+    ),
+    "cm for m": (
+        lambda: rk.Block(width=50.0, height=200.0),
+        "100 m above the ground.*check that lengths are in m, not mm or cm",
+    ),
+    "statue of 2 cm": (
+        lambda: rk.Section.from_points(STATUE_2_CM),
+        "less than the 0.025 m.*check that lengths are in m",
+    ),
     "solid of 2 cm": (lambda: Solid(box(0.005, 0.006, 0.02)), "less than the 0.025 m"),
     "mass points": (lambda: rk.MassPoints([(0.1, 900.0)], [5.0], feet=(-90.0, 80.0)), "900 m above the ground"),
-    "one length in mm": (lambda: rk.Block(width=500.0, height=2.0), "h/b = 0.004.*one length in another unit"),
-    "density in t/m3": (lambda: rk.Block(width=0.5, height=2.0, density=2.4), "2.4 kg/m3.*g/cm3 or t/m3"),
+    "one length in mm": (lambda: rk.Block(width=500.0, height=2.0), "h/b = 0.004.*check the units"),
+    "density in t/m3": (lambda: rk.Block(width=0.5, height=2.0, density=2.4), "2.4 kg/m3.*unit is kg/m3"),
     "density of a solid": (lambda: Solid(Part(box(1.0, 1.0, 2.0), 2400e3)), "osmium"),
-    "amplitude in mm/s2": (lambda: rk.pulses.sine(amplitude=3000.0, period=0.8), r"3000 m/s2 \(306 g\).*unit or"),
+    "amplitude in mm/s2": (lambda: rk.pulses.sine(amplitude=3000.0, period=0.8), r"3000 m/s2 \(306 g\).*unit and"),
     "record in gal": (lambda: rk.GroundMotion(np.array([0.0, 300.0, -210.0]), 0.01), "300 m/s2"),
     "scaled record": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 0.01).scaled(-9000.0), "2.7e[+]04 m/s2.*scale"),
-    "period in ms": (lambda: rk.pulses.sine(amplitude=3.0, period=800.0), "period of 800 s.*in ms"),
-    "step in ms": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 5.0), "step of 5 s.*in ms"),
+    "period in ms": (lambda: rk.pulses.sine(amplitude=3.0, period=800.0), "period of 800 s.*in seconds"),
+    "step in ms": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 5.0), "step of 5 s.*in seconds"),
     "scale": (lambda: rk.simulate(BLOCK, PULSE, scale=-9000.0), "2.7e[+]04 m/s2"),
     "scales of many": (lambda: rk.simulate_many(BLOCK, [PULSE, PULSE], scale=[1.0, -9000.0]), "2.7e[+]04 m/s2.*scale"),
     "scale with contact": (lambda: rk.simulate(BLOCK, PULSE, None, friction=0.5, scale=20.0), "60 m/s2.*scale"),
@@ -47,10 +56,10 @@ DOUBTFUL = {
     "pga of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("pga", [1.0, 300.0]), HEIGHTS), "300 m/s2"),
     "levels": (lambda: fragility_analysis(BLOCK, [PULSE, SLOW], [2.0, 3000.0], 0.9), "3000 m/s2.*unit"),
     "upwards": (lambda: rk.simulate_many(BLOCK, rk.GroundMotion([0, 1], 0.01, vertical=[0, 9]), scale=5.0), "45 m/s2"),
-    "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*cm/s2"),
+    "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*m/s2"),
     "gravity in g": (
         lambda: rk.free_rocking(BLOCK, restitution=None, friction=0.5, gravity=1.0),
-        "gravity of 1 m/s2.*or in g",
+        "gravity of 1 m/s2.*unit",
     ),
     "gravity in space": (
         lambda: rk.free_rocking(BOX, restitution="housner", start=SpatialStart(0.01), gravity=981.0),
@@ -58,10 +67,10 @@ DOUBTFUL = {
     ),
     "friction in percent": (
         lambda: rk.simulate(BLOCK, PULSE, friction=40.0),
-        "friction of 40 is more than 10.*percent",
+        "friction of 40 exceeds 10.*percent",
     ),
     "friction in degrees": (lambda: rk.simulate(BLOCK, PULSE, None, friction=35.0), "friction of 35.*degrees"),
-    "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*what is lost"),
+    "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*loss"),
     "loss for a model": (lambda: model("fixed", r=0.05), "restitution of 0.05"),
 }
 

@@ -163,12 +163,12 @@ class SpeedRestitution(ImpactLaw):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        speeds = checks.finite("at", self.at, "rad/s", least=2)
+        speeds = checks.finite("at", self.at, "rad/s", minimum=2)
         if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
             raise InvalidValueError(
                 parameter="at", allowed="speeds >= 0 that increase [rad/s]", value=speeds[:4].tolist()
             )
-        factors = checks.finite("factors", self.factors, least=2)
+        factors = checks.finite("factors", self.factors, minimum=2)
         if factors.size != speeds.size:
             raise InvalidValueError(
                 "{parameter} must have one value per speed, {speeds}, got {count}", parameter="factors",
@@ -359,7 +359,7 @@ def _mixed(z: int) -> int:
 
 
 def _factors(values: Any, most: float = 1.0) -> FloatArray:
-    row = checks.finite("factors", values, least=2)
+    row = checks.finite("factors", values, minimum=2)
     if row.min() < 0.0 or row.max() > most:
         raise InvalidValueError(
             "factors must be in [0, {most:g}], got {smallest:g} to {largest:g}",
@@ -395,4 +395,4 @@ def _by_side(values: Any) -> FloatArray:
 
 
 def _quantiles_of(values: Any) -> FloatArray:
-    return np.quantile(checks.finite("values", values, least=2), np.linspace(0.0, 1.0, 1025))
+    return np.quantile(checks.finite("values", values, minimum=2), np.linspace(0.0, 1.0, 1025))

@@ -1,8 +1,7 @@
-"""Examples within the package: bodies, synthetic motions by seed, a list of objects, questions and jobs.
+"""Built-in examples: bodies, synthetic motions by seed, lists of objects, input files and jobs.
 
-They are there to try things without own data, and in documentation. Bodies whose file names a source have the sizes
-that it states; all else is invented for illustration: no real object was measured for it, and no motion is the record
-of an earthquake.
+The examples need no user data. Bodies with a source in their file have the dimensions of that source. All other
+examples are invented: no real object was measured, and no motion is the record of an earthquake.
 """
 
 from pathlib import Path
@@ -20,22 +19,22 @@ __all__ = ["Catalogue", "Example", "body", "catalogue", "motion", "path", "write
 
 
 def body(name: str) -> Body | Solid:
-    """Return an example of a body.
+    """Return an example body.
 
     Parameters
     ----------
     name : str
-        As ``catalogue("body")`` lists them.
+        Name from ``catalogue("body")``.
 
     Returns
     -------
     Body or Solid
-        The body, plane or in space.
+        Plane or 3D body.
 
     Raises
     ------
     InvalidValueError
-        If there is no body of that name; the error lists them.
+        If the body is unknown; the error lists the names.
 
     Examples
     --------
@@ -58,25 +57,25 @@ def motion(name: str, seed: int | None = None) -> GroundMotion: ...
 
 
 def motion(name: str, seed: int | None = None) -> Any:
-    """Return an example of a ground motion, the same bits on every processor.
+    """Return an example ground motion, with the same bits on every processor.
 
     Parameters
     ----------
     name : str
-        As ``catalogue("motion")`` lists them.
+        Name from ``catalogue("motion")``.
     seed : int, optional
-        Another motion of the same kind, at least 0; 1 if not given. A pulse takes none [-].
+        Random seed for another motion of this type, >= 0; the default is 1. The pulse has no seed [-].
 
     Returns
     -------
     GroundMotion or dict of str to GroundMotion
-        The motion; of "three-components" one along each of x, y and z. Model, seed, peak and duration are in the
-        metadata.
+        Motion, or motions along x, y and z for "three-components". The metadata contain model, seed, peak and
+        duration.
 
     Raises
     ------
     InvalidValueError
-        If there is no motion of that name, or the seed is none.
+        If the motion is unknown, or the seed is invalid.
 
     Examples
     --------
@@ -92,34 +91,34 @@ def motion(name: str, seed: int | None = None) -> Any:
     if example.seed is None:
         if seed is not None:
             raise InvalidValueError(
-                "{example} is the same every time and takes no seed, got {value}", parameter="seed", value=seed,
+                "{example} has no seed, got {value}", parameter="seed", value=seed,
                 example=example.name,
             )  # fmt: skip
         return _described(example, _made(example), None)
     seed = example.seed if seed is None else checks.whole("seed", seed, high=2**60)
-    made = _made(example, seed)
-    if isinstance(made, dict):
-        return {axis: _described(example, part, seed, axis) for axis, part in made.items()}
-    return _described(example, made, seed)
+    result = _made(example, seed)
+    if isinstance(result, dict):
+        return {axis: _described(example, component, seed, axis) for axis, component in result.items()}
+    return _described(example, result, seed)
 
 
 def path(name: str) -> Path:
-    """Return the file of an example within the package: a body, a list, a question or a job.
+    """Return the path of an example file in the package: a body, a list, an input file or a job.
 
     Parameters
     ----------
     name : str
-        As `catalogue` lists them.
+        Name from `catalogue`.
 
     Returns
     -------
     Path
-        The file, to be read and left as it is; `write` makes a copy.
+        Path of the file, for reading only; `write` creates a copy.
 
     Raises
     ------
     InvalidValueError
-        If there is no example of that name, or it is a motion, which is computed.
+        If the example is unknown, or is a motion, which has no file.
 
     Examples
     --------
@@ -129,33 +128,33 @@ def path(name: str) -> Path:
     example = _of(name)
     if not example.files:
         raise InvalidValueError(
-            "{example} is computed and has no file: motion({example!r}) makes it, write(...) its record",
+            "{example} is computed and has no file; use motion({example!r}), or write(...) for a record",
             example=example.name,
         )  # fmt: skip
     return table.HERE / example.files[0]
 
 
 def write(name: str, folder: str | Path = ".", *, force: bool = False) -> list[Path]:
-    """Write the files of an example into a folder, with records of the motions that its commands take.
+    """Write the files of an example into a folder, with the records for its commands.
 
     Parameters
     ----------
     name : str
-        As `catalogue` lists them.
+        Name from `catalogue`.
     folder : str or Path
-        Where to; the current one if not given.
+        Output folder; the default is the current folder.
     force : bool
-        Whether a file of the same name that holds something else is written over.
+        True to replace existing files with other content.
 
     Returns
     -------
     list of Path
-        The files; `read_motion` reads a record back to the last bit.
+        Paths of the files; `read_motion` reads the records without rounding.
 
     Raises
     ------
     InvalidValueError
-        If there is no example of that name, no such folder, or a file of the same name holds something else.
+        If the example or the folder is unknown, or a file with other content exists.
 
     Examples
     --------
@@ -168,8 +167,8 @@ def write(name: str, folder: str | Path = ".", *, force: bool = False) -> list[P
 
 
 def _of(name: str, kind: str | None = None) -> Example:
-    known = catalogue(kind)
-    return known[checks.one_of(kind or "example", name, known)]
+    examples = catalogue(kind)
+    return examples[checks.one_of(kind or "example", name, examples)]
 
 
 def _made(example: Example, *seed: int) -> Any:
@@ -177,21 +176,21 @@ def _made(example: Example, *seed: int) -> Any:
     return example.make(*seed)
 
 
-def _described(example: Example, made: GroundMotion, seed: int | None, axis: str = "") -> GroundMotion:
-    """Return a motion that says what it is."""
-    words = [example.name, *([axis] if axis else []), *([] if seed is None else [f"seed {seed}"])]
-    told = {
+def _described(example: Example, motion: GroundMotion, seed: int | None, axis: str = "") -> GroundMotion:
+    """Return a motion with name and metadata of its example."""
+    texts = [example.name, *([axis] if axis else []), *([] if seed is None else [f"seed {seed}"])]
+    metadata = {
         "example": f"{example.name} of rocking.examples, no record of an earthquake: {example.title}",
         "model": example.model,
         **({} if seed is None else {"seed": str(seed)}),
         **({"component": axis} if axis else {}),
-        "peak ground acceleration": f"{made.peak:.4g} m/s2",
-        "duration": f"{made.duration:.6g} s",
+        "peak ground acceleration": f"{motion.peak:.4g} m/s2",
+        "duration": f"{motion.duration:.6g} s",
     }
-    return made.changed(f"example {example.name}", name=", ".join(words), metadata=told)
+    return motion.changed(f"example {example.name}", name=", ".join(texts), metadata=metadata)
 
 
 def _contents(example: Example) -> dict[str, bytes]:
-    made = {name: motion(name) for name in example.records}
-    named = {name: each if isinstance(each, dict) else {"acceleration": each} for name, each in made.items()}
+    results = {name: motion(name) for name in example.records}
+    named = {name: result if isinstance(result, dict) else {"acceleration": result} for name, result in results.items()}
     return table.contents(example, named)

@@ -1,4 +1,4 @@
-"""What there is, as a table that prints well on a terminal and in a notebook."""
+"""Catalogue of examples, printed as a table on a terminal and in a notebook."""
 
 from collections.abc import Iterator, Mapping
 from html import escape
@@ -9,12 +9,12 @@ from rocking.examples.table import EXAMPLES, Example, Kind
 
 
 class Catalogue(Mapping[str, Example]):
-    """Examples by name; it prints as a table.
+    """Examples by name, printed as a table.
 
     Parameters
     ----------
     examples : mapping of str to Example
-        What it holds.
+        Examples of the catalogue.
     """
 
     def __init__(self, examples: Mapping[str, Example]) -> None:
@@ -30,15 +30,15 @@ class Catalogue(Mapping[str, Example]):
         return len(self._examples)
 
     def __repr__(self) -> str:
-        rows = [(each.name, each.kind, each.title) for each in self.values()]
+        rows = [(example.name, example.kind, example.title) for example in self.values()]
         name, kind = (max((len(row[k]) for row in rows), default=0) for k in (0, 1))
         return "\n".join(f"{row[0]:<{name}}  {row[1]:<{kind}}  {row[2]}" for row in rows)
 
     def _repr_html_(self) -> str:
-        rows = [("th", ("name", "kind", "what it is"))]
-        rows += [("td", (each.name, each.kind, each.title)) for each in self.values()]
+        rows = [("th", ("name", "kind", "title"))]
+        rows += [("td", (example.name, example.kind, example.title)) for example in self.values()]
         lines = (
-            "".join(f'<{tag} style="text-align: left">{escape(word)}</{tag}>' for word in words) for tag, words in rows
+            "".join(f'<{tag} style="text-align: left">{escape(word)}</{tag}>' for word in texts) for tag, texts in rows
         )
         return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
@@ -49,30 +49,30 @@ def catalogue(kind: str | None = None) -> Catalogue:
     Parameters
     ----------
     kind : {"body", "motion", "list", "question", "job"}, optional
-        Which ones; all if not given.
+        Kind of examples; the default is all.
 
     Returns
     -------
     Catalogue
-        By name, in the order in which they are shown.
+        Examples by name, in the order of tables.
 
     Raises
     ------
     InvalidValueError
-        If there is no such kind.
+        If the kind is unknown.
 
     Examples
     --------
     >>> catalogue("motion")
-    near-fault        motion  one long pulse of velocity, 0.9 m/s in 1.2 s, within ordinary shaking
-    far-field         motion  as of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g
-    long              motion  a minute of strong shaking, scaled to 0.35 g
-    soft-soil         motion  a soft layer that swings at 0.8 Hz, scaled to 0.35 g
+    near-fault        motion  a long velocity pulse, 0.9 m/s in 1.2 s, in an ordinary motion
+    far-field         motion  magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g
+    long              motion  one minute of strong motion, scaled to 0.35 g
+    soft-soil         motion  a soft layer of 0.8 Hz, scaled to 0.35 g
     three-components  motion  motions along x, y and z, scaled to 0.4 g, 0.35 g and 0.2 g upwards
-    pulse             motion  a symmetric Ricker wavelet of 0.5 g and 1 s alone
+    pulse             motion  a symmetric Ricker wavelet of 0.5 g and 1 s
     >>> list(catalogue("body"))
     ['statue', 'stele', 'pier', 'cabinet', 'transformer', 'rack', 'bust', 'column', 'showcase', 'bookshelf', 'cask',
      'drum', 'gravestone', 'barrel']
     """
     kind = None if kind is None else checks.one_of("kind", kind, get_args(Kind))
-    return Catalogue({name: each for name, each in EXAMPLES.items() if kind in {None, each.kind}})
+    return Catalogue({name: example for name, example in EXAMPLES.items() if kind in {None, example.kind}})

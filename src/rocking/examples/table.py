@@ -1,4 +1,4 @@
-"""The one table of examples: what each is, its files, the commands that show it, and motions to try things with."""
+"""Table of all examples: title, files and commands of each, and the example motions."""
 
 import shlex
 from collections.abc import Callable, Mapping
@@ -29,41 +29,41 @@ FILTERED = "modulated filtered white noise (Rezaeian & Der Kiureghian 2008)"
 
 
 def near_fault(seed: int) -> GroundMotion:
-    """Return one pulse of velocity, 0.9 m/s in 1.2 s, within shaking of higher frequencies."""
+    """Return a velocity pulse, 0.9 m/s in 1.2 s, with a residual of higher frequencies."""
     pulse = mavroeidis_papageorgiou(velocity=0.9, period=1.2, cycles=1.5, phase=0.5)
     return with_pulse(_shaking(seed, length=9.0, frequency=5.0, corner=1.0 / 1.2), pulse, arrival=5.0)
 
 
 def far_field(seed: int) -> GroundMotion:
-    """Return magnitude 6.8 at 40 km, scaled to 0.35 g."""
-    return _to(0.35, point_source_motion(PointSource(magnitude=6.8, distance=40e3), seed=seed))
+    """Return a motion of magnitude 6.8 at 40 km, scaled to 0.35 g."""
+    return _scaled_to_pga(0.35, point_source_motion(PointSource(magnitude=6.8, distance=40e3), seed=seed))
 
 
 def long(seed: int) -> GroundMotion:
-    """Return a minute of strong shaking, scaled to 0.35 g."""
-    return _to(0.35, _shaking(seed, length=60.0, frequency=3.0, corner=0.1))
+    """Return a motion of one minute, scaled to 0.35 g."""
+    return _scaled_to_pga(0.35, _shaking(seed, length=60.0, frequency=3.0, corner=0.1))
 
 
 def soft_soil(seed: int) -> GroundMotion:
-    """Return a layer that swings at 0.8 Hz, scaled to 0.35 g."""
+    """Return a motion of a soft layer of 0.8 Hz, scaled to 0.35 g."""
     layer, envelope = KanaiTajimi(0.01, frequency=0.8, damping=0.25), Envelope(3.0, 12.0, 0.25)
     raw = kanai_tajimi_motion(layer, envelope, seed=seed, time_step=0.02, duration=45.0)
-    what = "high-passed by a critically damped oscillator of 0.1 Hz"
-    return _to(0.35, raw.changed(what, acceleration=highpassed(raw.acceleration, raw.time_step, 0.1)))
+    action = "high-passed by a critically damped oscillator of 0.1 Hz"
+    return _scaled_to_pga(0.35, raw.changed(action, acceleration=highpassed(raw.acceleration, raw.time_step, 0.1)))
 
 
 def three_components(seed: int) -> dict[str, GroundMotion]:
-    """Return x and y alike, 0.4 g and 0.35 g, and z of higher frequency, 0.2 g."""
-    # no seed shares a component with another
-    parts = {"x": (0.4, 3.0), "y": (0.35, 3.0), "z": (0.2, 8.0)}
+    """Return similar motions along x and y, 0.4 g and 0.35 g, and z of higher frequency, 0.2 g."""
+    # components of different seeds are different
+    components = {"x": (0.4, 3.0), "y": (0.35, 3.0), "z": (0.2, 8.0)}
     return {
-        axis: _to(peak, _shaking(3 * seed + k, length=12.0, frequency=frequency, corner=0.15))
-        for k, (axis, (peak, frequency)) in enumerate(parts.items())
+        axis: _scaled_to_pga(peak, _shaking(3 * seed + k, length=12.0, frequency=frequency, corner=0.15))
+        for k, (axis, (peak, frequency)) in enumerate(components.items())
     }
 
 
 def pulse() -> GroundMotion:
-    """Return 0.5 g at the middle of 1 s, nothing else."""
+    """Return a Ricker wavelet of 0.5 g and 1 s."""
     return ricker(amplitude=0.5 * g, period=1.0).sampled(0.005)
 
 
@@ -76,8 +76,8 @@ def _shaking(seed: int, length: float, frequency: float, corner: float) -> Groun
     return nonstationary_motion(modulation, shaper, seed=seed, duration=duration, corner=corner)
 
 
-def _to(share: float, motion: GroundMotion) -> GroundMotion:
-    return scaled_to(motion, "pga", share * g)
+def _scaled_to_pga(peak: float, motion: GroundMotion) -> GroundMotion:
+    return scaled_to(motion, "pga", peak * g)
 
 
 Kind = Literal["body", "motion", "list", "question", "job"]
@@ -85,30 +85,30 @@ Kind = Literal["body", "motion", "list", "question", "job"]
 
 @dataclass(frozen=True)
 class Example:
-    """One example of the package, invented for illustration but for bodies whose file names the source of their size.
+    """An example of the package; all are invented, except bodies with a source of their dimensions in the file.
 
     Parameters
     ----------
     name : str
-        By which it is asked for.
+        Name of the example.
     kind : {"body", "motion", "list", "question", "job"}
-        A body, a ground motion, a list of objects, a question of one response, or a job of many.
+        A body, a ground motion, a list of objects, an input file of one response, or a job of many.
     title : str
-        What it is, on one line.
+        Description in one line.
     commands : tuple of str
-        What to type in a folder with its files, to see it.
+        Commands to run in a folder with the files.
     files : tuple of str
-        Its files within the package, that of the example itself first; a motion is computed and has none.
+        Files in the package, the main file first; motions have no files.
     records : tuple of str
-        Names of the motions whose records the commands need too.
+        Names of the motions for records that the commands require.
     options : mapping
-        What `read_body` is told beside the file, where that does not state it.
+        Options of `read_body` for facts that are not in the file.
     make : callable, optional
-        What makes a motion; takes the seed, or nothing.
+        Function that returns the motion, of the seed or without arguments.
     model : str
-        By which model a motion is made, with its source.
+        Model of the motion, with its source.
     seed : int, optional
-        Seed of a motion unless asked otherwise; None for one without chance.
+        Default seed of a motion; None for a deterministic motion.
     """
 
     name: str
@@ -124,12 +124,12 @@ class Example:
 
     @property
     def writes(self) -> tuple[str, ...]:
-        """Its files, and records of its motions, as they are called in a folder of the user."""
+        """Names of the files and records in the output folder."""
         return (*(file.rpartition("/")[2] for file in self.files), *(f"{name}.csv" for name in self.records))
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Files and folders that the commands write."""
+        """Files and folders written by the commands."""
         words = [word for command in self.commands for word in shlex.split(command)]
         return tuple(after for word, after in pairwise(words) if word == "--output")
 
@@ -137,11 +137,11 @@ class Example:
 def _body(
     name: str, shaking: str, title: str, *, options: Mapping[str, Any] | None = None, ending: str = "toml"
 ) -> Example:
-    """Return a body; shaking: what stands behind it in `rocking simulate`."""
+    """Return a body example; shaking: arguments of `rocking simulate` after the body."""
     file, options = f"{name}.{ending}", options or {}
     stated = "".join(f" --{key} {value}" for key, value in options.items())
     commands = f"rocking restitution {file}{stated}", f"rocking simulate {file} {shaking}{stated} --output {name}.png"
-    records = tuple(each for each in _MOTIONS if f"{each}.csv" in shaking)
+    records = tuple(motion for motion in _MOTIONS if f"{motion}.csv" in shaking)
     return Example(name, "body", title, commands, (f"bodies/{file}",), records, options)
 
 
@@ -161,7 +161,7 @@ def _job(name: str, command: str, title: str) -> Example:
 
 
 def _campaign(name: str, ending: str, title: str) -> Example:
-    """Return a job of several bodies or restitutions, which takes a folder of its own; ending: of what is exported."""
+    """Return a job of several bodies or restitution models with its own folder; ending: extension of the export."""
     commands = (
         f"rocking campaign run {name}.toml --output {name}",
         f"rocking campaign export {name} --output {name}.{ending}",
@@ -171,26 +171,26 @@ def _campaign(name: str, ending: str, title: str) -> Example:
 
 _AXES = " ".join(f"--motion {axis}=three-components.csv#{axis}" for axis in "xyz")
 _MOTIONS = {
-    each.name: each
-    for each in (
+    motion.name: motion
+    for motion in (
         _motion(
             "near-fault",
             near_fault,
             f"pulse of Mavroeidis & Papageorgiou (2003) on {FILTERED}",
-            "one long pulse of velocity, 0.9 m/s in 1.2 s, within ordinary shaking",
+            "a long velocity pulse, 0.9 m/s in 1.2 s, in an ordinary motion",
         ),
         _motion(
             "far-field",
             far_field,
             "stochastic point source (Boore 2003)",
-            "as of magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g",
+            "magnitude 6.8 at 40 km on firm ground, scaled to 0.35 g",
         ),
-        _motion("long", long, FILTERED, "a minute of strong shaking, scaled to 0.35 g"),
+        _motion("long", long, FILTERED, "one minute of strong motion, scaled to 0.35 g"),
         _motion(
             "soft-soil",
             soft_soil,
             "layer of soil on white noise (Kanai 1957, Tajimi 1960)",
-            "a soft layer that swings at 0.8 Hz, scaled to 0.35 g",
+            "a soft layer of 0.8 Hz, scaled to 0.35 g",
         ),
         Example(
             "three-components",
@@ -205,7 +205,7 @@ _MOTIONS = {
             model=FILTERED,
             seed=1,
         ),
-        _motion("pulse", pulse, "Ricker wavelet", "a symmetric Ricker wavelet of 0.5 g and 1 s alone", None),
+        _motion("pulse", pulse, "Ricker wavelet", "a symmetric Ricker wavelet of 0.5 g and 1 s", None),
     )
 }
 
@@ -213,14 +213,14 @@ _ALL = (
     _body(
         "statue",
         "near-fault.csv",
-        "a marble figure that leans on a pedestal of brick with its feet set in, 2.55 m high",
+        "a marble figure with eccentric centre of mass on a brick pedestal, 2.55 m high",
     ),
-    _body("stele", "far-field.csv", "a tapered stele of limestone that leans to the right, 2.35 m high"),
+    _body("stele", "far-field.csv", "a tapered limestone stele inclined to the right, 2.35 m high"),
     _body("pier", "near-fault.csv --scale 1.3", "a masonry pier with a shaft left of its middle, 7.5 m high"),
     _body(
         "cabinet",
         "soft-soil.csv --scale 1.2",
-        "a cabinet whose equipment stands on its left, 2.1 m high; in WKT, without a unit",
+        "a cabinet with equipment on its left, 2.1 m high; WKT file without units",
         options={"units": "mm", "density": 300},
         ending="wkt",
     ),
@@ -232,16 +232,16 @@ _ALL = (
     _body(
         "rack",
         "near-fault.csv --scale 1.5",
-        "a rack of instruments as seven masses, the heaviest low on the left; 1.85 m high",
+        "an instrument rack as seven masses, the heaviest low on the left; 1.85 m high",
     ),
-    _body("bust", _AXES, "in space: a marble bust of typical proportions on a pedestal, 1.78 m high"),
-    _body("column", "pulse.csv", "in space: three marble drums off their axis as one body on a round base, 2.7 m high"),
+    _body("bust", _AXES, "3D: a marble bust of typical proportions on a pedestal, 1.78 m high"),
+    _body("column", "pulse.csv", "3D: three eccentric marble drums as one body on a round base, 2.7 m high"),
     _body("showcase", "soft-soil.csv --scale 1.2", "a showcase by its size, weight and centre of mass, 1.95 m high"),
     _body("bookshelf", "far-field.csv", "a full bookshelf across its depth, by its centre of mass, 2.02 m high"),
-    _body("cask", "x=near-fault.csv", "in space: a loaded transport cask that stands upright, 5.075 m high"),
-    _body("drum", "pulse.csv", "in space: the lowest drum of a Doric column alone, 0.95 m high"),
-    _body("gravestone", _AXES, "in space: a gravestone of granite on its base, 1.2192 m high"),
-    _body("barrel", "near-fault.csv --scale 1.8", "in space: a full barrel of wine on its end, 0.945 m high"),
+    _body("cask", "x=near-fault.csv", "3D: a loaded upright transport cask, 5.075 m high"),
+    _body("drum", "pulse.csv", "3D: the lowest drum of a Doric column, 0.95 m high"),
+    _body("gravestone", _AXES, "3D: a gravestone of granite on its base, 1.2192 m high"),
+    _body("barrel", "near-fault.csv --scale 1.8", "3D: a full barrel of wine on its end, 0.945 m high"),
     *_MOTIONS.values(),
     Example(
         "objects",
@@ -253,45 +253,45 @@ _ALL = (
     Example(
         "liste",
         "list",
-        "a list to fill in, in German; any spreadsheet opens it",
+        "a German list form for spreadsheets",
         ("rocking inventory liste.csv --pga 0.3g --count 80 --output liste.html",),
         ("jobs/liste.csv",),
     ),
-    _question("block-under-a-pulse", "a cabinet under one sine, where the model of the impact decides"),
-    _question("statue-let-go", "a statue that stands off its middle, let go to the left"),
+    _question("block-under-a-pulse", "a cabinet under a sine pulse; the result depends on the restitution model"),
+    _question("statue-let-go", "a statue with eccentric centre of mass, free rocking from the left"),
     Example(
         "block-heard",
         "question",
-        "when a block that was let go was heard, and what that says of its coefficient",
+        "impact times of a freely rocking block from sound, and its coefficient of restitution",
         ("rocking identify block-heard.toml --output block-heard.png",),
         ("questions/block-heard.toml", "questions/block-heard.csv"),
     ),
-    _job("overturning-map", "map", "which sine pulses overturn a block, and how: 60 x 60 pulses"),
-    _campaign("refined-map", "png", "the same, refined along the boundaries, which come as polylines"),
-    _campaign("minimum-acceleration", "png", "every amplitude at which motions begin or cease to overturn two blocks"),
-    _campaign("rocking-spectrum", "png", "how far blocks of all sizes rock on soft ground, under two models"),
-    _job("stripes", "fragility", "how likely a column is to rock and to overturn at twelve levels"),
-    _job("cloud", "fragility", "what peak ground velocity says about a statue under motions as they are"),
-    _job("incremental", "fragility", "levels at which pulses overturn a block, and those at which it stands again"),
+    _job("overturning-map", "map", "overturning map of a block under 60 x 60 sine pulses"),
+    _campaign("refined-map", "png", "the same map with refined boundaries as polylines"),
+    _campaign("minimum-acceleration", "png", "every PGA interval with overturning of two blocks"),
+    _campaign("rocking-spectrum", "png", "rocking spectrum on soft ground for two restitution models"),
+    _job("stripes", "fragility", "fragility of a column for rocking and overturning at 12 intensity levels"),
+    _job("cloud", "fragility", "cloud analysis of a statue with PGV and unscaled motions"),
+    _job("incremental", "fragility", "incremental dynamic analysis of a block with resurrections"),
     Example(
         "inventory",
         "job",
-        "which objects of a list stay standing in eighty motions of 0.3 g",
+        "risk of the objects of a list under 80 motions of 0.3 g",
         ("rocking inventory inventory.toml --output inventory.html",),
         ("jobs/inventory.toml", "jobs/objects.csv"),
     ),
-    _campaign("histories", "csv", "two blocks, two pulses, fifty scales, coefficients drawn anew at every impact"),
+    _campaign("histories", "csv", "two blocks, two pulses, 50 scale factors, a random coefficient at every impact"),
 )
 
-EXAMPLES: dict[str, Example] = {each.name: each for each in _ALL}
-"""Every example by name: a new one is one entry here, and its files."""
+EXAMPLES: dict[str, Example] = {example.name: example for example in _ALL}
+"""All examples by name."""
 
 
-HERE = Path(__file__).parent  # where the files of examples are, within the package
+HERE = Path(__file__).parent  # folder of the example files in the package
 
 
 def record_text(motions: Mapping[str, GroundMotion]) -> str:
-    """Return columns that `read_motion` reads back to the last bit, below what the motion is.
+    """Return the metadata of motions as comments and their columns with all digits, for `read_motion`.
 
     >>> print(record_text({"x": GroundMotion([0.0, 0.1], 0.02, metadata={"seed": "1"})}))
     # seed: 1
@@ -300,35 +300,33 @@ def record_text(motions: Mapping[str, GroundMotion]) -> str:
     0.02,0.1
     <BLANKLINE>
     """
-    parts = list(motions.values())
-    lines = [f"# {key}: {value}" for key, value in parts[0].metadata.items()]
+    components = list(motions.values())
+    lines = [f"# {key}: {value}" for key, value in components[0].metadata.items()]
     lines.append(",".join(["time [s]", *(f"{name} [m/s2]" for name in motions)]))
-    rows = zip(*(part.acceleration.tolist() for part in parts), strict=True)
-    lines += [",".join([f"{k * parts[0].time_step:.9g}", *map(repr, row)]) for k, row in enumerate(rows)]
+    rows = zip(*(component.acceleration.tolist() for component in components), strict=True)
+    lines += [",".join([f"{k * components[0].time_step:.9g}", *map(repr, row)]) for k, row in enumerate(rows)]
     return "\n".join([*lines, ""])
 
 
 def contents(example: Example, motions: Mapping[str, Mapping[str, GroundMotion]]) -> dict[str, bytes]:
-    """Return what stands in the files of an example; motions: by the names of its records."""
+    """Return the contents of the files of an example by name; motions: by the names of records."""
     own = {Path(file).name: (HERE / file).read_bytes() for file in example.files}
-    return own | {f"{name}.csv": record_text(parts).encode() for name, parts in motions.items()}
+    return own | {f"{name}.csv": record_text(components).encode() for name, components in motions.items()}
 
 
 def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Path]:
-    """Write files into a folder and return them; a file that holds something else is refused, before any is written."""
+    """Write files into a folder and return their paths; existing files with other content raise an error first."""
     paths = {folder / name: content for name, content in files.items()}
     if not folder.is_dir():
-        raise InvalidValueError(
-            "no folder {folder!r} to write {files} into", folder=str(folder), files=", ".join(files)
-        )
+        raise InvalidValueError("no folder {folder!r} for {files}", folder=str(folder), files=", ".join(files))
     if folders := [str(path) for path in paths if path.is_dir()]:
         raise InvalidValueError(
-            "{folders}: a folder of that name is there already", folders=", ".join(folders), hint="take another folder"
+            "{folders}: a folder with this name exists", folders=", ".join(folders), hint="use another folder"
         )
-    if not force and (odd := [path for path, content in paths.items() if holds_another(path, content)]):
+    if not force and (changed := [path for path, content in paths.items() if holds_another(path, content)]):
         raise InvalidValueError(
-            "{files}: there already, with something else in it", files=", ".join(map(str, odd)),
-            hint="take another folder, or write over it with force",
+            "{files} already exists with other content", files=", ".join(map(str, changed)),
+            hint="use another folder, or replace the file with force",
         )  # fmt: skip
     for path, content in paths.items():
         path.write_bytes(content)
@@ -336,5 +334,5 @@ def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Pa
 
 
 def holds_another(path: Path, content: bytes) -> bool:
-    """Return whether there is something of that name that is not what would be written."""
+    """Return True if the path exists with other content."""
     return path.exists() and path.read_bytes() != content

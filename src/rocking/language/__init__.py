@@ -13,7 +13,7 @@ LANGUAGES = {"en": ".", "de": ",", "it": ",", "zh": "."}
 
 
 class Language(string.Formatter):
-    """The messages of one language, by its code; English where it has no catalogue.
+    """The messages of a language by its code; English without a catalogue.
 
     >>> Language("de")("{low:.1f} to {high:.1f}", low=0.5, high=2.0)
     '0,5 bis 2,0'
@@ -33,17 +33,17 @@ class Language(string.Formatter):
         return self.vformat(translated, (), message.facts) if message.facts else translated
 
     def gettext(self, text: str, context: str = "") -> str:
-        """Return the translation of a text; the text itself where there is none."""
+        """Return the translation of a text; the text itself without a translation."""
         if context:
             return self.catalogue.pgettext(context, text)
         return self.catalogue.gettext(text) if text else ""
 
-    def ngettext(self, one: str, many: str, count: int) -> str:
-        """Return the translation of the form that fits a count."""
-        return self.catalogue.ngettext(one, many, count)
+    def ngettext(self, singular: str, plural: str, count: int) -> str:
+        """Return the translation of the form for a count."""
+        return self.catalogue.ngettext(singular, plural, count)
 
     def format_field(self, value: Any, format_spec: str) -> str:
-        """Return a fact as the language writes it."""
+        """Return a fact in the format of the language."""
         if isinstance(value, Message):
             return self(value)
         if isinstance(value, tuple):

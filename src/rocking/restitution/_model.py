@@ -236,7 +236,7 @@ class RestitutionModel(ABC):
         # pieces fit in the cache, since moving the data costs more than the arithmetic
         for start in range(0, flat.size, _PIECE):
             piece = flat[start : start + _PIECE]
-            smallest = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
+            smallest = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, array=ratios)
             self._fill(piece, smallest, result[start : start + _PIECE])
         return result.reshape(ratios.shape)
 

@@ -1,4 +1,4 @@
-"""Results with units on their way out: one container, and one writer a format, through which every file is written."""
+"""Tables of results with units, and one writer per file format."""
 
 from rocking.tables.arrays import add_to_netcdf, to_dataset, to_mat, to_netcdf
 from rocking.tables.rows import to_csv, to_dataframe, to_excel, to_parquet

@@ -1,4 +1,4 @@
-"""Files of arrays under names: netCDF, which xarray and MATLAB open, and MATLAB's own of version 5."""
+"""Files of named arrays: netCDF, for xarray and MATLAB, and MATLAB files of version 5."""
 
 import errno
 import json
@@ -21,24 +21,26 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_BYTES_OF_MATLAB = 2**31 - 1  # Largest variable of a MATLAB file of version 5 [bytes]
-_TEXT = 80  # a text is a matrix of its own there [bytes]
-_MARGIN = 150_000  # attributes, and what HDF5 needs for itself [bytes]
+_TEXT = 80  # overhead of a text in MATLAB files [bytes]
+_MARGIN = 150_000  # attributes and overhead of HDF5 [bytes]
 
 
 def to_dataset(table: Table) -> "xr.Dataset":
-    """Return columns over their rows, those of tables beside it over theirs; one called as the rows is coordinate."""
+    """Return the columns of a table and its further tables; a column named as the rows is coordinate."""
     xarray = extra("xarray", "a labelled dataset")
-    every = {name: (table.row, each.values, each.attributes) for name, each in table.columns.items()}
+    variables = {name: (table.row, column.values, column.attributes) for name, column in table.columns.items()}
     for row, other in table.beside.items():
-        every |= {f"{row}_{name}": (row, each.values, each.attributes) for name, each in other.columns.items()}
-    coordinates = {name: every.pop(name) for name in (table.row,) if name in every}
+        variables |= {
+            f"{row}_{name}": (row, column.values, column.attributes) for name, column in other.columns.items()
+        }
+    coordinates = {name: variables.pop(name) for name in (table.row,) if name in variables}
     attributes = {key: int(v) if isinstance(v, bool) else v for key, v in table.provenance.items()}
-    dataset: xr.Dataset = xarray.Dataset(every, coords=coordinates, attrs=attributes)
+    dataset: xr.Dataset = xarray.Dataset(variables, coords=coordinates, attrs=attributes)
     return dataset
 
 
 def to_netcdf(content: "xr.Dataset | Grid", path: Path) -> Path:
-    """Write netCDF 4, which xarray and MATLAB open."""
+    """Write netCDF 4, for xarray and MATLAB."""
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
     if isinstance(content, Grid):
@@ -49,32 +51,32 @@ def to_netcdf(content: "xr.Dataset | Grid", path: Path) -> Path:
 
 
 def _grid_to_netcdf(grid: Grid, path: Path) -> None:
-    room = len(grid) * sum(np.dtype(kind).itemsize for kind in grid.results.values())
-    room += sum(_room(each.values) for each in grid.coordinates.values())
-    with _netcdf_file(path, "w", room) as file:
+    size = len(grid) * sum(np.dtype(kind).itemsize for kind in grid.results.values())
+    size += sum(_size(column.values) for column in grid.coordinates.values())
+    with _netcdf_file(path, "w", size) as file:
         file.dimensions = dict(grid.dims)
         file.attrs.update(plain_texts(grid.provenance))
-        for name, each in grid.coordinates.items():
-            _variable(file, name, each.dims, each)
+        for name, column in grid.coordinates.items():
+            _variable(file, name, column.dims, column)
         also = " ".join(name for name in grid.coordinates if name not in grid.dims)
         for name, kind in grid.results.items():
             variable = file.create_variable(name, tuple(grid.dims), dtype=np.dtype(kind))
             variable.attrs.update(QUANTITIES[name].attributes)
             if also:
                 variable.attrs["coordinates"] = also
-        for name, place, values in grid.blocks():
-            file.variables[name][place] = values
+        for name, position, values in grid.blocks():
+            file.variables[name][position] = values
 
 
 def add_to_netcdf(tables: Mapping[str, Table], path: Path, provenance: Mapping[str, Any]) -> None:
-    """Write tables as variables of a netCDF file, which is made or, where it is there, added to."""
-    room = sum(_room(each.values) for table in tables.values() for each in table.columns.values())
-    with _netcdf_file(path, "a", room) as file:
+    """Write tables as variables of a new or existing netCDF file."""
+    size = sum(_size(column.values) for table in tables.values() for column in table.columns.values())
+    with _netcdf_file(path, "a", size) as file:
         file.attrs.update(plain_texts(provenance))
         for table in tables.values():
             file.dimensions[table.row] = len(table)
-            for name, each in table.columns.items():
-                _variable(file, each.variable or name, (table.row,), each)
+            for name, column in table.columns.items():
+                _variable(file, column.variable or name, (table.row,), column)
 
 
 def _variable(file: Any, name: str, dims: tuple[str, ...], column: Column) -> None:
@@ -86,11 +88,11 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], column: Column) -> No
 
 
 @contextmanager
-def _netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
-    """Open a netCDF file, if the disk has room for so many bytes, that is closed whatever happens."""
+def _netcdf_file(path: Path, mode: str, size: int) -> Iterator[Any]:
+    """Open a netCDF file if the disk has enough free bytes, and close it in any case."""
     h5netcdf: Any = extra("h5netcdf", "netCDF")
-    # asked before: HDF5 that cannot write tries again when the process ends, and may crash it
-    if shutil.disk_usage(path.parent).free < room + _MARGIN:
+    # checked first: on a full disk HDF5 writes again at the end of the process, and may crash
+    if shutil.disk_usage(path.parent).free < size + _MARGIN:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     file = h5netcdf.File(path, mode)
     try:
@@ -98,7 +100,7 @@ def _netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
         file.close()
     except BaseException as error:
         with suppress(OSError):
-            os.truncate(path, 0)  # there is room again for the little that closing writes
+            os.truncate(path, 0)  # frees space for closing
         with suppress(Exception):
             file.close()
         cause = re.search(r"errno = (\d+), error message = '([^']*)'", str(error))
@@ -107,13 +109,13 @@ def _netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
         raise OSError(int(cause[1]), cause[2]) from error
 
 
-def _room(values: np.ndarray) -> int:
-    """Room that some values take in a file, at least [bytes]."""
+def _size(values: np.ndarray) -> int:
+    """Return the smallest size of values in a file [bytes]."""
     return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
 
 
 def _plain(structure: Any) -> Any:
-    """Return a structure with plain texts in place of messages, which a MATLAB file would take for structures."""
+    """Return a structure with plain texts in place of messages, which MATLAB files do not support."""
     if isinstance(structure, Mapping):
         return {name: _plain(value) for name, value in structure.items()}
     if isinstance(structure, np.ndarray) and structure.dtype == object and structure.ndim == 1:
@@ -124,8 +126,8 @@ def _plain(structure: Any) -> Any:
 def to_mat(
     content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
 ) -> Path:
-    """Write one structure as a MATLAB file of version 5: a table, results over dimensions, or the structure itself."""
-    # apart: columns of the table, their full names and meanings have structures of their own
+    """Write a table, results over dimensions, or a structure as a MATLAB file of version 5."""
+    # apart: separate structures for columns of the table, their full names and meanings
     from scipy.io import savemat
 
     match content:
@@ -143,20 +145,20 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
     columns = table.columns.values()
     if sum(_TEXT * c.values.size if c.is_text else c.values.nbytes for c in columns) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
-            "MATLAB files take tables up to 2 GiB, this one has {count} rows", count=len(table),
-            hint="take .nc, which MATLAB reads",
+            "MATLAB files allow tables up to 2 GiB, this table has {count} rows", count=len(table),
+            hint="use .nc, which MATLAB reads",
         )  # fmt: skip
-    named = {each.variable or name: each for name, each in table.columns.items()}
-    values = {name: each.values for name, each in named.items()}
-    units = {name: each.unit for name, each in named.items()}
+    named = {column.variable or name: column for name, column in table.columns.items()}
+    values = {name: column.values for name, column in named.items()}
+    units = {name: column.unit for name, column in named.items()}
     if apart:
-        meanings = {name: each.meaning for name, each in named.items()}
+        meanings = {name: column.meaning for name, column in named.items()}
         names = dict(zip(named, table.columns, strict=True))
         provenance = table.provenance["provenance"]
         return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
     beside = {row: other.columns for row, other in table.beside.items()}
 
-    # numbers as MATLAB's own double; text as a column of cells
+    # numbers as double; text as a column of cells
     def cells(column: Column) -> Any:
         return column.values.astype(object if column.is_text else np.float64)
 
@@ -172,16 +174,16 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
 def _structure_of_grid(grid: Grid) -> dict[str, Any]:
     if 8 * len(grid) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
-            "MATLAB files take arrays up to 2 GiB, these are {count} {rows}", count=len(grid), rows=grid.row,
-            hint="take .nc, which MATLAB reads",
+            "MATLAB files allow arrays up to 2 GiB, these are {count} {rows}", count=len(grid), rows=grid.row,
+            hint="use .nc, which MATLAB reads",
         )  # fmt: skip
-    whole = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
-    for name, place, values in grid.blocks():
-        whole[name][place] = values
+    results = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
+    for name, position, values in grid.blocks():
+        results[name][position] = values
     return {
         "dimensions": np.array(list(grid.dims), dtype=object),
-        "coordinates": {name: each.values for name, each in grid.coordinates.items()},
-        "results": whole,
+        "coordinates": {name: column.values for name, column in grid.coordinates.items()},
+        "results": results,
         "units": {name: QUANTITIES[name].unit for name in grid.results},
         "provenance": grid.provenance["provenance"],
     }

@@ -1,4 +1,4 @@
-"""Columns with units, tables of them, and results over dimensions that are handed out piece by piece."""
+"""Columns with units, tables of columns, and results over dimensions in pieces."""
 
 import math
 import os
@@ -15,36 +15,48 @@ from rocking.messages import plain_texts
 from rocking.quantities import QUANTITIES, Quantity
 
 PIECE = 1 << 16
-"""Rows that are in memory at once as Python objects: they take many times the room of their numbers."""
+"""Largest number of rows in memory as Python objects, which are much larger than their numbers."""
 
 Cell = str | int | float | None
 Arrays = Mapping[str, np.ndarray]
 Block = tuple[tuple[slice, ...], slice]
 
-_FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\t", "\r", "\n")  # the wide ones count too
+_FORMULA = (
+    "=",
+    "+",
+    "-",
+    "@",
+    "\uff1d",
+    "\uff0b",
+    "\uff0d",
+    "\uff20",
+    "\t",
+    "\r",
+    "\n",
+)  # including full-width characters
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Column:
-    """Values of one kind, and what they are.
+    """Values with unit and meaning.
 
     >>> Column.of("rotation", np.zeros(2)).attributes
     {'units': 'rad', 'long_name': 'rotation theta, positive clockwise'}
     """
 
-    values: np.ndarray  # numbers, NaN where there is nothing, or text
-    unit: str = "1"  # the unit; ``1`` for numbers without one, or empty
-    meaning: str = ""  # what the values are
-    variable: str | None = None  # the name in netCDF and MATLAB files, where it differs
-    dims: tuple[str, ...] = ()  # dimensions of the values, where they are not the rows of a table
-    codes: Mapping[int, str] = field(default_factory=dict)  # what whole numbers stand for
-    # which of the values each row has; the values stand in the order of the rows if not given
+    values: np.ndarray  # numbers (NaN if missing), or text
+    unit: str = "1"  # ``1`` or empty for dimensionless values
+    meaning: str = ""
+    variable: str | None = None  # name in netCDF and MATLAB files, if different
+    dims: tuple[str, ...] = ()  # dimensions of the values, unless they are the rows of a table
+    codes: Mapping[int, str] = field(default_factory=dict)  # meanings of integer codes
+    # index of the value of each row; without it, values are in the order of the rows
     index: np.ndarray | None = None
-    standard_name: str = ""  # the name in the table of the CF conventions, where that has it
+    standard_name: str = ""  # name in the table of the CF conventions, if any
 
     @classmethod
     def of(cls, name: str, values: np.ndarray) -> "Column":
-        """Return values of what has an entry in `rocking.quantities`."""
+        """Return the values of a quantity from `rocking.quantities` as a column."""
         entry = QUANTITIES[name]
         if np.asarray(values).dtype.kind == "U":
             return cls(values, "", entry.meaning)
@@ -57,12 +69,12 @@ class Column:
 
     @property
     def is_text(self) -> bool:
-        """Whether the values are text."""
+        """True if the values are text."""
         return self.values.dtype.kind not in "iufb"
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Unit, meaning and codes, as xarray and the CF conventions name them."""
+        """Unit, meaning and codes as attributes of xarray and the CF conventions."""
         return Quantity("", self.unit, self.meaning, dict(self.codes), self.standard_name).attributes
 
     def __len__(self) -> int:
@@ -70,53 +82,53 @@ class Column:
 
     @property
     def decoded(self) -> "Column":
-        """What the codes of the rows stand for: text, empty where a number is no code."""
+        """Meanings of the codes of the rows as text; empty for numbers without a meaning."""
         codes = np.array(sorted(self.codes), dtype=np.float64)
-        place = np.minimum(np.searchsorted(codes, self.values), codes.size - 1)
-        index = np.where(codes[place] == self.values, place, codes.size)
+        position = np.minimum(np.searchsorted(codes, self.values), codes.size - 1)
+        index = np.where(codes[position] == self.values, position, codes.size)
         return Column(text_array([*(self.codes[code] for code in sorted(self.codes)), ""]), "", index=index)
 
     def cells(self, rows: slice, *, blank: bool = True) -> list[Cell]:
-        """Return some rows as cells: all digits, text that no spreadsheet takes for a formula, None for nothing."""
+        """Return rows as cells: numbers with all digits, text without formulas, None for missing values."""
         values = self.array[rows]
         cells: list[Cell] = values.tolist()
         if self.is_text:
             return [safe_cell(cell) if isinstance(cell, str) else cell for cell in cells]
         if not blank or (finite := np.isfinite(values)).all():
             return cells
-        return [cell if known else None for cell, known in zip(cells, finite.tolist(), strict=True)]
+        return [cell if is_finite else None for cell, is_finite in zip(cells, finite.tolist(), strict=True)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """Columns of one length, and where they come from.
+    """Columns of equal length, with provenance.
 
     >>> Table("sample", {"rotation": Column.of("rotation", np.zeros(2))}).header
     ['rotation [rad]']
     """
 
-    row: str  # what a row is: the dimension in netCDF files
-    columns: Mapping[str, Column]  # the columns by name
-    provenance: Mapping[str, Any] = field(default_factory=dict)  # what was computed from what: plain values
-    # further tables of the same result, by what one of their rows is
+    row: str  # name of a row: the dimension in netCDF files
+    columns: Mapping[str, Column]
+    provenance: Mapping[str, Any] = field(default_factory=dict)  # sources and methods, as plain values
+    # further tables of the same result, by the name of a row
     beside: Mapping[str, "Table"] = field(default_factory=dict)
-    no_unit: str = ""  # what headings say in brackets of numbers without unit; no brackets if empty
+    no_unit: str = ""  # unit in headings of dimensionless numbers; no brackets if empty
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "provenance", plain_texts(self.provenance))
 
     @classmethod
     def of(cls, row: str, arrays: Arrays, **more: Any) -> "Table":
-        """Return a table of arrays that have entries in `rocking.quantities`; more: its other fields."""
+        """Return a table of arrays by their names in `rocking.quantities`; more: other fields."""
         return cls(row, {name: Column.of(name, values) for name, values in arrays.items()}, **more)
 
     @classmethod
     def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":
-        """Return a table of cells whose headings say the units already."""
+        """Return a table of cells with units in the headings."""
         if len(set(header)) < len(header):
             raise InvalidValueError("headings of a table must differ, got {headings}", headings=", ".join(header))
-        cells = [list(map(_checked, each)) for each in rows]
-        columns = {name: text_array([each[k] for each in cells]) for k, name in enumerate(header)}
+        cells = [list(map(_checked, row_cells)) for row_cells in rows]
+        columns = {name: text_array([row_cells[k] for row_cells in cells]) for k, name in enumerate(header)}
         return cls(row, {name: Column(values, "") for name, values in columns.items()})
 
     def __len__(self) -> int:
@@ -124,7 +136,7 @@ class Table:
 
     @property
     def header(self) -> list[str]:
-        """Names of the columns with their units; what codes stand for has a column of its own after them."""
+        """Names of the columns with units; columns of codes are followed by columns of their meanings."""
         return _header(self.columns, self.no_unit)
 
     @property
@@ -133,28 +145,28 @@ class Table:
         return list(zip(*(column.values.tolist() for column in self.columns.values()), strict=True))
 
     def cells(self, *, blank: bool = True) -> Iterator[tuple[Cell, ...]]:
-        """Return the rows of a file, harmless to spreadsheets; blank: cells without a finite number are empty."""
+        """Return the rows of a file without formulas; blank: cells without a finite number are empty."""
         columns = decoded(self.columns).values()
         for first in range(0, len(self), PIECE):
-            part = slice(first, first + PIECE)
-            yield from zip(*(each.cells(part, blank=blank) for each in columns), strict=True)
+            rows = slice(first, first + PIECE)
+            yield from zip(*(column.cells(rows, blank=blank) for column in columns), strict=True)
 
     def pieces(self) -> Iterator["Table"]:
-        """Return the table as a stream of tables."""
+        """Yield the table itself."""
         yield self
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Results over dimensions that may be larger than the memory: they come piece by piece."""
+    """Results over dimensions, in pieces: they may exceed the memory."""
 
-    row: str  # what the results are of, in the plural
+    row: str  # name of the rows, in the plural
     dims: Mapping[str, int]  # length of every dimension; the last one changes fastest
-    coordinates: Mapping[str, Column]  # what is known along dimensions: columns with `dims`
+    coordinates: Mapping[str, Column]  # columns along dimensions, with `dims`
     results: Mapping[str, Any]  # types of the results, by their names in `rocking.quantities`
     # returns an iterator over first row, last row (not included) and arrays of the results between them
     arrays: Callable[[], Iterator[tuple[int, int, Arrays]]]
-    provenance: Mapping[str, Any] = field(default_factory=dict)  # what was computed from what: plain values
+    provenance: Mapping[str, Any] = field(default_factory=dict)  # sources and methods, as plain values
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -166,56 +178,64 @@ class Grid:
 
     @property
     def columns(self) -> dict[str, Column]:
-        """Columns of the rows, none of them filled."""
+        """Columns without rows."""
         return dict(self._piece(0, 0, {name: np.empty(0, kind) for name, kind in self.results.items()}).columns)
 
     @property
     def header(self) -> list[str]:
-        """Names of the columns with their units; what codes stand for has a column of its own after them."""
+        """Names of the columns with units; columns of codes are followed by columns of their meanings."""
         return _header(self.columns, "")
 
     def pieces(self) -> Iterator[Table]:
-        """Return a row for each place, as a stream of tables."""
+        """Yield tables with one row per grid point."""
         for first, last, arrays in self.arrays():
             yield self._piece(first, last, arrays)
 
     def blocks(self) -> Iterator[tuple[str, tuple[slice, ...], np.ndarray]]:
-        """Return the results in rectangular blocks: name, place and values."""
+        """Yield the results in rectangular blocks: name, position and values."""
         for first, last, arrays in self.arrays():
-            for place, part in blocks(first, last, self.shape):
+            for position, entries in blocks(first, last, self.shape):
                 for name, values in arrays.items():
-                    yield name, place, np.asarray(values)[part].reshape([each.stop - each.start for each in place])
+                    yield (
+                        name,
+                        position,
+                        np.asarray(values)[entries].reshape([interval.stop - interval.start for interval in position]),
+                    )
 
     def _piece(self, first: int, last: int, arrays: Arrays) -> Table:
-        places = dict(zip(self.dims, np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape), strict=True))
+        positions = dict(
+            zip(self.dims, np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape), strict=True)
+        )
         columns = {}
-        for name, each in self.coordinates.items():
-            index = np.ravel_multi_index(tuple(places[dim] for dim in each.dims), each.values.shape)
-            columns[name] = Column(each.values.ravel(), each.unit, each.meaning, codes=each.codes, index=index)
+        for name, coordinate in self.coordinates.items():
+            index = np.ravel_multi_index(tuple(positions[dim] for dim in coordinate.dims), coordinate.values.shape)
+            columns[name] = Column(
+                coordinate.values.ravel(), coordinate.unit, coordinate.meaning, codes=coordinate.codes, index=index
+            )
         columns |= {name: Column.of(name, np.asarray(values)) for name, values in arrays.items()}
         return Table(self.row, columns)
 
 
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
-    """Return the rectangular blocks that entries first to last, numbered row by row, fill: where, and which entries."""
-    at = first
-    while at < last:
-        place = [int(i) for i in np.unravel_index(at, shape)]
-        # the longest run that starts here: whole rows of the innermost dimensions, as far as they are at their start
+    """Yield the rectangular blocks of the flat entries first to last: position, and slice of these entries."""
+    entry = first
+    while entry < last:
+        position = [int(i) for i in np.unravel_index(entry, shape)]
+        # the longest run from here: complete rows of the innermost dimensions, if they start at zero
         axis, width = len(shape) - 1, 1
-        while axis > 0 and place[axis] == 0 and at + width * shape[axis] <= last:
+        while axis > 0 and position[axis] == 0 and entry + width * shape[axis] <= last:
             width *= shape[axis]
             axis -= 1
-        run = max(1, min(shape[axis] - place[axis], (last - at) // width))
-        where = [slice(i, i + 1) for i in place]
-        where[axis] = slice(place[axis], place[axis] + run)
-        where[axis + 1 :] = [slice(0, n) for n in shape[axis + 1 :]]
-        yield tuple(where), slice(at - first, at - first + run * width)
-        at += run * width
+        run = max(1, min(shape[axis] - position[axis], (last - entry) // width))
+        slices = [slice(i, i + 1) for i in position]
+        slices[axis] = slice(position[axis], position[axis] + run)
+        slices[axis + 1 :] = [slice(0, n) for n in shape[axis + 1 :]]
+        yield tuple(slices), slice(entry - first, entry - first + run * width)
+        entry += run * width
 
 
 def safe_cell(cell: Cell) -> Cell:
-    """Return a cell that no spreadsheet takes for a formula.
+    """Return a cell that is no formula in a spreadsheet.
 
     >>> safe_cell("=1+1"), safe_cell(-1.5)
     ("'=1+1", -1.5)
@@ -233,7 +253,7 @@ def _checked(cell: Cell) -> Cell:
 
 
 def escaped(text: str) -> str:
-    """Return text that no spreadsheet takes for a formula.
+    """Return text that is no formula in a spreadsheet.
 
     >>> escaped("=1+1"), escaped("vase")
     ("'=1+1", 'vase')
@@ -242,7 +262,7 @@ def escaped(text: str) -> str:
 
 
 def target_of(path: str | os.PathLike[str]) -> Path:
-    """Return the path of a file that can be written."""
+    """Return the validated path of an output file."""
     other: object = path
     if not isinstance(other, (str, os.PathLike)):
         raise InvalidValueError(parameter="path", allowed="the path of a file", value=path)
@@ -252,13 +272,13 @@ def target_of(path: str | os.PathLike[str]) -> Path:
             "{parameter} must be the path of a file, got the folder {folder}", parameter="path", folder=target
         )
     if not target.parent.is_dir():
-        raise InvalidValueError("no folder {folder} to write {file} into", folder=target.parent, file=target.name)
+        raise InvalidValueError("no folder {folder} for {file}", folder=target.parent, file=target.name)
     return target
 
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Say which file or folder could not be written, and why, where the system refuses it."""
+    """Turn system errors into an error with path and reason."""
     try:
         yield
     except OSError as error:
@@ -267,7 +287,7 @@ def writing(path: Path | str) -> Iterator[None]:
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """Give the name under which to write a file that is there as a whole or not at all."""
+    """Yield a temporary path; on success the file replaces `path` in one step."""
     unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         yield unfinished
@@ -281,28 +301,28 @@ def written_whole(path: Path) -> Iterator[Path]:
 def text_array(values: Sequence[Any]) -> np.ndarray:
     """Return text as an array."""
     array = np.empty(len(values), dtype=object)
-    array[:] = [str(value) if isinstance(value, str) else value for value in values]  # no messages
+    array[:] = [str(value) if isinstance(value, str) else value for value in values]  # plain texts in place of messages
     return array
 
 
 def prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
-    """Return columns under names by which several tables fit into one file."""
+    """Return columns with prefixed variable names, for several tables in one file."""
     return {
-        name: Column(each.values, each.unit, each.meaning, f"{prefix}_{each.variable or name}")
-        for name, each in columns.items()
+        name: Column(column.values, column.unit, column.meaning, f"{prefix}_{column.variable or name}")
+        for name, column in columns.items()
     }
 
 
 def decoded(columns: Mapping[str, Column]) -> dict[str, Column]:
-    """Return columns as people read them: after each column of codes one that says what they stand for."""
-    every = {}
-    for name, each in columns.items():
-        every[name] = each
-        if each.codes:
-            every[f"{name}_meaning"] = each.decoded
-    return every
+    """Return columns for readers: each column of codes is followed by a column of their meanings."""
+    result = {}
+    for name, column in columns.items():
+        result[name] = column
+        if column.codes:
+            result[f"{name}_meaning"] = column.decoded
+    return result
 
 
 def _header(columns: Mapping[str, Column], no_unit: str) -> list[str]:
-    units = {name: no_unit if each.unit in {"1", "-"} else each.unit for name, each in decoded(columns).items()}
+    units = {name: no_unit if column.unit in {"1", "-"} else column.unit for name, column in decoded(columns).items()}
     return [f"{name} [{unit}]" if unit else name for name, unit in units.items()]

@@ -135,7 +135,7 @@ def test_columns_of_a_list_are_read_or_refused(run, refuses, folder):
     (folder / "list.csv").write_text(f"file,units\n{name},g\n")
     assert run("record", "batch", folder / "list.csv", "--periods", "1")[0] == 0
     (folder / "list.csv").write_text(f"file,units\n{name},cm/s2\n")
-    refuses(["record", "batch", folder / "list.csv"], "the file states the unit g, you say cm/s2")
+    refuses(["record", "batch", folder / "list.csv"], "the file states the unit g, not cm/s2")
 
 
 @pytest.mark.filterwarnings("always:check the input")

@@ -148,4 +148,4 @@ def test_a_mesh_takes_mass_and_centre(answered, tmp_path):
 def test_a_centre_in_another_unit_is_doubted(answered):
     """The answer is there, with a warning that asks for the unit."""
     doubts = answered(*SIZE, "--centre", "0.42,0.7")["body"]["warnings"]
-    assert "were lengths in m taken for mm or cm?" in " ".join(doubts)
+    assert "check that lengths are in m" in " ".join(doubts)

@@ -123,7 +123,7 @@ def test_a_history_without_a_result_is_refused(run, body, monkeypatch):
     monkeypatch.setattr(SpatialResponse, "status", Status.LOST_CONTACT)
     code, out, err = run(body, SINE)
     assert (code, out) == (2, "")
-    assert err.startswith("rocking: there is no response: stopped: the ground would have to pull")
+    assert err.startswith("rocking: there is no response: stopped: the contact force becomes tensile")
 
 
 LEANING = (

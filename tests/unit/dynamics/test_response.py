@@ -101,7 +101,7 @@ def test_no_uplift(name: str) -> None:
     """Below g tan(alpha) nothing moves, and the sentence says so; tables are empty but have their columns."""
     response = sine(0.999, name)
     assert response.outcome is Outcome.NO_UPLIFT
-    assert response.summary == "stayed at rest: the ground never lifted it"
+    assert response.summary == "stayed at rest without uplift"
     assert response.peak_rotation == 0.0
     assert not response.rotation.any()
     assert math.isnan(response.overturning_time)

@@ -326,7 +326,7 @@ def test_what_is_no_number_is_refused() -> None:
                 make(**{**usual, "period": value})
 
 
-STEP, WRITTEN = r"time_step must be in \[1e-09, 1000\] s, got", "a pulse is written as sine:amplitude=3,period="
+STEP, WRITTEN = r"time_step must be in \[1e-09, 1000\] s, got", "must be a text such as sine:amplitude=3,period="
 REFUSED: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
     STEP: (PULSE.sampled, [1e-300, 0.9e-9, 0.0, -0.1, 1001.0]),
     "time_step must be": (PULSE.sampled, [math.nan, math.inf, None, "0.1", 0.61]),

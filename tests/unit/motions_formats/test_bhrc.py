@@ -70,10 +70,10 @@ def test_three_components_are_read() -> None:
 
 
 DAMAGES = [
-    ("VOL1DS", "VOL2DS", "Volume 2: only Volume 1 is read"),
-    ("G/10", "CM/SEC", "cannot be understood"),
-    ("POINTS =     11", "POINTS =     12", "states 11 samples, the file holds 12"),
-    ("0   11    0", "0   12    0", "states 12 samples, the file holds 11"),
+    ("VOL1DS", "VOL2DS", "Volume 2 is not supported"),
+    ("G/10", "CM/SEC", "understood"),
+    ("POINTS =     11", "POINTS =     12", "states 11 samples, but the file contains 12"),
+    ("0   11    0", "0   12    0", "states 12 samples, but the file contains 11"),
     ("DURATION =    .055", "DURATION =    .065", "doubt:duration"),
     ("  .550000E-01", "  .560000E-01", "doubt:duration"),
     ("  .200000E+03", "  .100000E+03", "doubt:duration"),

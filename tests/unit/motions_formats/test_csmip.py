@@ -104,13 +104,17 @@ V2_DAMAGES = [
     ("    10 POINTS OF ACCEL", "    11 POINTS OF ACCEL", "characters|header states"),
     ("    10 POINTS OF ACCEL", "999999999 POINTS OF ACCEL", "8 columns of 10 characters expected"),
     ("    10 POINTS OF VELOC", "     9 POINTS OF VELOC", "doubt:columns of 10 characters expected"),
-    ("  10 POINTS OF INSTRUMENT", "  12 POINTS OF INSTRUMENT", "states 12 samples, the file holds 10"),
-    ("-23456.789    CM/SEC/SEC", "-23456.889    CM/SEC/SEC", "doubt:peak in words of -?23456.9, the data have 23456.8"),
-    ("-23456.789    CM/SEC/SEC", "-25456.789    CM/SEC/SEC", "peak in words of 25456.8, the data have 23456.8"),
+    ("  10 POINTS OF INSTRUMENT", "  12 POINTS OF INSTRUMENT", "states 12 samples, but the file contains 10"),
+    (
+        "-23456.789    CM/SEC/SEC",
+        "-23456.889    CM/SEC/SEC",
+        "doubt:peak in words of -?23456.9, but the data have 23456.8",
+    ),
+    ("-23456.789    CM/SEC/SEC", "-25456.789    CM/SEC/SEC", "peak in words of 25456.8, but the data have 23456.8"),
     ("AT     .080   SEC", "AT     .180   SEC", "doubt:states the peak at 0.18 s"),
     ("      .040    -5.500", "      .040    -5.600", "doubt:VELOC peak of 5.6"),
     ("     7.250      .000", "     7.350      .000", "doubt:DISPL peak of 7.35"),
-    ("ACCEL DATA EQUALLY SPACED AT  .020", "ACCEL DATA EQUALLY SPACED AT  .030", "states a step of 0.02 s"),
+    ("ACCEL DATA EQUALLY SPACED AT  .020", "ACCEL DATA EQUALLY SPACED AT  .030", "time step is 0.02 s in the header"),
     ("(UNITS: CM/SEC/SEC)", "(UNITS: CM/SEC)", "must be in CM/SEC/SEC"),
     ("(UNITS: CM/SEC/SEC)", "", "must be in CM/SEC/SEC"),
     ("-1234.567-23456.789", "-1234.567-23456.78B", "number expected, found '-23456.78B'"),
@@ -141,18 +145,18 @@ def test_v1_hand_made_file() -> None:
 V1_DAMAGES = [
     ("   .040  3.500", "   .050  3.500", "not evenly spaced"),
     ("    0    7    0", "    0    8    0", "columns of 7 characters expected"),
-    ("      .120", "     1.120", "doubt:states a record of 1.12 s, the last sample is at 0.12 s"),
-    ("    -1.235", "    -1.335", "peak of 1.335, the data have 1.2345"),
+    ("      .120", "     1.120", "doubt:is 1.12 s, but the last sample is at 0.12 s"),
+    ("    -1.235", "    -1.335", "peak of 1.335, but the data have 1.2345"),
     ("      .060", "      .100", "doubt:states the peak at 0.1 s"),
     ("-12.345", "-12.34S", "number expected"),
     ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
-    ("SEC AND G/10", "SEC AND WHAT", "say units="),
+    ("SEC AND G/10", "SEC AND WHAT", "add units="),
     ("SEC AND G/10", "SEC AND CM/SEC/SEC", "MAX of 1.235"),
-    ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, the data have 1.2345"),
-    ("MAX  = -1.235 G", "MAX  = -1.236 G", "doubt:MAX of 1.236, the data have 1.2345"),
-    ("MAX  = -1.235 G", "MAX  = -1.336 G", "MAX of 1.336, the data have 1.2345"),
-    ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, the data have 1210"),
-    ("MAX  = -1.235 G", "MAX  = -1.2B5 G", "line 12: MAX = a number and its unit expected"),
+    ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, but the data have 1.2345"),
+    ("MAX  = -1.235 G", "MAX  = -1.236 G", "doubt:MAX of 1.236, but the data have 1.2345"),
+    ("MAX  = -1.235 G", "MAX  = -1.336 G", "MAX of 1.336, but the data have 1.2345"),
+    ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, but the data have 1210"),
+    ("MAX  = -1.235 G", "MAX  = -1.2B5 G", "line 12: number and unit after MAX = expected"),
 ]
 
 
@@ -165,7 +169,7 @@ def test_v1_text_alone_states_the_peak() -> None:
     """Where the header of reals leaves the peak open, the text line is checked and kept; 12.345 g/10 is 1.2345 g."""
     text = "\n".join(_v1()).replace("    -1.235", "      .000").replace("MAX  =", "MAX=")
     assert V1.read(_source([text], "\n")).components[0].stated_peak == pytest.approx(12.35)
-    with pytest.raises(RecordError, match=r"MAX of 0.27, the data have 1.2345"):
+    with pytest.raises(RecordError, match=r"MAX of 0.27, but the data have 1.2345"):
         V1.read(_source([text.replace("-1.235 G", ".270G")], "\n"))
     without = text.replace("     MAX= -1.235 G.", "")
     assert V1.read(_source([without], "\n")).components[0].stated_peak is None
@@ -189,9 +193,9 @@ def test_v1_modern_channels_state_rate_unit_and_format() -> None:
     np.testing.assert_allclose(record.components[1].acceleration, np.array(TENTHS) / 10.0, rtol=0.0, atol=1e-12)
     for old, new, words in (
         ("at 50 pts/sec", "at 0 pts/sec", "time step must be in"),
-        ("in units of g .", "in units of counts .", "counts of the recorder, no accelerations"),
-        ("in units of g .", "in units of gal .", "states the unit gal, you say g"),
-        ("   7 Accelero", "   8 Accelero", "states 7 samples, the file holds 8"),
+        ("in units of g .", "in units of counts .", "counts of the recorder"),
+        ("in units of g .", "in units of gal .", "states the unit gal, not g"),
+        ("   7 Accelero", "   8 Accelero", "states 7 samples, but the file contains 8"),
     ):
         with pytest.raises(RecordError, match=words):
             V1.read(_source([text.replace(old, new)]))
@@ -204,7 +208,7 @@ def test_v1_peak_time_from_the_trigger_is_doubted() -> None:
     source = _source([text])
     assert V1.read(source).components[0].acceleration.tolist() == TENTHS
     assert source.doubts == [
-        "hand.v: the header states the peak at 0.02 s, the data have it at 0.06 s (from the trigger?)"
+        "hand.v: the header states the peak at 0.02 s, but the data have it at 0.06 s (from the trigger)"
     ]
 
 

@@ -49,7 +49,7 @@ DAMAGES = [
     ("   -0.837\n", "   -0.839\n", "minimum U"),
     ("1.256~", "1.258~", "maximum N"),
     ("-1000.778\n#", " 1000.778\n#", "E"),
-    ("(sec): 0.8", "(sec): 1.0", "states 5 samples, the file holds 4"),
+    ("(sec): 0.8", "(sec): 1.0", "states 5 samples, but the file contains 4"),
     ("(sec): 0.8", "(sec): 99999999", "states 499999995 samples"),
     ("(sec): 0.8", "(sec): 0.75", "whole number"),
     ("(Hz): 5", "(Hz): 0", "time step"),
@@ -58,10 +58,10 @@ DAMAGES = [
     ("4F10.3", "4F10.4", "4F10.3"),
     ("     0.400", "     0.450", "line 17"),
     ("     0.200     0.658", "     0.200     0.65x", "line 16"),
-    ("#AmplitudeMAX. N:    1.256~   -2.273\n", "", "not all stated"),
+    ("#AmplitudeMAX. N:    1.256~   -2.273\n", "", "are missing"),
     ("#AmplitudeMAX. N", "#AmplitudeMAX. U", "one component expected"),
     ("#StationCode: ABC", "#SampleRate(Hz): 5", "twice"),
-    ("0.300\n", "0.300\n     0.800     0.000     0.000     0.000\n", "states 4 samples, the file holds 5"),
+    ("0.300\n", "0.300\n     0.800     0.000     0.000     0.000\n", "states 4 samples, but the file contains 5"),
 ]
 
 
@@ -78,5 +78,5 @@ def test_what_is_written_is_read_back() -> None:
     row = np.array([0.0, 1.0])
     with pytest.raises(RecordError, match="U, N and E"):
         CWA.write(Record("", tuple(Component(name, row, "gal", 0.1) for name in "XYZ")))
-    with pytest.raises(RecordError, match="wrong unit"):
+    with pytest.raises(RecordError, match="check the unit"):
         CWA.write(Record("", tuple(Component(name, row * 1e5, "gal", 0.1) for name in "UNE")))

@@ -153,7 +153,7 @@ def test_numbers_of_kik_net(tmp_path):
         ((360, 90, 400), [0.0, 90.0, "up"]),
         ((90, 401, 180), [90.0, "down", 180.0]),
         ((402, 403, 400), [None, None, "up"]),
-        ((360, 90, 402), [0.0, 90.0, "up"]),  # a vertical whose sense is not stated, by the COSMOS tables
+        ((360, 90, 402), [0.0, 90.0, "up"]),  # a vertical whose sense is missing, by the COSMOS tables
         ((600, 601, 400), [None, None, "up"]),
         ((402,), ["unclear"]),
     ],
@@ -178,7 +178,7 @@ def test_three_components_without_directions_are_left_out(tmp_path):
     """One of three may be vertical: a set leaves them out by name; two are taken as horizontal."""
     rows = "\n".join(f"{0.01 * k:.2f} {np.sin(k):.5f} {np.sin(2 * k):.5f} {np.sin(3 * k):.5f}" for k in range(50))
     (tmp_path / "three.txt").write_text(f"# units: g\n{rows}\n", "utf-8")
-    with pytest.raises(RecordError, match="none is stated to be vertical"):
+    with pytest.raises(RecordError, match="without a stated vertical one"):
         read_records(tmp_path)
     two = "\n".join(line.rpartition(" ")[0] for line in rows.splitlines())
     (tmp_path / "two.txt").write_text(f"# units: g\n{two}\n", "utf-8")

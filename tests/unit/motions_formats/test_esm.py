@@ -50,28 +50,28 @@ def test_hand_made_file() -> None:
 
 
 DAMAGES = [
-    ("NDATA: 5", "NDATA: 6", "states 6 samples, the file holds 5"),
+    ("NDATA: 5", "NDATA: 6", "states 6 samples, but the file contains 5"),
     ("NDATA: 5", "NDATA: 5.0", "line 5: number of samples expected"),
-    ("NDATA: 5\n", "", "no line NDATA"),
-    ("-1.000000\n", "", "states 5 samples, the file holds 4"),
+    ("NDATA: 5\n", "", "header line NDATA is missing"),
+    ("-1.000000\n", "", "states 5 samples, but the file contains 4"),
     ("-1.000000", "-1.0000OO", "line 14: number expected"),
     ("-1.000000", "-1.0 2.0", "line 14: 1 numbers expected, found 2"),
     ("DURATION_S: 0.025", "DURATION_S: 0.035", "doubt:states a duration of 0.035 s"),
     ("DURATION_S: 0.025", "DURATION_S: 0", "doubt:states a duration of 0 s"),
-    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: -3.260000", "PGA_CM/S.2 of 3.26, the data have 3.25"),
+    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: -3.260000", "PGA_CM/S.2 of 3.26, but the data have 3.25"),
     ("-3.250000\n2.0", "-3.260000\n2.0", "the data have 3.26"),
     ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: 0", "states a PGA_CM/S.2 of 0"),
-    ("PGA_CM/S^2: -3.250000\n", "", "the header has no line PGA_CM/S.2"),
-    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^3: -3.250000", "the header has no line PGA_CM/S.2"),
-    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2:", "line 9: PGA_CM/S.2 states no number"),
-    ("UNITS: cm/s^2", "UNITS: m/s^2", "the header has no line PGA_M/S.2"),
-    ("TIME_PGA_S: 0.010000", "TIME_PGA_S: 0.020000", "doubt:states the peak at 0.02 s, the data have it at 0.01 s"),
+    ("PGA_CM/S^2: -3.250000\n", "", "header line PGA_CM/S.2 is missing"),
+    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^3: -3.250000", "header line PGA_CM/S.2 is missing"),
+    ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2:", "line 9: PGA_CM/S.2 must contain a number"),
+    ("UNITS: cm/s^2", "UNITS: m/s^2", "header line PGA_M/S.2 is missing"),
+    ("TIME_PGA_S: 0.010000", "TIME_PGA_S: 0.020000", "doubt:states the peak at 0.02 s, but the data have it at 0.01 s"),
     ("cm/s^2\n", "furlong\n", "line 8: UNITS must be one of"),
-    ("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY", "line 11: only ACCELERATION can be read"),
-    ("NETWORK: XX", "NDATA: 5", "NDATA is stated twice"),
-    ("SAMPLING_INTERVAL_S: 0.005000", "SAMPLING_INTERVAL_S: 0.006000", "doubt:5 samples at 0.006 s last 0.03 s"),
-    ("SAMPLING_INTERVAL_S: 0.005000", "SAMPLING_INTERVAL_S:", "say time_step="),
-    ("STREAM: HNE", "HEADER_FORMAT: DYNA 1.2", "has 64 lines KEY: value, found 12"),
+    ("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY", "line 11: DATA_TYPE must be ACCELERATION"),
+    ("NETWORK: XX", "NDATA: 5", "NDATA appears twice"),
+    ("SAMPLING_INTERVAL_S: 0.005000", "SAMPLING_INTERVAL_S: 0.006000", "doubt:5 samples at 0.006 s have 0.03 s"),
+    ("SAMPLING_INTERVAL_S: 0.005000", "SAMPLING_INTERVAL_S:", "add time_step="),
+    ("STREAM: HNE", "HEADER_FORMAT: DYNA 1.2", "64 header lines KEY: value expected for DYNA 1.2, found 12"),
 ]
 
 
@@ -86,7 +86,7 @@ def test_other_units_need_their_own_peak(unit: str, label: str) -> None:
     text = HAND.replace("UNITS: cm/s^2", f"UNITS: {unit}").replace("PGA_CM/S^2", label)
     part = ESM.read(_source(text)).components[0]
     assert (part.unit, part.stated_peak) == (unit.replace("^", ""), 3.25)
-    with pytest.raises(RecordError, match=r"of 3.26, the data have 3.25"):
+    with pytest.raises(RecordError, match=r"of 3.26, but the data have 3.25"):
         ESM.read(_source(text.replace(": -3.250000", ": -3.260000")))
 
 
@@ -104,7 +104,7 @@ def test_no_peak_comes_before_the_first_sample() -> None:
     assert ESM.read(_source(first.replace("TIME_PGA_S: 0.010000", "TIME_PGA_S: 0"))).components[0].peak == 3.25
     early = _source(first.replace("TIME_PGA_S: 0.010000", "TIME_PGA_S: -0.0025"))
     ESM.read(early)
-    assert "states the peak at -0.0025 s, the data have it at 0 s" in early.doubts[0]
+    assert "states the peak at -0.0025 s, but the data have it at 0 s" in early.doubts[0]
 
 
 def test_round_trip(made_up) -> None:

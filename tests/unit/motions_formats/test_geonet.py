@@ -79,16 +79,16 @@ DAMAGES = [
     ("at   0.14", "at   0.06", "doubt:the peak at"),
     ("-1016.55", "-1018.55", "doubt:peak of velocity"),
     ("99.407 mm ", "99.507 mm ", "doubt:peak of displacement"),
-    ("Number of points    12", "Number of points    13", "states 12 samples, the file holds 13"),
+    ("Number of points    12", "Number of points    13", "states 12 samples, but the file contains 13"),
     ("Number of points    12", "Number of points 99999", "samples"),
     ("points    12    Duration   0.22", "points    12    Duration   0.32", "doubt:duration"),
     ("at 0.020 sec", "at 0.050 sec", "doubt:duration"),
     ("at 0.020 sec", "at 20.00 sec", "time step"),
     ("Component N80W", "Component N10E", "twice"),
     ("-12346.6", "********", "line 27"),
-    (" mm/s/s at   0.14", " cm/s/s at   0.14", "cannot be understood"),
+    (" mm/s/s at   0.14", " cm/s/s at   0.14", "understood"),
     ("     7.0     8.0\n", "     7.0     8.0     9.0\n", "2 columns"),
-    ("Corrected accelerogram", "Uncorrected accelerogram", "component beginning with"),
+    ("Corrected accelerogram", "Uncorrected accelerogram", "component that begins with"),
 ]
 
 
@@ -100,7 +100,7 @@ def test_damage_is_refused() -> None:
 def test_a_file_that_ends_early_or_late_is_refused() -> None:
     """Three components belong to a file, and nothing after them."""
     whole = typed()
-    with pytest.raises(RecordError, match="three missing"):
+    with pytest.raises(RecordError, match="may be missing"):
         read(whole[: 2 * len(whole) // 3 - 1])
     short = "\n".join(whole.split("\n")[:-1])
     with pytest.raises(RecordError, match=r"more|displacement|expected"):

@@ -61,8 +61,8 @@ DAMAGES = [
     ("60.000", "2080.000", "largest acceleration"),
     ("2000(gal)/1000", "2000(gal)/1001", "largest acceleration"),
     ("2000(gal)/1000", "0(gal)/1000", "scale factor"),
-    ("2000(gal)/1000", "2000/1000", "Scale Factor cannot be understood"),
-    ("5Hz", "50Hz", "states 100 samples, the file holds 10"),
+    ("2000(gal)/1000", "2000/1000", "understood"),
+    ("5Hz", "50Hz", "states 100 samples, but the file contains 10"),
     ("5Hz", "0Hz", "time step"),
     ("5Hz", "5", "Sampling Freq"),
     ("(s)  2", "(s)  999999999", "whole number of samples"),
@@ -82,7 +82,7 @@ def test_damage_is_refused() -> None:
 def test_units_that_contradict_are_refused() -> None:
     """It is gal, which is cm/s2, and nothing else."""
     assert read(units="cm/s2").components[0].unit == "gal"
-    with pytest.raises(RecordError, match="you say"):
+    with pytest.raises(RecordError, match="states the .*, not |states a .*, not "):
         read(units="g")
 
 
@@ -104,7 +104,7 @@ def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
         KNET.write(Record("", (Component("a", np.array([1.0, 1.0, 1.0, 0.0]), "gal", 0.5),)))
     with pytest.raises(RecordError, match="whole seconds"):
         KNET.write(made_up("a"))
-    with pytest.raises(RecordError, match="wrong unit"):
+    with pytest.raises(RecordError, match="check the unit"):
         KNET.write(Record("", (Component("a", np.array([1e9, -1e9]), "gal", 0.5),)))
 
 

@@ -53,7 +53,7 @@ def test_files_are_recognised_by_content_alone(name: str, made_up, tmp_path: Pat
 def test_unknown_files_and_formats(tmp_path: Path) -> None:
     """The errors list what there is."""
     path = _write(tmp_path, "Dear reader,\nthis is no record.\n")
-    with pytest.raises(RecordError, match=r"not recognised as any of peer, esm, .*columns"):
+    with pytest.raises(RecordError, match=r"unknown format, allowed are peer, esm, .*columns"):
         read_record(path)
     with pytest.raises(InvalidValueError, match=r"format must be one of peer, esm, .*got 'at2'"):
         read_record(path, format="at2")
@@ -70,7 +70,7 @@ def test_a_file_above_256_mib_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "long.at2"
     with path.open("wb") as file:
         file.truncate(268_435_457)
-    with pytest.raises(RecordError, match="268435457 bytes, more than the 268435456 that are read"):
+    with pytest.raises(RecordError, match="268435457 bytes exceed the limit of 268435456"):
         read_record(path)
 
 
@@ -79,7 +79,7 @@ def test_ambiguous_file_names_its_candidates(tmp_path: Path, monkeypatch: pytest
     path = tmp_path / "two"
     write_record(made_up("90"), path, "peer")
     monkeypatch.setattr("rocking.motions.formats.esm.Esm.recognises", lambda self, source: True)
-    with pytest.raises(RecordError, match="could be peer, esm; say format="):
+    with pytest.raises(RecordError, match="ambiguous: peer, esm; add format="):
         read_record(path)
     assert read_record(path, format="peer").format == "peer"
 
@@ -92,14 +92,16 @@ SAMPLES = "0.0 0.125 -0.25\n0.5\n"
 def test_a_file_with_the_headers_of_two_formats_is_ambiguous(tmp_path: Path) -> None:
     """A file typed by hand with words of K-NET above the size line of PEER is neither's until format= says whose."""
     both = _write(tmp_path, KNET_WORDS + PEER_WORDS + SAMPLES)
-    with pytest.raises(RecordError, match=r"^hand\.txt: it could be peer, knet; say format= one of these$"):
+    with pytest.raises(
+        RecordError, match=r"^hand\.txt: the format is ambiguous: peer, knet; add format= with one of these$"
+    ):
         read_record(both)
-    with pytest.raises(RecordError, match="it could be peer, knet"):
+    with pytest.raises(RecordError, match="ambiguous: peer, knet"):
         read_motion(both)
     (part,) = read_record(both, format="peer").components
     assert (part.acceleration.tolist(), part.unit, part.time_step) == ([0.0, 0.125, -0.25, 0.5], "g", 0.01)
     # settled the other way it is K-NET's reader that speaks, of its own header
-    with pytest.raises(RecordError, match=r"^hand\.txt: a K-NET header of 17 lines expected"):
+    with pytest.raises(RecordError, match=r"^hand\.txt: K-NET header of 17 lines expected"):
         read_record(both, format="knet")
 
 
@@ -109,7 +111,7 @@ def test_either_header_alone_is_not_ambiguous(tmp_path: Path) -> None:
     assert (alone.format, alone.components[0].acceleration.tolist()) == ("peer", [0.0, 0.125, -0.25, 0.5])
     path = _write(tmp_path, KNET_WORDS + SAMPLES)
     assert [one.name for one in formats().values() if one.recognises(Source.of_path(path))] == ["knet"]
-    with pytest.raises(RecordError, match=r"^hand\.txt: a K-NET header of 17 lines expected"):
+    with pytest.raises(RecordError, match=r"^hand\.txt: K-NET header of 17 lines expected"):
         read_record(path)
 
 
@@ -132,8 +134,8 @@ def test_either_header_alone_is_not_ambiguous(tmp_path: Path) -> None:
 def test_no_finite_number_on_the_first_lines_is_named(text: str, line: int, word: str, tmp_path: Path) -> None:
     """File, line and value are named, whether the format is told or not; with a finite number the file is columns."""
     path = _write(tmp_path, text.format(word))
-    cause = "(: the record has a gap, .*)?"
-    words = rf"^hand\.txt, line {line}: number (expected, found|is beyond all range:) '{word}'{cause}$"
+    cause = "(: a sample has no value; .*)?"
+    words = rf"^hand\.txt, line {line}: number (expected, found|is too large:) '{word}'{cause}$"
     for told in (None, "columns"):
         with pytest.raises(RecordError, match=words):
             read_motion(path, told, "g", 0.01)
@@ -149,7 +151,7 @@ def test_no_finite_number_further_down_is_named_as_ever(tmp_path: Path) -> None:
     rows[10] = "0.10 nan"
     for told in (None, "columns"):
         with pytest.raises(
-            RecordError, match=r"^hand\.txt, line 11: number expected, found 'nan': the record has a gap, .*$"
+            RecordError, match=r"^hand\.txt, line 11: number expected, found 'nan': a sample has no value; .*$"
         ):
             read_motion(_write(tmp_path, "\n".join(rows)), told, "g")
 
@@ -197,13 +199,16 @@ def test_forced_format_refuses_foreign_content(name: str) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "say units="),
+        ({}, "add units="),
         ({"units": "cm/s"}, "units must be one of"),
         *(({"units": "g", "time_step": step}, "time_step") for step in (-0.01, math.nan, math.inf, "0.01", True)),
-        ({"units": "g"}, "has the components column 2, column 3; say component="),
-        ({"units": "g", "component": "EW"}, "component must name one component, got 'EW'; the file has column 2"),
-        ({"units": "g", "component": "column 2", "vertical": "Z"}, "vertical must name one component"),
-        ({"units": "g", "component": "column 2", "vertical": "column 2"}, "it is the vertical one already"),
+        ({"units": "g"}, "has the components column 2, column 3; add component="),
+        (
+            {"units": "g", "component": "EW"},
+            "component must be the name of one component, got 'EW'; the file has column 2",
+        ),
+        ({"units": "g", "component": "column 2", "vertical": "Z"}, "vertical must be the name of one component"),
+        ({"units": "g", "component": "column 2", "vertical": "column 2"}, "this is the vertical component"),
     ],
 )
 def test_nothing_is_guessed(options: dict[str, Any], message: str, tmp_path: Path) -> None:
@@ -365,8 +370,10 @@ def test_whatever_a_reader_raises_is_a_refusal(where: str, monkeypatch: pytest.M
         raise cause
 
     monkeypatch.setattr(home, where, broken)
-    words = "while its format was looked for" if where == "recognises" else "as columns"
-    with pytest.raises(RecordError, match=rf"hand\.txt: it cannot be read {words} \(IndexError: list index") as caught:
+    words = "during the detection of its format" if where == "recognises" else "as columns"
+    with pytest.raises(
+        RecordError, match=rf"hand\.txt: the file cannot be read {words} \(IndexError: list index"
+    ) as caught:
         read_record(path, units="g")
     assert caught.value.__cause__ is cause
 
@@ -382,5 +389,5 @@ def test_rows_of_separators_alone_are_no_columns(tmp_path: Path, shared_records:
 
 def test_a_format_that_nothing_recognises_is_none():
     """A subclass with neither marks nor a way to recognise its files is refused when it is written."""
-    with pytest.raises(TypeError, match="Nameless: say marks and top, or write recognises"):
+    with pytest.raises(TypeError, match="Nameless: define marks and top"):
         type("Nameless", (RecordFormat,), {"marks": ("HEADER",)})

@@ -91,10 +91,10 @@ WANTED = [
     Wanted("smc_uneven/*", "smc-usgs", "cm/s2", 0.001, (48550,), (228.3932,), 5e-3, doubt="33449 samples at uneven"),
 ]  # fmt: skip
 REFUSED = [
-    ("cosmos/*.V0c", r"line 49: the file holds counts of the recorder, no accelerations"),
-    ("peer/*.VT2", r"line 3: .* the header states 'CM/S': a velocity; its acceleration is in the .AT2 file"),
-    ("bbp/2001-SCE.vel.bbp", r"accelerations are needed, and its name says 'vel', a velocity"),
-    ("mseed/segv.mseed", "it has room for 57; damaged"),
+    ("cosmos/*.V0c", r"line 49: the file contains counts of the recorder"),
+    ("peer/*.VT2", r"line 3: .* but the header states 'CM/S', a velocity; use the .AT2 file"),
+    ("bbp/2001-SCE.vel.bbp", r"accelerations required, but its name contains 'vel', a velocity"),
+    ("mseed/segv.mseed", "but has space for 57"),
     ("columns/*.csv", "columns expected, found 0"),
 ]
 

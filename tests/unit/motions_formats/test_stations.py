@@ -45,11 +45,11 @@ def test_the_channel_of_the_record_is_taken(tmp_path, channels):
 @pytest.mark.parametrize(
     ("channels", "message"),
     [
-        ((channel(location="10"), channel(location="20")), r"XX\.ABC\.\.HNE .*; they describe location 10"),
-        ((channel(ends="1969-01-01"),), "do not describe this channel; they describe location blank, 1960"),
+        ((channel(location="10"), channel(location="20")), r"XX\.ABC\.\.HNE .*, only location 10"),
+        ((channel(ends="1969-01-01"),), "do not describe this channel, only location blank, 1960"),
         ((channel(), channel(gain=17.0)), "2 different descriptions in a.xml"),
         ((channel(), channel(dip=-90)), "2 different descriptions in a.xml"),  # level, and vertical
-        ((channel(unit="M/S"),), "sensitivity from M/S.*2 to counts needed, found M/S to COUNTS"),
+        ((channel(unit="M/S"),), "sensitivity from M/S.*2 to counts required, found M/S to COUNTS"),
         ((channel(counts="V"),), "found M/S.*2 to V"),
         ((channel(code="HNN"),), "do not describe this channel"),
     ],
@@ -66,7 +66,7 @@ def test_counts_without_a_name_are_doubted(tmp_path):
     """M/S**2 to NONE, as some networks had it, is read as counts, with a doubt."""
     path = write_counts(tmp_path / "a.mseed")
     (tmp_path / "a.xml").write_text(station_xml(channel(counts="NONE")), "utf-8")
-    with pytest.warns(UserWarning, match="sensitivity to NONE, taken as counts"):
+    with pytest.warns(UserWarning, match="sensitivity is NONE in the StationXML; counts are assumed"):
         found = with_response_out(path, tmp_path / "a.xml")
     assert found.acceleration == pytest.approx(burst(), abs=2e-3 * 3.0)
 
@@ -107,7 +107,7 @@ def test_cases_with_stations(case_records):
         path = case_records / f"stationxml_{name}.xml"
         found.append(processed(read_motion(case_records / "counts.mseed", stations=path), step.format(path)))
     assert found[0].acceleration.tolist() == found[1].acceleration.tolist()
-    with pytest.warns(UserWarning, match="taken as counts"):
+    with pytest.warns(UserWarning, match="counts are assumed"):
         read_motion(case_records / "counts.mseed", stations=case_records / "stationxml_output_none.xml")
     records = read_records(case_records / "fdsn_folder")
     assert len(records) == 2

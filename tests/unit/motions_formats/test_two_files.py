@@ -70,12 +70,12 @@ def test_units_are_those_of_each_file(made_up: Callable[..., Record], tmp_path: 
     assert motion.vertical is not None
     expected = made_up("90", "UP").components[1].acceleration
     np.testing.assert_allclose(motion.vertical, expected, rtol=0.0, atol=1e-5)
-    with pytest.raises(InvalidValueError, match="say vertical= one of these"):
+    with pytest.raises(InvalidValueError, match="add vertical= with one of these"):
         read_motion(along, vertical_path=three)
     tables = [tmp_path / "a.txt", tmp_path / "b.txt"]
     for table, values in zip(tables, (ALONG, UP), strict=True):
         table.write_text("\n".join(f"{0.02 * k:.2f} {value!r}" for k, value in enumerate(values.tolist())))
-    with pytest.raises(RecordError, match="say units="):
+    with pytest.raises(RecordError, match="add units="):
         read_motion(tables[0], vertical_path=tables[1])
     assert read_motion(tables[0], units="g", vertical_path=tables[1]).peak_vertical == pytest.approx(9.80665, rel=1e-6)
 
@@ -86,7 +86,7 @@ def test_no_component_is_both_parts(made_up: Callable[..., Record], tmp_path: Pa
     copy = tmp_path / "copy"
     copy.write_bytes(along.read_bytes())
     for path in (along, copy):
-        with pytest.raises(InvalidValueError, match="holds the horizontal component 90 and cannot be the vertical one"):
+        with pytest.raises(InvalidValueError, match="contains the horizontal component 90, not the vertical one"):
             read_motion(along, vertical_path=path)
     two = tmp_path / "two.v2"
     write_record(made_up("90", "UP"), two, "csmip-v2")
@@ -99,14 +99,14 @@ def test_files_that_state_different_starts(tmp_path: Path) -> None:
     early, late = {"Record Time": "1999/12/31 19:51:43"}, {"Record Time": "1999/12/31 19:51:44"}
     along = written(tmp_path, "knet", "E-W", ALONG, **early)
     assert read_motion(along, vertical_path=written(tmp_path, "knet", "U-D", UP, **early)).vertical is not None
-    with pytest.raises(RecordError, match="knet U-D: it starts 1 s after the horizontal component"):
+    with pytest.raises(RecordError, match="knet U-D: the motion starts 1 s after the horizontal component"):
         read_motion(along, vertical_path=written(tmp_path, "knet", "U-D", UP, **late))
     unclear = written(tmp_path, "knet", "U-D", UP, **{"Record Time": "noon"})
     for path in (unclear, written(tmp_path, "peer", "UP", UP)):
         assert read_motion(along, vertical_path=path).vertical is not None
     tables = [written(tmp_path, "columns", name, UP) for name in ("a", "b")]
     tables[1].write_text("\n".join(f"{5.0 + t:.2f} {a:.6f}" for t, a in zip(TIME, UP, strict=True)))
-    with pytest.raises(RecordError, match="columns b: it starts 5 s after"):
+    with pytest.raises(RecordError, match="columns b: the motion starts 5 s after"):
         read_motion(tables[0], units="m/s2", vertical_path=tables[1])
 
 

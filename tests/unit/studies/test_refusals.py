@@ -97,7 +97,7 @@ REFUSED = [
     (curves, {"scale": 2.0}, 'scale is for analysis="cloud" only, this is "stripes"'),
     (curves, {"analysis": "cloud", "tolerance": 0.1}, 'tolerance is for analysis="incremental" only'),
     (curves, {"im": "arias"}, "which levels of arias"),
-    (curves, {"limit_states": (0.5, 0.2)}, "limit_states must increase from value to value; these decrease"),
+    (curves, {"limit_states": (0.5, 0.2)}, "limit_states must increase from value to value; reverse the order"),
     (listed, {"motions": "firm-ground"}, "how strong is the shaking"),
     (listed, {"motions": "firm-ground", "pga": "0.3g", "pgv": 0.2}, "pga or pgv, not both"),
     (listed, {"motions": [RECORD], "count": 3}, "count is for synthetic motions"),

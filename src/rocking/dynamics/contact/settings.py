@@ -36,7 +36,7 @@ class ContactSettings(Settings):
     tolerance: float = ranged(1e-15, 1e-17, 1e-3)
     friction: float = checked(NEVER_SLIDES, checked_friction)
     normal_restitution: float = ranged(0.0, 0.0, 1.0, open_high=True, hint=_BOUNCE)
-    normal_restitution_law: str = checked("newton", partial(checks.one_of, known=BOUNCE_LAWS))
+    normal_restitution_law: str = checked("newton", partial(checks.one_of, allowed=BOUNCE_LAWS))
 
     @property
     def integration(self) -> dict[str, Any]:

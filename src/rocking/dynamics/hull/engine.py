@@ -72,7 +72,7 @@ class HullEngine:
     >>> from rocking.dynamics.hull.motion import standing
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value
-    'stayed at rest: the ground never lifted it'
+    'stayed at rest without uplift'
     """
 
     def __init__(

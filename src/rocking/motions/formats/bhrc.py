@@ -1,8 +1,8 @@
 """Volume 1 files of Iran's strong-motion network (BHRC, ISMN): uncorrected accelerations in g/10.
 
-Each component: 13 lines of text, 7 lines of 14 whole numbers of width 5, 7 lines of real numbers of width 13, the
-samples, 10 of width 13 a line, and a line ``/&``. Checked on six files of the 2012 Ahar earthquake (SSA-2 recorders).
-Corrected files (Volume 2 and up) have another layout, of which no file was at hand: they are refused.
+Each component has 13 lines of text, 7 lines of 14 integers of width 5, 7 lines of real numbers of width 13, the
+samples (10 per line, width 13), and a line ``/&``. Tested with six files of the 2012 Ahar earthquake (SSA-2
+recorders). Corrected files (Volume 2 and up) have another layout, without a test file; they raise an error.
 """
 
 import re
@@ -24,14 +24,14 @@ _POINTS = r"NO\. OF POINTS = +(\d{1,9}) +DURATION = +(\d*\.\d+)"
 
 
 class Bhrc(RecordFormat):
-    """Iran's Volume 1, uncorrected."""
+    """Volume 1 of Iran, uncorrected."""
 
     name: ClassVar[str] = "bhrc"
     title: ClassVar[str] = "BHRC (ISMN), Iran, Volume 1"
     suffixes: ClassVar[tuple[str, ...]] = (".v1",)
     notes: ClassVar[str] = (
-        "Accelerations are in g/10 and uncorrected: remove their mean and correct the baseline. The file states no "
-        "peak, so a damaged sample can pass. Volume 2 is refused: its layout was not verified."
+        "Accelerations are in g/10 and uncorrected: remove their mean and correct the baseline. The file contains no "
+        "peak, so a damaged sample is not detected. Volume 2 raises an error: its layout is not verified."
     )
     marks: ClassVar[tuple[str, ...]] = (
         r"\* VOL\dDS FILE", "COMP [LVT]", r"NO\. OF POINTS =", "UNITS ARE SECONDS AND G/10", "INSTR PERIOD =",
@@ -48,7 +48,7 @@ class Bhrc(RecordFormat):
         while not components or line < last:
             component, line = _component(source, line, units, time_step)
             if component.name in {other.name for other in components}:
-                raise source.error(None, "component {component} is there twice", component=component.name)
+                raise source.error(None, "component {component} appears twice", component=component.name)
             components.append(component)
         lines = source.lines[:_TEXTS]
         metadata = metadata_of(
@@ -63,24 +63,24 @@ class Bhrc(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         rows = headers.in_unit(record, self.name, "g/10", 3)
-        names = [part.name for part in record.components]
+        names = [component.name for component in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:
             raise RecordError("BHRC holds components L, V and T, got {components}", components=", ".join(names)[:60])
         lines: list[str] = []
-        for part, values in zip(record.components, rows, strict=True):
-            lines += _written(record, part, values)
+        for component, values in zip(record.components, rows, strict=True):
+            lines += _written(record, component, values)
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
 
-def _component(source: Source, top: int, units: str | None, asked: float | None) -> tuple[Component, int]:
+def _component(source: Source, top: int, units: str | None, requested_step: float | None) -> tuple[Component, int]:
     if len(source.lines) < top + _TEXTS + _WHOLES + _REALS:
         lines = _TEXTS + _WHOLES + _REALS
-        raise source.error(None, "the header of a component has {lines} lines, the file ends in it", lines=lines)
+        raise source.error(
+            None, "the header of a component has {lines} lines, but the file ends before the last one", lines=lines
+        )
     volume = numbers.matched(source, top, _VOLUME)
     if volume[1] != "1":
-        raise source.error(
-            top, "Volume {volume}: only Volume 1 is read, the layout of others was not verified", volume=volume[1]
-        )
+        raise source.error(top, "Volume {volume} is not supported, only Volume 1", volume=volume[1])
     numbers.matched(source, top + 11, "UNITS ARE SECONDS AND G/10")
     unit = headers.acceleration_unit(source, "g/10", units)
     name = numbers.matched(source, top + 6, r"COMP ([LVT])\d?")[1]
@@ -92,11 +92,11 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
     headers.check_count(source, numbers.whole(source, top + _TEXTS + 1, repeated, "number of points"), count)
     reals = top + _TEXTS + _WHOLES
     rate = numbers.number(source, reals + 1, source.lines[reals + 1][:13], "sampling rate")
-    step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, asked)
+    step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, requested_step)
     headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
-    again = numbers.number(source, reals, source.lines[reals][26:39], "duration")
+    repeated_duration = numbers.number(source, reals, source.lines[reals][26:39], "duration")
     with source.doubting():
-        headers.check_stated(source, again, duration, 1e-5 * duration, "duration")
+        headers.check_stated(source, repeated_duration, duration, 1e-5 * duration, "duration")
     values, line = numbers.fixed(source, reals + _REALS, count, _PER_LINE, _WIDTH)
     if line >= len(source.lines) or source.lines[line].strip() != _END:
         raise source.error(
@@ -106,19 +106,27 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
     return Component(name, values, unit, step, None, {"azimuth": azimuth[1]} if azimuth else {}), line + 1
 
 
-def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
+def _written(record: Record, component: Component, values: FloatArray) -> list[str]:
     count = values.size
     if count > 99_999 or np.abs(values).max() >= 1e9:
         raise RecordError("BHRC holds up to 99999 samples below 1e9 g/10, got {count}", count=count)
     file, instrument, station = (record.text(key, 40) for key in ("file", "instrument", "station"))
-    azimuth = one_line(part.metadata.get("azimuth", "0"), 3)
-    duration = count * part.time_step
-    lines = [f"* VOL1DS FILE:  {file}", f"Inst Type = {instrument}", "", "", part.name, "", f"COMP {part.name}1"]
-    lines += [f"{station}  Station   Azimuth {part.name} {azimuth}", "Epicenter"]
+    azimuth = one_line(component.metadata.get("azimuth", "0"), 3)
+    duration = count * component.time_step
+    lines = [
+        f"* VOL1DS FILE:  {file}",
+        f"Inst Type = {instrument}",
+        "",
+        "",
+        component.name,
+        "",
+        f"COMP {component.name}1",
+    ]
+    lines += [f"{station}  Station   Azimuth {component.name} {azimuth}", "Epicenter"]
     lines += ["INSTR PERIOD =  .000 SEC   DAMPING =  .000"]
     lines += [f"NO. OF POINTS = {count:6d}      DURATION = {duration:9.4f}", "UNITS ARE SECONDS AND G/10", ""]
     wholes, reals = [0] * 88, [0.0] * 38
-    wholes[25], reals[2], reals[6] = count, duration, 1.0 / part.time_step
+    wholes[25], reals[2], reals[6] = count, duration, 1.0 / component.time_step
     lines += numbers.in_columns(wholes, 14, "{:5d}")
     lines += [text[:70] for text in _in_lines(reals, 6)]
     return [*lines, *_in_lines(values.tolist(), _PER_LINE), _END]
@@ -126,5 +134,5 @@ def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
 
 def _in_lines(values: Sequence[float], per_line: int) -> list[str]:
     # exponents have two digits
-    words = [numbers.fortran_e(value if abs(value) >= 1e-90 else 0.0, 6, _WIDTH) for value in values]
-    return ["".join(words[k : k + per_line]) for k in range(0, len(words), per_line)]
+    texts = [numbers.fortran_e(value if abs(value) >= 1e-90 else 0.0, 6, _WIDTH) for value in values]
+    return ["".join(texts[k : k + per_line]) for k in range(0, len(texts), per_line)]

@@ -1,4 +1,4 @@
-"""Columns as text, none a number yet: what parts them, which line names them, and what each is by its name and unit."""
+"""Columns as text: separator, line of names, and the quantity of each column by its name and unit."""
 
 import csv
 import re
@@ -15,10 +15,10 @@ from rocking.motions.formats.headers import acceleration_unit, unit_to_state
 from rocking.motions.formats.numbers import plain_table, read_rows
 from rocking.motions.formats.record import Source, readable
 
-MOST_NAMED = 20  # columns of a file that names them
+MOST_NAMED = 20  # largest number of named columns
 _FIRST_ROWS = 50
-MARK = "\xef\xbb\xbf"  # the three bytes with which some programs begin a file in UTF-8
-_MOST_WORDS = 60  # lines of words above the numbers
+MARK = "\xef\xbb\xbf"  # byte order mark of UTF-8
+_MOST_WORDS = 60  # largest number of text lines above the numbers
 _WORD = re.compile(r"[^\W\d_]{2,}")
 _PROPERTY = re.compile(r"[^\W\d_]{2,20}\s*(?:[=:;]|[\[(]\s*[^\W\d]+\s*[\])]|(?<=dt)\s)", re.IGNORECASE)
 _BLANKS = " \t\x1a"
@@ -26,14 +26,14 @@ _MIXED = re.compile(r"\s*,\s*|\s+")
 _QUOTED = re.compile(r'"[^"]*"')
 _UNIT_BEHIND = re.compile(r"[^\s\[(]+(?:\s*\[[^\]]*\]|\s*\([^)]*\))?")
 _DECIMAL_COMMAS = re.compile(r"(?:[^\s,]+|[^\s,]*\d,\d[^\s,]*)(?:\s+(?:[^\s,]+|[^\s,]*\d,\d[^\s,]*))+")
-# a letter first, or the digits of an azimuth with a unit behind them; what has an equals sign states something else
+# a letter first, or an azimuth followed by a unit; a name contains no equals sign
 _NAME = re.compile(r"(?:[^\W\d_]|\d+\s*[\[(])[^=\x00-\x1f]{0,79}")
 _NO_NAME = re.compile(r"nan|inf(inity)?|null|none|n/?a|true|false", re.IGNORECASE)
 _DAMAGED_NUMBER = re.compile(r"[^\W\d_][+-]?[\d.,]+([eEdD][+-]?\d*)?")
-# what states its own sampling is a header of another format, damaged: not to be passed over as a comment or as names
+# lines with a sampling belong to a damaged header of another format: neither comments nor names
 _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata", re.IGNORECASE)
 SAMPLING_LINE = re.compile(r"NPTS\s*=\s*\d+\s*,?\s*DT\s*=\s*[\d.eE+-]+\s*(?:s|sec\w*)?\.?", re.IGNORECASE)
-"""The line above the samples of a PEER file, where the lines above it were taken away."""
+"""Last header line of a PEER file, for files without the other header lines."""
 
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
 _TAIL = re.compile(
@@ -77,23 +77,23 @@ _SPELT = {
 _UNITS = ", ".join(ACCELERATION_UNITS)
 
 
-_TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # quantities that are taken for accelerations
+_TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # quantities that could be mistaken for accelerations
 
 
 @dataclass(frozen=True)
 class ColumnText:
-    """The cells of a file of columns, none of them read as a number yet."""
+    """Cells of a file of columns, as text."""
 
     source: Source
-    names: tuple[str, ...] | None  # what the columns are called, with their units; None if the file begins with numbers
+    names: tuple[str, ...] | None  # names of the columns with units; None if the file begins with numbers
     heading: str  # the line of the names; empty if there is none
-    words: tuple[tuple[int, str], ...]  # lines above that are neither names nor comments, with their places
-    separator: str  # ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part
-    first: list[tuple[int, list[str]]]  # index of each of the first lines of numbers, and its cells
+    preamble: tuple[tuple[int, str], ...]  # line index and text of header lines without names and comments
+    separator: str  # ``;``, tab, ``,``, a blank for white space, or empty for blanks and commas
+    first: list[tuple[int, list[str]]]  # line index and cells of the first lines of numbers
 
     @classmethod
     def of(cls, source: Source, most: int = _FIRST_ROWS) -> "ColumnText":
-        """Part the first lines of a file into cells."""
+        """Return the cells of the first lines of a file."""
         lines = _lines(source, max(most, _FIRST_ROWS) + _MOST_WORDS + 1)
         top = next((k for k, (_, text) in enumerate(lines[: _MOST_WORDS + 1]) if not is_words(text)), 0)
         above, body, names, heading = lines[:top], lines[top:], None, ""
@@ -111,12 +111,12 @@ class ColumnText:
 
     @property
     def is_empty(self) -> bool:
-        """Whether no line of numbers comes before the words that close the file."""
+        """True if the file has no lines of numbers."""
         return not self.first or self.first[0][0] >= self.source.end
 
     @cached_property
     def rows(self) -> list[tuple[int, list[str]]]:
-        """Index of each line of numbers, and its cells."""
+        """Line index and cells of each line of numbers."""
         top = self.first[0][0] if self.first else len(self.source.lines)
         end = self.source.end
         lines = [(line, text) for line, text in _lines(self.source, None) if top <= line < end]
@@ -128,7 +128,7 @@ class ColumnText:
 
     @cached_property
     def _plain(self) -> tuple[list[str], str | None]:
-        """The lines from the first with numbers to the end, and what separates the columns of all; None for blanks."""
+        """Lines from the first with numbers to the end, and the separator of their columns; None for blanks."""
         lines = self.source.lines[self.first[0][0] : self.source.end]
         if self.separator == "":
             return lines, "," if "," in lines[0] and "." in lines[0] else None
@@ -136,19 +136,19 @@ class ColumnText:
 
     @cached_property
     def at_once(self) -> FloatArray | None:
-        """All numbers, where there is nothing but plain decimal numbers in all columns."""
+        """All numbers, if all cells are plain decimal numbers; else None."""
         numbers = plain_table(*self._plain)
         return numbers if numbers is not None and numbers.shape[1] == self._columns else None
 
-    def column(self, place: int) -> list[str]:
+    def column(self, index: int) -> list[str]:
         """Return the cells of one column, with decimal points."""
         if self.at_once is None:
-            return [cells[place].replace(",", ".") for _, cells in self.rows]
+            return [cells[index].replace(",", ".") for _, cells in self.rows]
         lines, separator = self._plain
-        return "\n".join(lines).replace(separator or " ", " ").split()[place :: self._columns]
+        return "\n".join(lines).replace(separator or " ", " ").split()[index :: self._columns]
 
     def numbers(self, *, last_short: bool = False) -> FloatArray:
-        """Return all numbers, of shape (rows, columns); where the last row may be short, NaN for what it lacks."""
+        """Return all numbers, shape (rows, columns); NaN for missing cells of an allowed short last row."""
         values = self.at_once
         if values is None:
             self._check_commas()
@@ -156,32 +156,32 @@ class ColumnText:
             missing = self._columns - short if last_short and 0 < short < self._columns else 0
             values = np.append(read_rows(self.source, self._checked_rows(missing)), np.full(missing, np.nan))
         if values.size < 2 * self._columns and not last_short:
-            raise self.source.error(None, "at least 2 samples are needed, found 1")
+            raise self.source.error(None, "at least 2 samples required, found 1")
         return values.reshape(-1, self._columns)
 
     def _check_commas(self) -> None:
         commas = [line for line, _ in self.rows if "," in self.source.lines[line]]
         points = [line for line, cells in self.rows if any("." in cell for cell in cells)] if commas else []
         if commas and self.separator == "" and not points:
-            raise self.source.error(commas[0], "commas but no decimal point: write decimal commas as points")
+            raise self.source.error(commas[0], "commas without decimal points; replace decimal commas by points")
         if commas and points and self.separator not in {"", ","}:
             raise self.source.error(
-                commas[0], "decimal commas here and decimal points on line {other}: write one kind", other=points[0] + 1
+                commas[0], "decimal commas here and decimal points on line {other}; use one kind", other=points[0] + 1
             )
 
     def _checked_rows(self, missing: int) -> Iterator[tuple[int, list[str]]]:
-        """Yield rows of as many cells as there are columns; the last one may lack some."""
-        why = " as on the first line" if self.names is None else ", as many as there are names"
-        hint = "; where commas part the columns, decimals need a point" if self.separator == "," else ""
+        """Yield rows with one cell per column; the last row may be shorter."""
+        reason = " as on the first line" if self.names is None else ", one per name"
+        hint = "; with commas as separators, use decimal points" if self.separator == "," else ""
         for row, (line, cells) in enumerate(self.rows, 1):
             if len(cells) + missing * (row == len(self.rows)) != self._columns:
-                cause = f"{self._columns} numbers expected{why}, found {len(cells)}{hint}"
+                cause = f"{self._columns} numbers expected{reason}, found {len(cells)}{hint}"
                 raise self.source.error(line, cause)
             yield line, [cell.replace(",", ".") for cell in cells]
 
 
 def is_words(text: str) -> bool:
-    """Return whether a line is of words, and none of numbers of which one is damaged.
+    """Return True if a line contains words, and is no line of numbers with a damaged one.
 
     >>> [is_words(text) for text in ("Station A", "1940 El Centro NS", "0.01 nan", "0.5 x3 1.0", "acc [g]")]
     [True, True, False, False, True]
@@ -194,7 +194,7 @@ def is_words(text: str) -> bool:
 
 
 def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> tuple[str, ...] | None:
-    """Return the names in the last line of words, if it has as many as there are columns, or is alone with marks."""
+    """Return the names in the last line of words, if it has one per column or is the only line with separators."""
     text = above[-1][1]
     separator = _separator(text)
     names = _names(text, separator)
@@ -204,47 +204,50 @@ def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> t
     fits = len(names) == len(first)
     if len(above) == 1 and (fits or separator in {";", "\t", ","} or len(names) == 1):
         return names
-    columns = [ColumnName.of(place, name) for place, name in enumerate(names)]
-    are_names = any(one.is_time for one in columns) or all(one.unit for one in columns) or separator != " "
-    return names if fits and (are_names or all(orientation(one.name) is not None for one in columns)) else None
+    columns = [ColumnName.of(index, name) for index, name in enumerate(names)]
+    are_names = any(column.is_time for column in columns) or all(column.unit for column in columns) or separator != " "
+    return names if fits and (are_names or all(orientation(column.name) is not None for column in columns)) else None
 
 
 def states_sampling(text: str) -> bool:
-    """Return whether a line speaks of a sampling, as headers of other formats do."""
+    """Return True if a line contains a sampling, as in headers of other formats."""
     return _OTHER_FORMAT.search(text[:200]) is not None
 
 
 def names_on(text: str) -> tuple[str, ...] | None:
-    """Return the names of columns that a line holds, if it holds nothing else."""
+    """Return the column names in a line; None if it contains anything else."""
     return _names(text, _separator(text)) if text and not states_sampling(text) else None
 
 
 def kind_of(unit: str) -> tuple[str | None, str]:
-    """Return what unit of acceleration a word is, and of which quantity it is one; nothing if it is no unit.
+    """Return the unit of acceleration (or None) and the quantity of a unit; an empty quantity if it is unknown.
 
     >>> kind_of("cm/s/s"), kind_of("cm/sec"), kind_of("furlong")
     (('cm/s2', 'acceleration'), (None, 'velocity'), (None, ''))
     """
-    behind = _plain(unit if unit in ACCELERATION_UNITS else unit.replace("SEC", "sec"))
-    small = _SPELT.get(behind.lower(), behind.lower())
-    if behind in ACCELERATION_UNITS or small in _OF_ANY_CASE:
-        return (behind if behind in ACCELERATION_UNITS else small), "acceleration"
+    plain = _plain(unit if unit in ACCELERATION_UNITS else unit.replace("SEC", "sec"))
+    small = _SPELT.get(plain.lower(), plain.lower())
+    if plain in ACCELERATION_UNITS or small in _OF_ANY_CASE:
+        return (plain if plain in ACCELERATION_UNITS else small), "acceleration"
     kinds = {"velocity": _VELOCITIES, "displacement": _LENGTHS, "count of a recorder": _COUNTS, "other": _OTHER_UNITS}
     return None, next((kind for kind, units in kinds.items() if small in units), "other" if small in _SECONDS else "")
 
 
 def unit_named(source: Source, line: int | None, word: str) -> str | None:
-    """Return which unit of acceleration a word is, or none; one of velocity, displacement or counts is refused."""
+    """Return the unit of acceleration of a word, or None; refuse units of velocity, displacement or counts."""
     unit, kind = kind_of(word)
     if kind in _TAKEN_FOR:
         raise source.error(
-            line, "accelerations are needed, the file states {unit}, a {quantity}", unit=word[:20], quantity=kind
+            line,
+            "accelerations required, but the file states {unit}, a {quantity}",
+            unit=word[:20],
+            quantity=kind,
         )
     return unit
 
 
 def looks_like_unit(text: str, *, square: bool = True) -> bool:
-    """Return whether a text in brackets may be a unit: no direction, no word of a remark.
+    """Return True if a text in brackets may be a unit: no direction, no remark.
 
     >>> [looks_like_unit(text) for text in ("furlong/s2", "Mg", "NS", "x", "corrected")]
     [True, True, False, False, False]
@@ -258,142 +261,152 @@ def looks_like_unit(text: str, *, square: bool = True) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ColumnName:
-    """A column by what stands above it."""
+    """A column by its heading."""
 
-    place: int  # where it is, from 0
-    text: str  # as it stands
-    name: str  # without a unit of ours
-    unit: str | None = None  # A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets
-    behind: str = ""  # what else stands in the brackets, in small letters and without exponents' marks
-    unknown_unit: str = ""  # a unit in brackets that is not known
+    index: int  # index of the column, from 0
+    text: str  # heading
+    name: str  # heading without the unit
+    unit: str | None = None  # unit in brackets, a key of `rocking.conventions.ACCELERATION_UNITS`
+    suffix: str = ""  # other text in the brackets, in lower case and without exponent signs
+    unknown_unit: str = ""  # unknown unit in brackets
 
     @classmethod
-    def of(cls, place: int, text: str) -> "ColumnName":
-        """Read what stands above a column."""
-        # as our own tables name them: acceleration_m_s2
+    def of(cls, index: int, text: str) -> "ColumnName":
+        """Return the column of a heading."""
+        # names of this package: acceleration_m_s2
         bracketed = text
         if tail := _TAIL.fullmatch(text):
             stem, unit_behind = filter(None, tail.groups())
             bracketed = f"{stem} [{unit_behind.replace('_', '/')}]"
-        found = _BRACKETS.fullmatch(bracketed)
-        if found is None:
-            return cls(place, text, text)
-        inside = (found[2] if found[2] is not None else found[3]).strip()
-        behind = _plain(inside)
-        small = _SPELT.get(behind.lower(), behind.lower())
-        unit, kind = kind_of(behind)
-        name = (found[1].strip() if kind else "") or text
+        match = _BRACKETS.fullmatch(bracketed)
+        if match is None:
+            return cls(index, text, text)
+        inside = (match[2] if match[2] is not None else match[3]).strip()
+        plain = _plain(inside)
+        small = _SPELT.get(plain.lower(), plain.lower())
+        unit, kind = kind_of(plain)
+        name = (match[1].strip() if kind else "") or text
         if not kind:  # a unit and a remark, or the capital of g
             first = re.split(r"[\s,;]", inside)[0]
             unit, kind = ("g", "acceleration") if first in {"G", "g's", "gn"} else kind_of(first)
-        unknown = inside if not kind and looks_like_unit(inside, square=found[2] is not None) else ""
-        return cls(place, text, name, unit, small, unknown)
+        unknown = inside if not kind and looks_like_unit(inside, square=match[2] is not None) else ""
+        return cls(index, text, name, unit, small, unknown)
 
     @property
     def is_time(self) -> bool:
-        """Whether it is called a time; a T may be a period, or transversal."""
+        """True if the name means time; T may be a period, or transversal."""
         words = set(re.split(r"[\W\d_]+", self.name.casefold()))
-        called = bool(words & _TIMES) or (self.name == "t" and (self.place == 0 or self.behind in _SECONDS))
-        return called and self.unit is None
+        is_named_time = bool(words & _TIMES) or (self.name == "t" and (self.index == 0 or self.suffix in _SECONDS))
+        return is_named_time and self.unit is None
 
     @property
     def is_period(self) -> bool:
-        """Whether it may be what a spectrum is drawn over."""
-        return self.behind in {*_SECONDS, "hz"} or self.name.casefold().startswith(("period", "freq"))
+        """True if the column may be the period or frequency of a spectrum."""
+        return self.suffix in {*_SECONDS, "hz"} or self.name.casefold().startswith(("period", "freq"))
 
     @property
     def is_acceleration(self) -> bool:
-        """Whether it is an acceleration, or may be one because nothing says otherwise."""
+        """True if the column is an acceleration, or no unit or name contradicts it."""
         if self.unit is not None:
             return True
-        other = self.behind in _OTHER_UNITS | _SECONDS or self.name.casefold().startswith(_OTHER_WORDS)
+        other = self.suffix in _OTHER_UNITS | _SECONDS or self.name.casefold().startswith(_OTHER_WORDS)
         return not self.is_time and not other
 
 
 @dataclass(frozen=True, slots=True)
 class NamedColumns:
-    """Which of the named columns is what."""
+    """Named columns by their quantities."""
 
     time: ColumnName | None
     accelerations: tuple[ColumnName, ...]
-    left_out: tuple[str, ...]  # what is neither
-    more_times: tuple[ColumnName, ...] = ()  # columns that are called a time as well
+    left_out: tuple[str, ...]  # names of other columns
+    more_times: tuple[ColumnName, ...] = ()  # further columns with times
 
     @classmethod
     def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
-        """Tell columns apart by their names."""
-        named = tuple(ColumnName.of(place, text) for place, text in enumerate(texts))
-        for one in named:
-            if not one.text:
-                raise source.error(None, "column {number} has no name; name it, or remove it", number=one.place + 1)
-            if not one.is_time and one.name.casefold() in {other.name.casefold() for other in named[: one.place]}:
-                raise source.error(None, "two columns are called {column!r:.60}; rename or remove one", column=one.name)
-        times = [one for one in named if one.is_time]
-        found = tuple(one for one in named if one.is_acceleration)
-        if not found:
-            kinds = {kind_of(one.behind)[1] for one in named} & _TAKEN_FOR
-            hold = f", they hold {' and '.join(sorted(kinds))}" if kinds else ""
+        """Return columns by their names."""
+        named = tuple(ColumnName.of(index, text) for index, text in enumerate(texts))
+        for column in named:
+            if not column.text:
+                raise source.error(
+                    None, "column {number} has no name; add a name, or remove the column", number=column.index + 1
+                )
+            if not column.is_time and column.name.casefold() in {
+                other.name.casefold() for other in named[: column.index]
+            }:
+                raise source.error(
+                    None, "column {column!r:.60} appears twice; rename or remove one", column=column.name
+                )
+        times = [column for column in named if column.is_time]
+        accelerations = tuple(column for column in named if column.is_acceleration)
+        if not accelerations:
+            kinds = {kind_of(column.suffix)[1] for column in named} & _TAKEN_FOR
+            quantities = f", but {' and '.join(sorted(kinds))}" if kinds else ""
             raise source.error(
-                None, "none of the columns {columns} is an acceleration in {units}{quantities}; name one such as acc "
-                "[g]", columns=_listed(named), units=_UNITS, quantities=hold,
+                None, "none of the columns {columns} is an acceleration in {units}{quantities}; use a name such as acc "
+                "[g]", columns=_listed(named), units=_UNITS, quantities=quantities,
             )  # fmt: skip
-        spectral = [one for one in named if one not in found and one.is_period]
+        spectral = [column for column in named if column not in accelerations and column.is_period]
         if not times and spectral:
             raise source.error(
                 None,
-                "{columns} may be periods of a spectrum: call it time [s] if it is that",
+                "{columns} may be periods of a spectrum; use the name time [s] for times",
                 columns=_listed(spectral),
             )
-        if not times and len(found) > 1 and any(one.unit is None for one in found):
+        if not times and len(accelerations) > 1 and any(column.unit is None for column in accelerations):
             raise source.error(
-                None, "which of {columns} is the time? Name it time [s], or write the unit behind every acceleration, "
-                "or remove all columns but one acceleration", columns=_listed(found),
+                None, "no time among {columns}; use the name time [s], or add the unit of every acceleration, or "
+                "keep only one acceleration", columns=_listed(accelerations),
             )  # fmt: skip
-        times.sort(key=lambda one: one.behind not in {"", *_SECONDS})
-        if times and times[0].behind not in {"", *_SECONDS}:
+        times.sort(key=lambda column: column.suffix not in {"", *_SECONDS})
+        if times and times[0].suffix not in {"", *_SECONDS}:
             raise source.error(
                 None,
                 Message(
-                    "{columns}: the times must be in seconds; convert them, or remove them", {"columns": _listed(times)}
+                    "{columns}: the times must be in seconds; convert or remove the column", {"columns": _listed(times)}
                 ),
             )
-        left_out = tuple(one.text for one in named if one not in found and one not in times)
-        return cls(times[0] if times else None, found, left_out, tuple(times[1:]))
+        left_out = tuple(column.text for column in named if column not in accelerations and column not in times)
+        return cls(times[0] if times else None, accelerations, left_out, tuple(times[1:]))
 
     def with_one_time(self, source: Source, values: FloatArray) -> "NamedColumns":
-        """Return these columns with one time, of which the other times must be copies."""
+        """Return these columns with one time; further times must be equal."""
         if not self.more_times or self.time is None:
             return self
-        if any((values[:, one.place] != values[:, self.time.place]).any() for one in self.more_times):
+        if any((values[:, column.index] != values[:, self.time.index]).any() for column in self.more_times):
             times = _listed([self.time, *self.more_times])
-            raise source.error(None, "{columns} are both called a time; remove all but one", columns=times)
-        return replace(self, more_times=(), left_out=(*self.left_out, *(one.text for one in self.more_times)))
+            raise source.error(None, "{columns} are both times; keep only one", columns=times)
+        return replace(self, more_times=(), left_out=(*self.left_out, *(column.text for column in self.more_times)))
 
-    def with_stated_unit(self, source: Source, unit: str | None, unknown: str, asked: str | None) -> "NamedColumns":
-        """Return these columns with a unit that words state for all; an unknown unit contradicts the requested one."""
-        own = (one.unknown_unit for one in self.accelerations if one.unknown_unit and one.unit is None)
-        unknown = next(own, unknown if unit is None else "")
-        if unknown and asked is not None and all(one.unit is None for one in self.accelerations):
+    def with_stated_unit(self, source: Source, unit: str | None, unknown: str, requested: str | None) -> "NamedColumns":
+        """Return these columns with the common unit of the header; refuse an unknown unit with a requested one."""
+        unknown_units = (
+            column.unknown_unit for column in self.accelerations if column.unknown_unit and column.unit is None
+        )
+        unknown = next(unknown_units, unknown if unit is None else "")
+        if unknown and requested is not None and all(column.unit is None for column in self.accelerations):
             raise source.error(
-                None, "the file states the unit {unit!r}, you say {requested}; known are {units}", unit=unknown[:20],
-                requested=asked, units=_UNITS,
+                None, "the unit of the file is {unit!r}, not {requested}; allowed are {units}", unit=unknown[:20],
+                requested=requested, units=_UNITS,
             )  # fmt: skip
-        if unit is None or any(one.unit is not None for one in self.accelerations):
+        if unit is None or any(column.unit is not None for column in self.accelerations):
             return self
-        return replace(self, accelerations=tuple(replace(one, unit=unit) for one in self.accelerations))
+        return replace(self, accelerations=tuple(replace(column, unit=unit) for column in self.accelerations))
 
-    def with_unit(self, source: Source, asked: str | None) -> "NamedColumns":
-        """Return the same with a unit for every acceleration."""
-        silent = [one for one in self.accelerations if one.unit is None]
-        if silent and asked is None and len(silent) < len(self.accelerations):
+    def with_unit(self, source: Source, requested: str | None) -> "NamedColumns":
+        """Return these columns with a unit for every acceleration."""
+        silent = [column for column in self.accelerations if column.unit is None]
+        if silent and requested is None and len(silent) < len(self.accelerations):
             raise source.error(
                 None,
-                "{columns} states no unit: write one behind, or remove the column" if len(silent) == 1
-                else "{columns} state no unit: write one behind, or remove the column",
+                "{columns} has no unit; add the unit to the name, or remove the column" if len(silent) == 1
+                else "{columns} have no unit; add the unit to each name, or remove the columns",
                 columns=_listed(silent), hint=unit_to_state(),
             )  # fmt: skip
-        said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
-        return replace(self, accelerations=tuple(said))
+        accelerations = (
+            replace(column, unit=acceleration_unit(source, column.unit, requested)) for column in self.accelerations
+        )
+        return replace(self, accelerations=tuple(accelerations))
 
 
 def _lines(source: Source, most: int | None) -> list[tuple[int, str]]:
@@ -415,7 +428,7 @@ def _separator(text: str) -> str:
 
 
 def _names(text: str, separator: str) -> tuple[str, ...] | None:
-    """Return the names that a line holds; None if it holds anything else, such as numbers or a damaged one."""
+    """Return the names in a line; None if it contains anything else, such as numbers."""
     if "=" in text or states_sampling(text) or len(text) > 100 * MOST_NAMED:
         return None
     text = readable(text)
@@ -426,21 +439,21 @@ def _names(text: str, separator: str) -> tuple[str, ...] | None:
     names = tuple(" ".join(cell.split()) for cell in cells)
     while names and not names[-1]:
         names = names[:-1]
-    told = [name for name in names if name]
-    good = all(_NAME.fullmatch(name) and not _NO_NAME.fullmatch(name) for name in told)
-    # alone on its line, a letter with a number is rather a damaged number than a name
-    damaged = len(told) == 1 and _DAMAGED_NUMBER.fullmatch(told[0])
-    return names if told and good and not damaged else None
+    listed = [name for name in names if name]
+    good = all(_NAME.fullmatch(name) and not _NO_NAME.fullmatch(name) for name in listed)
+    # a single letter with a number is a damaged number, not a name
+    damaged = len(listed) == 1 and _DAMAGED_NUMBER.fullmatch(listed[0])
+    return names if listed and good and not damaged else None
 
 
 def _separator_of_numbers(rows: list[str]) -> str:
-    """Return what parts rows of numbers; nothing where it may be blanks as well as commas."""
-    looked = rows[:_FIRST_ROWS]
-    if looked and ";" in looked[0]:
+    """Return the separator of rows of numbers; empty for both blanks and commas."""
+    first = rows[:_FIRST_ROWS]
+    if first and ";" in first[0]:
         return ";"
-    commas, points = ("".join(looked).count(mark) for mark in ",.")
-    if commas and not points and all(map(_DECIMAL_COMMAS.fullmatch, looked)):
-        return "\t" if "\t" in looked[0] else " "
+    commas, points = ("".join(first).count(mark) for mark in ",.")
+    if commas and not points and all(map(_DECIMAL_COMMAS.fullmatch, first)):
+        return "\t" if "\t" in first[0] else " "
     return ""
 
 
@@ -461,4 +474,4 @@ def _plain(unit: str) -> str:
 
 
 def _listed(columns: "list[ColumnName] | tuple[ColumnName, ...]") -> str:
-    return ", ".join(repr(one.text[:40]) for one in columns)
+    return ", ".join(repr(column.text[:40]) for column in columns)

@@ -1,4 +1,4 @@
-"""Words above columns of numbers, in comments or without a mark: names, unit, step, count and direction."""
+"""Header text above columns of numbers: names, unit, time step, count and direction."""
 
 import re
 from collections.abc import Sequence
@@ -97,19 +97,19 @@ _HORIZONTAL = re.compile(r"horizontal|peak|pga|max|(?<![^\W_])(?:N-?S|E-?W|[BHEL
 
 @dataclass(frozen=True)
 class HeaderWords:
-    """Statements of the words above columns; None and nothing where the words do not state a property."""
+    """Properties in the header text above columns; None or empty if missing."""
 
     names: tuple[str, ...] | None = None
     unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
-    unknown_unit: str = ""  # a unit that is stated and not known
+    unknown_unit: str = ""  # unknown unit in the header
     step: float | None = None  # [s]
     count: int | None = None
-    direction: str = ""  # direction of the component, as it is written
-    perhaps_upright: bool = False  # whether a line names the vertical, in words of which no direction is read
+    direction: str = ""  # direction of the component, as in the header
+    perhaps_upright: bool = False  # True if the header may refer to a vertical component
 
     @classmethod
     def of(cls, source: Source, lines: Sequence[tuple[int, str]], columns: int) -> "HeaderWords":
-        """Read lines of words by their places; words of velocities, displacements or spectra alone are refused."""
+        """Return the properties in lines by line index; refuse headers of velocities, displacements or spectra."""
         stated = cls()
         bare = [(line, readable(text.strip().lstrip("#% \t")[:400])) for line, text in lines]
         for line, text in bare:
@@ -147,14 +147,14 @@ class HeaderWords:
                 step = self._agreed(source, line, step, by_rate)
         unread = _NOT_UNDERSTOOD.match(text) if step is None and count == self.count else None
         if unread and not _NOT_OF_SAMPLING.search(unread[1]):
-            source.doubt(line, f"{text[:60]!r} is not understood, and not used")
+            source.doubt(line, f"{text[:60]!r} is not understood and ignored")
         return replace(self, step=self._agreed(source, line, self.step, step), count=count)
 
     @staticmethod
     def _agreed(source: Source, line: int, stated: float | None, step: float | None) -> float | None:
         if stated is not None and step is not None and abs(stated - step) > 1e-6 * stated:
             raise source.error(
-                line, "a time step of {step:g} s, and one of {stated:g} s elsewhere in the header", step=step,
+                line, "the time step {step:g} s contradicts {stated:g} s elsewhere in the header", step=step,
                 stated=stated,
             )  # fmt: skip
         return step if stated is None else stated
@@ -162,30 +162,30 @@ class HeaderWords:
     def _with_unit(self, source: Source, line: int, text: str) -> "HeaderWords":
         unit, unknown = self.unit, self.unknown_unit
         for word in (*_UNIT.findall(text), *(first or second for first, second in _UNIT_OF.findall(text))):
-            known = "g" if word == "G" else unit_named(source, line, word.rstrip(".-"))
-            unit = headers.acceleration_unit(source, unit, known) if known else unit
+            recognised = "g" if word == "G" else unit_named(source, line, word.rstrip(".-"))
+            unit = headers.acceleration_unit(source, unit, recognised) if recognised else unit
         stated = _STATED_UNIT.search(text)
         if stated and unit_named(source, line, stated[1].rstrip(".-")) is None and looks_like_unit(stated[1]):
             unknown = stated[1] if kind_of(stated[1])[1] != "other" else unknown
         return replace(self, unit=unit, unknown_unit=unknown)
 
     def _with_length(self, texts: Sequence[str]) -> "HeaderWords":
-        """SeismicHandler's files state the number of samples as LENGTH, beside DELTA."""
+        """Return the properties with the count from LENGTH, as in files of SeismicHandler with DELTA."""
         length = next((int(match[1][:9]) for text in texts if (match := _LENGTH.fullmatch(text))), None)
         has_delta = any(re.match(r"delta\s*[:=]", text, re.IGNORECASE) for text in texts)
         return replace(self, count=length) if length and has_delta and self.count is None else self
 
 
 def is_understood(text: str) -> bool:
-    """Return whether all that a line states of a sampling is read here."""
-    rest = text[:400]
+    """Return True if no unread text about the sampling remains in a line."""
+    remaining = text[:400]
     for form in _OF_SAMPLING:
-        rest = form.sub(" ", rest)
-    return not states_sampling(rest)
+        remaining = form.sub(" ", remaining)
+    return not states_sampling(remaining)
 
 
 def _seconds_in(text: str) -> float:
-    """Return the unit of time that a text states before or behind a step [s]."""
+    """Return the unit of time before or after a time step [s]."""
     small = re.search(r"(?:[\W_]|\d)(?:(m(?:illi)?s(?:ec\w*)?)|[uµμ]s|micros(?:ec\w*)?)(?![^\W_])", text, re.IGNORECASE)
     return (1e-3 if small[1] else 1e-6) if small else 1.0
 
@@ -196,19 +196,19 @@ def _decimal(source: Source, line: int, word: str) -> float:
 
 def _names_of(text: str, columns: int) -> tuple[str, ...] | None:
     names = names_on(text)
-    read = [ColumnName.of(place, name) for place, name in enumerate(names or ())]
-    # words with a unit somewhere are names if they name a time, or are accelerations all
+    read = [ColumnName.of(index, name) for index, name in enumerate(names or ())]
+    # words with units are names if one is a time, or all are accelerations
     are_names = any(column.is_time for column in read) or all(column.unit for column in read)
-    has_unit = any(kind_of(column.behind)[1] for column in read)
+    has_unit = any(kind_of(column.suffix)[1] for column in read)
     return names if len(read) == columns and are_names and has_unit else None
 
 
 def _refuse_others(source: Source, line: int, text: str) -> None:
     if _SPECTRUM.search(text):
         raise source.error(
-            line, "{entry!r}: a response spectrum is no record; motion.target= takes one", entry=text[:40]
+            line, "{entry!r} is a response spectrum, not a record; use motion.target= for spectra", entry=text[:40]
         )
     if _RECORDER_COUNTS.search(text):
         raise source.error(
-            line, "{entry!r}: counts of a recorder are no accelerations; divide them first", entry=text[:40]
+            line, "{entry!r} contains counts of a recorder; convert them to accelerations first", entry=text[:40]
         )

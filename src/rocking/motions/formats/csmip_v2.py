@@ -1,4 +1,4 @@
-"""CSMIP Volume 2: corrected accelerograms, one channel after another, each with velocity and displacement."""
+"""CSMIP Volume 2: corrected accelerograms by channel, with velocity and displacement."""
 
 import re
 from typing import ClassVar
@@ -17,12 +17,12 @@ _BLOCK = re.compile(
     r"\s*(\d+)\s+POINTS OF (ACCEL|VELOC|DISPL) DATA EQUALLY SPACED AT\s+(\S+?)\s*SEC[.,]?\s*(.*)", re.IGNORECASE
 )
 _PEAK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=\s*(\S+)\s+CM/SEC/SEC\s+AT\s+(\S+)\s+SEC\b.*", re.IGNORECASE)
-_SAYS_PEAK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=", re.IGNORECASE)
+_PEAK_MARK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=", re.IGNORECASE)
 _POINTS = re.compile(r"\s*(\d+)\s+POINTS OF INSTRUMENT", re.IGNORECASE)
 _TEXT_LINES, _HEADER_LINES = 25, 45
 _STEP, _PEAKS = 60, {"ACCEL": (64, 65), "VELOC": (66, 67), "DISPL": (68, 69)}
 _COUNTS = {"ACCEL": 52, "VELOC": 63, "DISPL": 65}
-_LEAST_DECIMALS = 2  # of a peak that older files round, and print with a zero behind
+_MIN_DECIMALS = 2  # older files round the peak and add a zero
 
 
 class CsmipV2(RecordFormat):
@@ -32,20 +32,20 @@ class CsmipV2(RecordFormat):
     title: ClassVar[str] = "CSMIP Volume 2 (corrected), California Geological Survey"
     suffixes: ClassVar[tuple[str, ...]] = (".v2",)
     notes: ClassVar[str] = (
-        "Layout: CSMIP's standard tape format, report OSMS 85-03. Verified on a file of 1983 with three channels of "
-        "unequal length and on one of 1979. Count, step and peak of the acceleration are checked; what velocity and "
-        "displacement contradict is a warning. Newer files that state a format such as (8f10.6) follow the public "
-        "documentation; no real one was at hand."
+        "Layout: standard tape format of CSMIP, report OSMS 85-03. Verified with a file of 1983 with three channels of "
+        "unequal length and a file of 1979. Count, step and peak of the acceleration are checked; contradictions of "
+        "velocity and displacement give warnings. Newer files with a format such as (8f10.6) follow the public "
+        "documentation; no real file was available."
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether it begins as a corrected accelerogram with blocks of acceleration."""
+        """Return True if the file begins as a corrected accelerogram with blocks of acceleration."""
         if not source.is_text or not _TITLE.match(source.lines[0]):
             return False
         return any(_BLOCK.fullmatch(text) for text in source.lines[:100])
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, a component for each channel, named by its direction, or CHAN 1 where these repeat."""
+        """Return the record, one component per channel, named by its direction, or CHAN 1 for repeated directions."""
         unit = headers.acceleration_unit(source, "cm/s2", units)
         channels = headers.read_channels(source, _TITLE.match, lambda line: _channel(source, line, unit, time_step))
         return headers.record_of_channels(self.name, channels, headers.names_in(channels[0][0][2:]))
@@ -64,42 +64,42 @@ def _channel(source: Source, first: int, unit: str, time_step: float | None) -> 
         raise source.error(first, "CORRECTED ACCELEROGRAM and {count} header lines expected", count=_HEADER_LINES)
     wholes, reals = fixed(source, first + _TEXT_LINES, 100, 16, 5)
     figures, line = fixed(source, reals, 100, 8, 10)
-    part: Component | None = None
-    while line < len(source.lines) and (found := _BLOCK.fullmatch(source.lines[line])):
-        if found[2].upper() == "ACCEL":
-            if part is not None:
-                raise source.error(line, "ACCEL stated twice")
+    component: Component | None = None
+    while line < len(source.lines) and (block := _BLOCK.fullmatch(source.lines[line])):
+        if block[2].upper() == "ACCEL":
+            if component is not None:
+                raise source.error(line, "ACCEL appears twice")
             values, own, rounding, line = _checked_block(source, line, wholes, figures, reals)
             step = headers.step_between_samples(source, own, time_step)
             _check_texts(source, first, header[:_TEXT_LINES], values, step, rounding)
-            part = Component("", values, unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
+            component = Component("", values, unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
             continue
-        # not kept, and so no reason to refuse what is
+        # velocity and displacement are not used: contradictions only give warnings
         with source.doubting():
             _checked_block(source, line, wholes, figures, reals)
         line += 1
         while line < len(source.lines) and not source.begins(line, "/&") and not _BLOCK.fullmatch(source.lines[line]):
             line += 1
-    if part is None:
+    if component is None:
         raise source.error(line, "POINTS OF ACCEL DATA EQUALLY SPACED AT ... SEC expected")
     if not source.begins(line, "/&"):
         raise source.expected(line, "END OF DATA FOR CHANNEL")
-    return (header, header[7][:200], part), line + 1
+    return (header, header[7][:200], component), line + 1
 
 
 def _checked_block(
     source: Source, line: int, wholes: FloatArray, figures: FloatArray, reals: int
 ) -> tuple[FloatArray, float, float, int]:
-    """Return samples, their step, how far their peak may be from a stated one, and the line after them."""
+    """Return samples, time step, tolerance of the peak, and the index of the line after the samples."""
     kind, values, step, form, after = _block(source, line)
     check_count(source, int(wholes[_COUNTS[kind]]), values.size)
-    # the header has the step in three decimals
+    # the step in the header has three decimals
     if abs(figures[_STEP] - step) > 5.1e-4:
-        stated = f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {step:g} s"
+        stated = f"the time step is {figures[_STEP]:g} s in the header and {step:g} s in the {kind} data"
         raise source.error(None, stated)
-    at, peak = (float(figures[place]) for place in _PEAKS[kind])
+    at, peak = (float(figures[index]) for index in _PEAKS[kind])
     largest = word(source, line + 1, int(np.abs(values).argmax()), *form)
-    rounding = headers.printed_rounding(word(source, reals, _PEAKS[kind][1], 8, 10), largest, _LEAST_DECIMALS)
+    rounding = headers.printed_rounding(word(source, reals, _PEAKS[kind][1], 8, 10), largest, _MIN_DECIMALS)
     check_peak(source, peak, values, rounding, f"{kind} peak")
     check_peak_time(source, at, values, step, rounding)
     return values, step, rounding, after
@@ -132,7 +132,7 @@ def _check_texts(
 ) -> None:
     for line, text in enumerate(texts, first):
         peak, points = _PEAK.fullmatch(text), _POINTS.match(text)
-        if _SAYS_PEAK.match(text) and not peak:
+        if _PEAK_MARK.match(text) and not peak:
             raise source.error(
                 line, "PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {entry!r}", entry=text[:60]
             )
@@ -146,8 +146,8 @@ def _check_texts(
 
 
 def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
-    part = record.components[row]
-    step, chan = part.time_step, f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
+    component = record.components[row]
+    step, chan = component.time_step, f"CHAN {row + 1:2d}: {one_line(component.name, 20)}"
     moves = {"ACCEL": values}
     moves["VELOC"] = (np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1])))) * step).round(3)
     speed = moves["VELOC"]

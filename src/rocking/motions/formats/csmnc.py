@@ -1,6 +1,6 @@
-"""CSMNC, China's strong-motion network: 16 lines of header, then one component, 8 numbers a line.
+"""CSMNC, strong-motion network of China: 16 header lines, then one component with 8 numbers per line.
 
-Layout: the header itself, on two files of 2012 (ETNA recorders).
+Layout: from the headers of two files of 2012 (ETNA recorders).
 """
 
 import re
@@ -22,7 +22,7 @@ class Csmnc(RecordFormat):
     name: ClassVar[str] = "csmnc"
     title: ClassVar[str] = "China Strong Motion Networks Center (CSMNC)"
     suffixes: ClassVar[tuple[str, ...]] = (".dat",)
-    notes: ClassVar[str] = "Verified on two files of 2012. Uncorrected files: neither baseline nor instrument."
+    notes: ClassVar[str] = "Verified with two files of 2012. No correction of baseline or instrument."
     marks: ClassVar[tuple[str, ...]] = (
         r"COMP\. ", r"(UN)?CORRECTED \w+ +UNIT:", r"NO\. OF POINTS:", "PEAK VALUE:", "PRE-EVENT TIME:",
     )  # fmt: skip
@@ -48,17 +48,17 @@ class Csmnc(RecordFormat):
         texts = {"date": source.lines[1], "event": source.lines[2], "station": header_text(source, first, "STATION:")}
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata_of(**texts))
         record = side_by_side(source, about, first, int(points[1]), (peak[1],))
-        (part,) = record.components
-        # the time is cut at its last digit, not rounded
+        (component,) = record.components
+        # the time is truncated at its last digit, not rounded
         slack = 2.0 * headers.half_digit(peak[1])
-        headers.check_peak_time(source, float(peak[2]), part.acceleration, step, slack)
+        headers.check_peak_time(source, float(peak[2]), component.acceleration, step, slack)
         headers.check_duration(source, float(peak[3]), int(points[1]), step, headers.half_digit(peak[3]))
         return record
 
     def write(self, record: Record) -> bytes:
         """Return a file of one component, in cm/s2."""
         (values,) = headers.in_unit(record, self.name, "cm/s2", 1)
-        part, top = record.components[0], int(np.abs(values).argmax())
+        component, top = record.components[0], int(np.abs(values).argmax())
         event, station, date = (record.text(key, 60, "unknown") for key in ("event", "station", "date"))
         lines = [
             *[
@@ -70,11 +70,11 @@ class Csmnc(RecordFormat):
                 f"STATION: {station}",
                 "SITE CONDITION:",
             ],
-            *["INSTRUMENT TYPE:", "OBSERVING POINT:", f"COMP. {one_line(part.name, 20)}"],
+            *["INSTRUMENT TYPE:", "OBSERVING POINT:", f"COMP. {one_line(component.name, 20)}"],
             "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC",
-            f"NO. OF POINTS:  {values.size}  EQUALLY SPACED INTERVALS OF:  {part.time_step:.9f}  SEC",
-            f"PEAK VALUE: {values[top]:.3f}   AT   {top * part.time_step:.2f} SEC    DURATION:  "
-            f"{values.size * part.time_step:.2f} SEC",
+            f"NO. OF POINTS:  {values.size}  EQUALLY SPACED INTERVALS OF:  {component.time_step:.9f}  SEC",
+            f"PEAK VALUE: {values[top]:.3f}   AT   {top * component.time_step:.2f} SEC    DURATION:  "
+            f"{values.size * component.time_step:.2f} SEC",
             *["PRE-EVENT TIME:  0  SEC", "CSMNC", ""],
             *numbers.in_columns(values, 8, "{: .6E} "),
         ]

@@ -1,7 +1,6 @@
-"""CSN, Chile's national seismological centre: comments in Spanish, then one sample of one component a line.
+"""CSN, national seismological centre of Chile: comments in Spanish, then one sample of one component per line.
 
-Layout: as the programs behind Chile's SIBER-RISK strong-motion database read the centre's files, in m/s2; no file of
-the centre was at hand.
+Layout: from the programs of the strong-motion database SIBER-RISK of Chile, in m/s2, without a test file of the centre.
 """
 
 import re
@@ -21,8 +20,8 @@ class Csn(RecordFormat):
     title: ClassVar[str] = "Centro Sismologico Nacional (CSN), Chile"
     suffixes: ClassVar[tuple[str, ...]] = (".txt",)
     notes: ClassVar[str] = (
-        "In m/s2 by its description; no file of the centre was at hand. It states no peak, and where it states no "
-        "number of samples a damaged end can pass."
+        "In m/s2 by its description; not verified with a real file. The files contain no peak. Without the number of "
+        "samples, a damaged end is not detected."
     )
     marks: ClassVar[tuple[str, ...]] = (r"# *Tiempo", r"# *Tasa de muestreo", r"# *Esta")
     top: ClassVar[int] = 20
@@ -31,36 +30,36 @@ class Csn(RecordFormat):
         first = after(source, "#", self.top)
         for line, text in enumerate(source.lines[:first]):
             if not text.startswith("#"):
-                raise source.error(line, "a comment expected, before the first sample")
+                raise source.error(line, "comment expected before the first sample")
         unit = headers.acceleration_unit(source, "m/s2", units)
         rate = float(
             header_value(source, first, r"# *Tasa de muestreo[^:\d]*:?", r"(\d+\.?\d*)\s*(?:muestras|Hz|sps)\S*.*")[1]
         )
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
-        found = sum(1 for text in source.lines[first:] if text.strip())
-        # not in the description; where a line speaks of samples it must be understood
+        count = sum(1 for text in source.lines[first:] if text.strip())
+        # not in the description; a line about samples must match
         if any(re.search(r"\bmuestras\b", text) and "Tasa" not in text for text in source.lines[:first]):
             stated = header_value(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
-            headers.check_count(source, int(stated), found)
-        place = header_text(source, first, r"# *Esta\S*").split()
-        name = place[-1] if len(place) > 1 else "acceleration"
+            headers.check_count(source, int(stated), count)
+        words = header_text(source, first, r"# *Esta\S*").split()
+        name = words[-1] if len(words) > 1 else "acceleration"
         metadata = metadata_of(
-            station=place[0].strip(",") if place else "",
+            station=words[0].strip(",") if words else "",
             starttime=header_text(source, first, r"# *Tiempo[^:]*:").rstrip("Z"),
         )
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)
-        return side_by_side(source, about, first, found)
+        return side_by_side(source, about, first, count)
 
     def write(self, record: Record) -> bytes:
         """Return a file of one component, in m/s2."""
         (values,) = headers.in_unit(record, self.name, "m/s2", 1)
-        part = record.components[0]
+        component = record.components[0]
         lines = [
             f"# Tiempo de inicio: {record.text('starttime', 40, '1970-01-01T00:00:00')}Z",
-            f"# Tasa de muestreo: {1.0 / part.time_step:.12g} muestras/segundo",
+            f"# Tasa de muestreo: {1.0 / component.time_step:.12g} muestras/segundo",
             f"# Numero de muestras: {values.size}",
             f"# Estacion: {record.text('station', 10, 'unknown').replace(' ', '_')} Componente: "
-            f"{one_line(part.name, 20).replace(' ', '_')}",
+            f"{one_line(component.name, 20).replace(' ', '_')}",
             *(f"{value:.9E}" for value in values.tolist()),
         ]
         return "\n".join([*lines, ""]).encode("latin-1")

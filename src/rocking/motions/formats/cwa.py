@@ -1,6 +1,6 @@
 """Free-field records of the Central Weather Administration, Taiwan: a header of ``#`` lines, then time and U, N, E.
 
-Checked on five files of the 2018 Hualien earthquakes.
+Verified with five files of the 2018 Hualien earthquakes.
 """
 
 import re
@@ -20,13 +20,13 @@ _AMPLITUDE = r"#AmplitudeMAX\. ([UNE]): *(-?\d+\.\d+) *~ *(-?\d+\.\d+)"
 
 
 class Cwa(RecordFormat):
-    """Taiwan's four columns, three components."""
+    """Files of Taiwan with times and three components."""
 
     name: ClassVar[str] = "cwa"
     title: ClassVar[str] = "Central Weather Administration (CWA, CWB), Taiwan"
     suffixes: ClassVar[tuple[str, ...]] = (".dat", ".txt")
     notes: ClassVar[str] = (
-        "The header's DCoffset(corr) says that the recorder's offset was removed by the publisher. Both extremes of "
+        "DCoffset(corr) in the header means that the publisher removed the offset of the recorder. Both extremes of "
         "each component are checked."
     )
     marks: ClassVar[tuple[str, ...]] = (
@@ -40,12 +40,12 @@ class Cwa(RecordFormat):
             raise source.error(None, "the line #Data: is missing")
         if "".join(source.lines[first].split()) != "#Data:4F10.3":
             raise source.error(first, "#Data: 4F10.3 expected, found {entry!r}", entry=source.lines[first].strip()[:40])
-        said = _header(source, first)
-        if not re.match(r"gal\b", said["AmplitudeUnit"]):
-            raise source.error(None, "the unit gal expected, found {unit!r}", unit=said["AmplitudeUnit"][:40])
+        header = _header(source, first)
+        if not re.match(r"gal\b", header["AmplitudeUnit"]):
+            raise source.error(None, "unit gal expected, found {unit!r}", unit=header["AmplitudeUnit"][:40])
         unit = headers.acceleration_unit(source, "gal", units)
-        rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
-        seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
+        rate = numbers.number(source, 0, header["SampleRate(Hz)"], "sample rate")
+        seconds = numbers.number(source, 0, header["RecordLength(sec)"], "record length")
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
         count = headers.samples_of(source, None, rate, seconds, "record length")
         last = len(source.lines)
@@ -57,28 +57,29 @@ class Cwa(RecordFormat):
         late = np.flatnonzero(np.abs(table[:, 0] - table[0, 0] - np.arange(len(table)) * step) > 1.02e-3)
         if late.size:
             raise source.error(
-                first + 1 + int(late[0]), "time {time:g} s is off the step of {step:g} s",
+                first + 1 + int(late[0]), "time {time:g} s does not match the time step {step:g} s",
                 time=float(table[late[0], 0]), step=step,
             )  # fmt: skip
         peaks = _check_amplitudes(source, first, table)
         components = (
             Component(name, table[:, k].copy(), unit, step, peaks[name]) for k, name in enumerate(_COMPONENTS, 1)
         )
-        return Record(self.name, tuple(components), "\n".join(source.lines[: first + 1]), said)
+        return Record(self.name, tuple(components), "\n".join(source.lines[: first + 1]), header)
 
     def write(self, record: Record) -> bytes:
         """Return a file of three components."""
         samples = headers.in_unit(record, self.name, "gal", 3)
-        rows = dict(zip((part.name for part in record.components), samples, strict=True))
-        steps = {part.time_step for part in record.components}
+        rows = dict(zip((component.name for component in record.components), samples, strict=True))
+        steps = {component.time_step for component in record.components}
         if set(rows) != set(_COMPONENTS) or len({row.size for row in rows.values()}) != 1 or len(steps) != 1:
             raise RecordError(
-                "CWA holds U, N and E of equal length and step, got {components}", components=", ".join(rows)[:60]
+                "CWA requires U, N and E with equal length and time step, got {components}",
+                components=", ".join(rows)[:60],
             )
         step = steps.pop()
         table = np.round(np.column_stack([rows[name] for name in _COMPONENTS]), _DECIMALS) + 0.0
         if np.abs(table).max() >= 1e5 or len(table) * step >= 1e5:
-            raise RecordError("CWA holds accelerations below 1e5 gal and times below 1e5 s; wrong unit?")
+            raise RecordError("CWA allows accelerations below 1e5 gal and times below 1e5 s; check the unit")
         stated = ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
         lines = ["#Earthquake Information", *(f"#{key}: {record.text(key, 60, '0')}" for key in stated)]
         lines += [f"#RecordLength(sec): {len(table) * step:.12g}", f"#SampleRate(Hz): {1.0 / step:.12g}"]
@@ -91,30 +92,30 @@ class Cwa(RecordFormat):
 
 
 def _header(source: Source, first: int) -> dict[str, str]:
-    said: dict[str, str] = {}
+    values: dict[str, str] = {}
     for line, text in enumerate(source.lines[:first]):
         if text.strip() and not text.startswith("#"):
             raise source.error(line, "header lines begin with #, found {entry!r}", entry=text.strip()[:40])
         key, colon, value = text[1:].partition(": ")
         if colon and not key.startswith("AmplitudeMAX"):
-            if key in said:
-                raise source.error(line, "{key!r} is stated twice", key=key[:40])
-            said[key] = value.strip()
+            if key in values:
+                raise source.error(line, "{key!r} appears twice", key=key[:40])
+            values[key] = value.strip()
     for key in ("RecordLength(sec)", "SampleRate(Hz)", "AmplitudeUnit"):
-        if key not in said:
+        if key not in values:
             raise source.error(None, "the header line #{key}: is missing", key=key)
     if not any(line.split() == _SEQUENCE.split() for line in source.lines[:first]):
         raise source.error(None, "the header line {key} is missing", key=_SEQUENCE)
-    return said
+    return values
 
 
 def _check_amplitudes(source: Source, first: int, table: FloatArray) -> dict[str, float]:
-    found: dict[str, float] = {}
+    peaks: dict[str, float] = {}
     for line, text in enumerate(source.lines[:first]):
         if not text.startswith("#AmplitudeMAX"):
             continue
         stated = re.fullmatch(_AMPLITUDE, text.strip())
-        if stated is None or stated[1] in found:
+        if stated is None or stated[1] in peaks:
             raise source.error(
                 line, "both extremes of one component expected, found {entry!r}", entry=text.strip()[:60]
             )
@@ -122,7 +123,7 @@ def _check_amplitudes(source: Source, first: int, table: FloatArray) -> dict[str
         high, low = float(stated[2]), float(stated[3])
         headers.check_stated(source, high, float(row.max()), headers.half_digit(stated[2]), f"maximum {stated[1]}")
         headers.check_stated(source, low, float(row.min()), headers.half_digit(stated[3]), f"minimum {stated[1]}")
-        found[stated[1]] = max(abs(high), abs(low))
-    if len(found) != len(_COMPONENTS):
-        raise source.error(None, "the extremes of U, N and E are not all stated")
-    return found
+        peaks[stated[1]] = max(abs(high), abs(low))
+    if len(peaks) != len(_COMPONENTS):
+        raise source.error(None, "extremes of U, N or E are missing")
+    return peaks

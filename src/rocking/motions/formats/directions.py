@@ -1,4 +1,4 @@
-"""The direction of a component: up, down, an azimuth, or unclear, by a name, a code, angles or a file name."""
+"""Directions of components (up, down, azimuth or unclear) from names, codes, angles or file names."""
 
 import re
 from collections.abc import Sequence
@@ -8,10 +8,10 @@ from rocking.motions.motion import ORIENTATION
 
 UP, DOWN, UNCLEAR = "up", "down", "unclear"
 Direction = str | float | None
-"""``up``, ``down``, ``unclear`` (perhaps vertical or inclined), an azimuth [degree]; None where nothing is stated."""
+"""``up``, ``down``, ``unclear`` (perhaps vertical or inclined), an azimuth [degree], or None without a direction."""
 
 KEY = ORIENTATION
-_INCLINED = 45.0, 5.0  # from the vertical, from the level: components between these angles are inclined [degree]
+_INCLINED = 45.0, 5.0  # limits of inclined components, from vertical and horizontal [degree]
 _UPRIGHT = re.compile(
     r"\+?(?:UP[CX]?|UPWARDS?|VERTI[CK]\w*|VERT?|VRT|VTCL?|V|Z|U|U-?D\d?|U[-/]D|UP[-/ ]?(?:TO[-/ ])?DO?W?N|"
     r"D[ÜU][ŞS]EY|[AC]Z)\+?",
@@ -40,34 +40,34 @@ _ENDINGS = re.compile(
 
 
 def orientation(name: str) -> Direction:
-    """Return ``up``, ``down``, ``unclear``, or the azimuth of a component by its name [degree]; None if not stated.
+    """Return ``up``, ``down``, ``unclear``, or the azimuth of a component by its name [degree], or None.
 
     >>> [orientation(name) for name in ("UP", "HNE", "N-S", "N20W", "090", "T", "acc_z [g]", "HNU")]
     ['up', 90.0, 0.0, 340.0, 90.0, None, 'up', 'unclear']
     """
     bare = " ".join(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name[:200]).split()) or " ".join(name[:200].split())
     words = _WHOLE_WORDS.findall(bare)
-    if (found := _of_word(bare)) is not None or not words:
-        return found
+    if (direction := _of_word(bare)) is not None or not words:
+        return direction
     if len(words) == 1:
         return _of_word(re.sub(r"^(?:acc\w*?|a)(?=[xyz]$)", "", words[0], flags=re.IGNORECASE))
-    found = _of_words(words)
-    return found if found is not None else _of_word(bare.split()[0])
+    direction = _of_words(words)
+    return direction if direction is not None else _of_word(bare.split()[0])
 
 
 def _of_word(word: str) -> Direction:
     upper = word.upper()
     if _DOWN.fullmatch(upper) or _UPRIGHT.fullmatch(upper):
         return DOWN if _DOWN.fullmatch(upper) else UP
-    if found := _AZIMUTH.fullmatch(upper):
-        # COSMOS and CSMIP have codes above 360: 400 is up, 500 in older files
-        return float(found[1]) % 360.0 if float(found[1]) <= 360.0 else UNCLEAR
+    if azimuth := _AZIMUTH.fullmatch(upper):
+        # codes above 360 in COSMOS and CSMIP: 400 is up, 500 in older files
+        return float(azimuth[1]) % 360.0 if float(azimuth[1]) <= 360.0 else UNCLEAR
     if compass := _COMPASS.fullmatch(upper):
         return _of_compass(*compass.groups())
     # SEED Reference Manual 2.4, appendix A: A, B, C and U, V, W are inclined, 3 is the third of three
     if seed := _SEED.fullmatch(word):
-        known: dict[str, Direction] = {"Z": UP, "N": 0.0, "E": 90.0}
-        return known.get(seed[1], None if seed[1] in "12RTXY" else UNCLEAR)
+        directions: dict[str, Direction] = {"Z": UP, "N": 0.0, "E": 90.0}
+        return directions.get(seed[1], None if seed[1] in "12RTXY" else UNCLEAR)
     return _SIDES.get(upper)
 
 
@@ -77,11 +77,11 @@ def _of_compass(north: str, degrees: str, east: str) -> Direction:
 
 
 def _of_words(words: Sequence[str]) -> Direction:
-    """Return what several words state; unclear where they contradict one another."""
-    found = [(word, _of_word(word)) for word in words if not word.isdigit()]
-    stated = [(word, side) for word, side in found if side is not None and (len(word) > 1 or word in "zZnNeE")]
-    if all(_BESIDE.fullmatch(word) for word, side in found if side is None):
-        stated = [(word, side) for word, side in found if side is not None and not _BESIDE.fullmatch(word)]
+    """Return the direction of several words; unclear if they contradict each other."""
+    pairs = [(word, _of_word(word)) for word in words if not word.isdigit()]
+    stated = [(word, side) for word, side in pairs if side is not None and (len(word) > 1 or word in "zZnNeE")]
+    if all(_BESIDE.fullmatch(word) for word, side in pairs if side is None):
+        stated = [(word, side) for word, side in pairs if side is not None and not _BESIDE.fullmatch(word)]
     sides = {side if isinstance(side, str) else "level" for _, side in stated}
     if len(sides) > 1:
         return UNCLEAR
@@ -106,19 +106,19 @@ def of_angles(azimuth: float | None, from_up: float) -> Direction:
     return UNCLEAR
 
 
-def both(said: Direction, measured: Direction) -> Direction:
-    """Return the direction that two statements give: the second one, unclear where one is vertical and one is not.
+def both(stated: Direction, measured: Direction) -> Direction:
+    """Return the second of two directions, the first if it is None; unclear if only one is vertical.
 
     >>> both("up", "down"), both("up", 90.0), both(None, 90.0), both(0.0, None)
     ('down', 'unclear', 90.0, 0.0)
     """
-    if said is None or measured is None:
-        return said if measured is None else measured
-    return measured if isinstance(said, str) == isinstance(measured, str) else UNCLEAR
+    if stated is None or measured is None:
+        return stated if measured is None else measured
+    return measured if isinstance(stated, str) == isinstance(measured, str) else UNCLEAR
 
 
 def settled(sides: Sequence[Direction]) -> list[Direction]:
-    """Return the directions of the components of one record, of which three determine what one of them leaves unclear.
+    """Return the directions of the components of one record, with an unclear one resolved by the other two.
 
     >>> settled(["up", "unclear", "unclear"]), settled([0.0, 90.0, "unclear"]), settled(["unclear"] * 3)
     (['up', None, None], [0.0, 90.0, 'up'], ['unclear', 'unclear', 'unclear'])
@@ -134,7 +134,7 @@ def settled(sides: Sequence[Direction]) -> list[Direction]:
 
 
 def of_file_name(name: str) -> Direction:
-    """Return ``up`` or ``down`` where the name of a file ends in a word for it; None otherwise.
+    """Return ``up`` or ``down`` if the name of a file ends with such a word; else None.
 
     >>> [of_file_name(name) for name in ("RSN8_ELC-UP.AT2", "A-CAT-DWN.AT2.smc", "group.txt", "NIG018UD.AT2", "x.UD2")]
     ['up', 'down', None, 'up', 'up']
@@ -143,23 +143,23 @@ def of_file_name(name: str) -> Direction:
     if ending and not re.search(r"\.V\d$", name, re.IGNORECASE):
         return UP
     stem = _ENDINGS.sub("", name)
-    if found := re.search(rf"(?:^|[-_. ])({_IN_NAME})$", stem, re.IGNORECASE):
-        return DOWN if _DOWN.fullmatch(found[1]) else UP
+    if match := re.search(rf"(?:^|[-_. ])({_IN_NAME})$", stem, re.IGNORECASE):
+        return DOWN if _DOWN.fullmatch(match[1]) else UP
     if re.search(r"\.[FGDCESHBMLVURPTQ][HLGMN]Z\.", f".{name}."):
         return UP
-    found = re.search(r"[0-9a-z](UP|DO?WN|VERT|UD|[BHE][HN]Z)$", stem) or (
+    match = re.search(r"[0-9a-z](UP|DO?WN|VERT|UD|[BHE][HN]Z)$", stem) or (
         re.search(r"[A-Z]{2}(UP|DWN|VERT|[BHE][HN]Z)$", stem) if stem.isupper() else None
     )
-    return None if found is None else DOWN if _DOWN.fullmatch(found[1]) else UP
+    return None if match is None else DOWN if _DOWN.fullmatch(match[1]) else UP
 
 
 def as_text(side: Direction) -> str:
-    """Return a direction as text of the metadata."""
+    """Return a direction as text for metadata."""
     return "" if side is None else side if isinstance(side, str) else f"{side:g}"
 
 
 def of_metadata(metadata: Any) -> Direction:
-    """Return the direction that metadata hold, by its own key or by the name of the component."""
+    """Return the direction in metadata, from its key or the name of the component."""
     if KEY in metadata:
         text = metadata[KEY]
         return None if not text else text if text in {UP, DOWN, UNCLEAR} else float(text)

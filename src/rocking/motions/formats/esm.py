@@ -1,4 +1,4 @@
-"""ESM, the European strong-motion database: DYNA 1.2 ASCII, 64 lines of ``KEY: value`` and one value a line."""
+"""ESM, European strong-motion database: DYNA 1.2 ASCII, 64 lines of ``KEY: value`` and one value per line."""
 
 import re
 from typing import ClassVar
@@ -36,7 +36,7 @@ _KEPT = {
     "high cut Hz": "HIGH_CUT_FREQUENCY_HZ",
     "baseline": "BASELINE_CORRECTION",
 }
-# the keys of DYNA 1.2 in their order; a writer leaves blank what it does not know
+# the ordered keys of DYNA 1.2; unknown values stay empty
 # fmt: off
 _KEYS = (
     "EVENT_NAME", "EVENT_ID", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS", "EVENT_LATITUDE_DEGREE",
@@ -63,59 +63,58 @@ class Esm(RecordFormat):
     title: ClassVar[str] = "ESM ASCII (DYNA 1.2), European strong-motion database"
     suffixes: ClassVar[tuple[str, ...]] = (".asc",)
     notes: ClassVar[str] = (
-        "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked "
-        "against the header; a file that does not state its peak in its own unit is refused. Velocity, displacement "
-        "and spectra (DATA_TYPE) are refused."
+        "Verified with one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak must match "
+        "the header. The peak is required in the unit of the data. Only DATA_TYPE ACCELERATION is allowed."
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the header has the keys of DYNA."""
+        """Return True if the header has the keys of DYNA."""
         if not source.is_text or not source.lines[0].startswith("EVENT_NAME:"):
             return False
         head = [text.partition(":")[0] for text in source.lines[:_MOST_KEYS]]
         return "NDATA" in head or "SAMPLING_INTERVAL_S" in head
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, of one component, named by its stream, such as HNN."""
+        """Return the record with one component, named by its stream, such as HNN."""
         keys = _header(source)
         line, kind = _value(source, keys, "DATA_TYPE")
         if kind.upper() != "ACCELERATION":
             raise source.error(
                 line,
-                "only ACCELERATION can be read, DATA_TYPE is {quantity!r}; take the .ACC. file",
+                "DATA_TYPE must be ACCELERATION, got {quantity!r}; use the .ACC. file",
                 quantity=kind[:40],
             )
         step = headers.step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)
-        at, word = _value(source, keys, "NDATA")
-        count = whole(source, at, word, "number of samples", 2)
-        at, word = _value(source, keys, "UNITS")
+        line, word = _value(source, keys, "NDATA")
+        count = whole(source, line, word, "number of samples", 2)
+        line, word = _value(source, keys, "UNITS")
         if word.lower() not in _UNITS:
             raise source.error(
-                at, "UNITS must be one of {units}, found {unit!r}", units=", ".join(_UNITS), unit=word[:40]
+                line, "UNITS must be one of {units}, found {unit!r}", units=", ".join(_UNITS), unit=word[:40]
             )
         unit = headers.acceleration_unit(source, _UNITS[word.lower()], units)
         values = free(source, len(keys), len(source.lines), 1)[:, 0]
         headers.check_count(source, count, values.size)
         peak = _check_peaks(source, keys, values, step, unit)
         metadata = metadata_of(**{name: keys[key][1] for name, key in _KEPT.items() if key in keys})
-        part = Component(metadata.get("channel", "acceleration"), values, unit, step, peak)
-        return Record(self.name, (part,), "\n".join(source.lines[: len(keys)]), metadata)
+        component = Component(metadata.get("channel", "acceleration"), values, unit, step, peak)
+        return Record(self.name, (component,), "\n".join(source.lines[: len(keys)]), metadata)
 
     def write(self, record: Record) -> bytes:
         """Return the content of an ESM file, in cm/s^2 with 6 decimals."""
         (values,) = headers.in_unit(record, self.name, "cm/s2", 1)
         values = values.round(6)
-        part = record.components[0]
+        component = record.components[0]
         largest = int(abs(values).argmax())
         stated = {
             **{key: record.text(name, 200) for name, key in _KEPT.items()},
-            "SAMPLING_INTERVAL_S": f"{part.time_step:.9f}",
+            "SAMPLING_INTERVAL_S": f"{component.time_step:.9f}",
             "NDATA": str(values.size),
-            "DURATION_S": f"{values.size * part.time_step:.6f}",
-            "STREAM": one_line(part.name, 40),
+            "DURATION_S": f"{values.size * component.time_step:.6f}",
+            "STREAM": one_line(component.name, 40),
             "UNITS": "cm/s^2",
             "PGA_CM/S^2": f"{values[largest]:.6f}",
-            "TIME_PGA_S": f"{largest * part.time_step:.6f}",
+            "TIME_PGA_S": f"{largest * component.time_step:.6f}",
             "HEADER_FORMAT": "DYNA 1.2",
             "DATA_TYPE": "ACCELERATION",
         }
@@ -126,17 +125,17 @@ class Esm(RecordFormat):
 def _header(source: Source) -> dict[str, tuple[int, str]]:
     keys: dict[str, tuple[int, str]] = {}
     for line, text in enumerate(source.lines[:_MOST_KEYS] if source.is_text else []):
-        found = _KEY.fullmatch(text.rstrip())
-        if found is None:
+        match = _KEY.fullmatch(text.rstrip())
+        if match is None:
             break
-        if found[1] in keys:
-            raise source.error(line, "{key} is stated twice", key=found[1])
-        keys[found[1]] = (line, (found[2] or "").strip())
+        if match[1] in keys:
+            raise source.error(line, "{key} appears twice", key=match[1])
+        keys[match[1]] = (line, (match[2] or "").strip())
     if not keys:
-        raise source.error(0, "a header of lines KEY: value expected")
+        raise source.error(0, "header lines KEY: value expected")
     if keys.get("HEADER_FORMAT", (0, ""))[1] == "DYNA 1.2" and len(keys) != len(_KEYS):
         raise source.error(
-            len(keys), "a DYNA 1.2 header has {expected} lines KEY: value, found {count}", expected=len(_KEYS),
+            len(keys), "{expected} header lines KEY: value expected for DYNA 1.2, found {count}", expected=len(_KEYS),
             count=len(keys),
         )  # fmt: skip
     return keys
@@ -144,7 +143,7 @@ def _header(source: Source) -> dict[str, tuple[int, str]]:
 
 def _value(source: Source, keys: dict[str, tuple[int, str]], key: str) -> tuple[int, str]:
     if key not in keys:
-        raise source.error(None, "the header has no line {key}", key=key)
+        raise source.error(None, "header line {key} is missing", key=key)
     return keys[key]
 
 
@@ -158,16 +157,16 @@ def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: Float
     if duration is not None:
         digits = len(keys["DURATION_S"][1].partition(".")[2])
         headers.check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
-    # the one line that a wrong unit contradicts: a file without it cannot be trusted
+    # only this line confirms the unit, and is therefore required
     label = _PEAKS[unit]
     _, word = _value(source, keys, label)
     peak = _number(source, keys, label)
     if peak is None:
-        raise source.error(keys[label][0], "{key} states no number, and nothing else confirms unit and data", key=label)
-    # the peak has the 6 decimals of the data; one with fewer than 3 would check nothing
+        raise source.error(keys[label][0], "{key} must contain a number, which confirms unit and data", key=label)
+    # the peak has the 6 decimals of the data; fewer than 3 give no check
     rounding = min(1.1e-3, 1.1 * 10.0 ** -len(word.partition(".")[2]))
     headers.check_peak(source, peak, values, rounding, label)
-    at = _number(source, keys, "TIME_PGA_S")
-    if at is not None:
-        headers.check_peak_time(source, at, values, step, rounding)
+    peak_time = _number(source, keys, "TIME_PGA_S")
+    if peak_time is not None:
+        headers.check_peak_time(source, peak_time, values, step, rounding)
     return abs(peak)

@@ -1,4 +1,4 @@
-"""Options of single record files within a set: unit, time step, format, lines to skip, by the names of the files."""
+"""Options of single record files in a set, by file name: unit, time step, format, number of lines to skip."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -10,17 +10,17 @@ from rocking.errors import InvalidValueError, located
 from rocking.motions.formats.reader import format_named
 
 KEYS = ("units", "time_step", "format", "skip")
-"""Options that one file of a set may have of its own."""
+"""Allowed options of a single file in a set."""
 
 Options = tuple[tuple[str, Any], ...]
 """Options of one file, sorted by key."""
 
 FileOptions = Mapping[Any, Mapping[str, Any]]
-"""Options by file name, a path-like; the name may include folders, as many as are needed to name one file."""
+"""Options by file name, a path-like; the name may include folders, to be unique."""
 
 
 def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict[str, Any]]:
-    """Return the options of the files of a set by path; refuse a name that is not that of exactly one file.
+    """Return the options of the files of a set by path; each name must match exactly one file.
 
     >>> by_path({"b.txt": {"units": "g"}}, [Path("set/a.txt"), Path("set/b.txt")])[Path("set/b.txt")]
     {'units': 'g'}
@@ -34,11 +34,11 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
         matches = [path for path in by_name.get(Path(name).name, []) if path.parts[-len(parts) :] == parts]
         if not matches:
             near = checks.nearest(str(name), list(by_name))
-            raise InvalidValueError("files: {file} is no file of this set", file=f"{str(name)!r:.80}", hint=near)
+            raise InvalidValueError("files: no file {file} in this set", file=f"{str(name)!r:.80}", hint=near)
         if len(matches) > 1 or matches[0] in options:
-            both = ", ".join(map(str, matches)) if len(matches) > 1 else f"{matches[0]} has two entries"
+            both = ", ".join(map(str, matches)) if len(matches) > 1 else f"two entries for {matches[0]}"
             raise InvalidValueError(
-                "files: {file!r:.80} must name one file of this set, got {matches:.300}", file=str(name), matches=both
+                "files: {file!r:.80} must match one file of this set, got {matches:.300}", file=str(name), matches=both
             )
         with located("files"), located(name, "file"):
             options[matches[0]] = _checked(stated)
@@ -46,16 +46,16 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
 
 
 def together(path: Path, listed: Mapping[str, Any], stated: Mapping[str, Any], source: str) -> Options:
-    """Return the options of a file in a list: those of its row and those stated for the file, which may not clash."""
+    """Return the options of a file in a list, from its row and from the options of the file; refuse a repeated key."""
     if twice := sorted(set(listed) & set(stated)):
         raise InvalidValueError(
-            "{file} has {key} in its row and in files: remove one", file=path.name, key=twice[0]
+            "{key} of {file} appears in its row and in files; remove one", file=path.name, key=twice[0]
         ).at(source)
     return tuple(sorted({**listed, **stated}.items()))
 
 
 def _checked(stated: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options of one file, of known keys and values."""
+    """Return the validated options of one file."""
     options = {key: value for key, value in stated.items() if value is not None}
     for key, value in options.items():
         match checks.one_of("key", key, KEYS):

@@ -1,4 +1,4 @@
-"""Readers of foreign code in a program of their own: what crashes, hangs or eats memory there is a refusal here."""
+"""Readers from other packages in separate processes: crashes, time and memory limits become errors."""
 
 import atexit
 import json
@@ -17,27 +17,27 @@ from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import foreign_worker
 from rocking.motions.formats.record import Source
 
-TO_START = 60.0  # time to start and to load the reader, on a busy machine [s]
+TO_START = 60.0  # allowed time to start and load the reader [s]
 _MOST_IDLE = 2
 _TROUBLE = {"missing", "error", "memory", "died"}
 
 
 class ForeignReader:
-    """A reader in another process, kept for the next file; with limits of time [s] and, on Linux, memory [bytes]."""
+    """A reader in another process for several files, with limits of time [s] and, on Linux, memory [bytes]."""
 
     def __init__(
         self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30
     ) -> None:
         self.script, self.needs, self.module = script, needs, module
         self.seconds, self.memory = seconds, memory
-        # by process: one that was forked must not talk to its parent's reader
+        # by process: a forked process must not use the reader of its parent
         self._idle: dict[int, list[subprocess.Popen[bytes]]] = {}
         self._lock = threading.Lock()
         atexit.register(self.close)
 
     def answer(self, source: Source, request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
-        """Return what the reader says of a file."""
-        parts = [json.dumps(request).encode(), *files]
+        """Return the result of the reader for a file: a description and arrays."""
+        message = [json.dumps(request).encode(), *files]
         while True:
             worker, fresh = self._taken()
             slow = threading.Event()
@@ -50,11 +50,11 @@ class ForeignReader:
             timer.daemon = True
             timer.start()
             try:
-                foreign_worker.send(worker.stdin, parts)  # type: ignore[arg-type]
-                said, *arrays = foreign_worker.receive(worker.stdout)  # type: ignore[arg-type]
+                foreign_worker.send(worker.stdin, message)  # type: ignore[arg-type]
+                header, *arrays = foreign_worker.receive(worker.stdout)  # type: ignore[arg-type]
             except (OSError, EOFError) as error:
                 _end(worker)
-                # one that has read other files before may have been damaged by these
+                # previous files may have damaged a worker that is not new
                 if fresh or slow.is_set():
                     raise self._refusal(source, {"slow": True} if slow.is_set() else {"died": 0}) from error
             except BaseException:
@@ -62,15 +62,15 @@ class ForeignReader:
                 raise
             else:
                 self._give_back(worker)
-                found = json.loads(said)
-                if found.keys() & _TROUBLE:
-                    raise self._refusal(source, found)
-                return found, [np.load(BytesIO(part), allow_pickle=False) for part in arrays]
+                answer = json.loads(header)
+                if answer.keys() & _TROUBLE:
+                    raise self._refusal(source, answer)
+                return answer, [np.load(BytesIO(array), allow_pickle=False) for array in arrays]
             finally:
                 timer.cancel()
 
     def close(self) -> None:
-        """End the processes that wait for files."""
+        """End idle processes."""
         with self._lock:
             waiting = self._idle.pop(os.getpid(), [])
         for worker in waiting:
@@ -81,21 +81,21 @@ class ForeignReader:
             waiting = self._idle.setdefault(os.getpid(), [])
             if waiting:
                 return waiting.pop(), False
-        # -P: the folder of the worker holds modules of the names of Python's own
+        # -P: the folder of the worker contains modules with names of the standard library
         command = [sys.executable, "-P", foreign_worker.__file__, str(self.script)]
         command += [str(self.seconds), str(self.memory)]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
         quiet = getattr(subprocess, "CREATE_NO_WINDOW", 0)
         try:
-            made = subprocess.Popen(
+            worker = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment,
                 creationflags=quiet,
             )  # fmt: skip
         except OSError as error:
             raise RecordError(
-                "no process for {format} can be started: {reason}", format=self.needs, reason=str(error)
+                "cannot start a process for {format}: {reason}", format=self.needs, reason=str(error)
             ) from error
-        return made, True
+        return worker, True
 
     def _give_back(self, worker: subprocess.Popen[bytes]) -> None:
         with self._lock:
@@ -105,29 +105,27 @@ class ForeignReader:
                 return
         _end(worker)
 
-    def _refusal(self, source: Source, said: dict[str, Any]) -> Exception:
-        if "missing" in said:
-            return MissingExtraError(how_to_install(source.name, self.module, ImportError(name=said["missing"])))
-        if "error" in said:
+    def _refusal(self, source: Source, trouble: dict[str, Any]) -> Exception:
+        if "missing" in trouble:
+            return MissingExtraError(how_to_install(source.name, self.module, ImportError(name=trouble["missing"])))
+        if "error" in trouble:
             return source.error(
-                None, "{format} cannot read it: {reason:.180}", format=self.needs,
-                reason=said["message"] or said["error"],
+                None, "{format} cannot read the file: {reason:.180}", format=self.needs,
+                reason=trouble["message"] or trouble["error"],
             )  # fmt: skip
-        if "memory" in said:
+        if "memory" in trouble:
             return source.error(
-                None, "{format} needs more than {memory:g} GiB for it", format=self.needs, memory=self.memory / 2**30,
-                hint="damaged?",
+                None, "{format} requires more than {memory:g} GiB for the file", format=self.needs,
+                memory=self.memory / 2**30, hint="the file may be damaged",
             )  # fmt: skip
-        died = said.get("died")
-        if "slow" in said or died == getattr(signal, "SIGALRM", None):
+        died = trouble.get("died")
+        if "slow" in trouble or died == getattr(signal, "SIGALRM", None):
             return source.error(
-                None, "{format} takes more than {time:g} s for it", format=self.needs, time=self.seconds,
-                hint="damaged?",
+                None, "{format} requires more than {time:g} s for the file", format=self.needs, time=self.seconds,
+                hint="the file may be damaged",
             )  # fmt: skip
-        name = signal.Signals(died).name if died in set(signal.Signals) else "its process ended"
-        return source.error(
-            None, "{format} crashes on it ({signal}): the file is damaged", format=self.needs, signal=name
-        )
+        name = signal.Signals(died).name if died in set(signal.Signals) else "the process ended"
+        return source.error(None, "{format} crashes ({signal}): the file is damaged", format=self.needs, signal=name)
 
 
 def _end(worker: subprocess.Popen[bytes]) -> None:

@@ -1,7 +1,7 @@
-"""The other side of `foreign`: a program of its own, which keeps a reader loaded and lets it loose on files.
+"""Worker program of `foreign`: it loads a reader once and reads files.
 
-On Linux each file has a process of its own, forked from the one that has loaded the reader, with limits of time and
-memory; elsewhere the files share one, which ends after the first that it refuses. Nothing of this package is imported.
+On Linux each file has its own process, forked from the process with the loaded reader, with limits of time and memory.
+On other systems one process reads all files, and ends after the first error. It imports nothing of this package.
 """
 
 import io
@@ -20,7 +20,7 @@ import numpy as np
 Answer = Callable[..., tuple[dict[str, Any], Sequence[Any]]]
 
 FORKS = sys.platform == "linux"
-"""Whether each file has a process of its own; elsewhere a fork after libraries have been loaded is not safe."""
+"""True if each file has its own process; on other systems a fork with loaded libraries is not safe."""
 
 
 def send(channel: BinaryIO, parts: Sequence[bytes]) -> None:
@@ -36,24 +36,24 @@ def receive(channel: BinaryIO) -> list[bytes]:
     """Read the parts of a message."""
 
     def exactly(count: int) -> bytes:
-        found = channel.read(count)
-        if len(found) != count:
+        data = channel.read(count)
+        if len(data) != count:
             raise EOFError
-        return found
+        return data
 
     (count,) = struct.unpack("<I", exactly(4))
     return [exactly(struct.unpack("<Q", exactly(8))[0]) for _ in range(count)]
 
 
 def _answered(answer: Answer, parts: list[bytes]) -> list[bytes]:
-    """Return the answer as parts: a description, arrays in NumPy's format; or what went wrong."""
+    """Return the result as parts: a description and arrays in NumPy format, or an error."""
     request, *files = parts
     try:
-        said, arrays = answer(json.loads(request), *files)
+        description, arrays = answer(json.loads(request), *files)
         rows = [io.BytesIO() for _ in arrays]
         for row, values in zip(rows, arrays, strict=True):
             np.save(row, values, allow_pickle=False)
-        return [json.dumps(said).encode(), *(row.getvalue() for row in rows)]
+        return [json.dumps(description).encode(), *(row.getvalue() for row in rows)]
     except MemoryError:
         return [json.dumps({"memory": True}).encode()]
     except Exception as error:  # noqa: BLE001 - foreign code raises nearly any class
@@ -63,14 +63,14 @@ def _answered(answer: Answer, parts: list[bytes]) -> list[bytes]:
 def _apart(
     answer: Answer, parts: list[bytes], seconds: float, memory: int, channels: tuple[BinaryIO, BinaryIO]
 ) -> list[bytes]:
-    """Return the answer of a process of its own, or which signal ended it."""
+    """Return the result of a forked process, or the signal that ended it."""
     back, forth = os.pipe()
     child = os.fork()
     if child == 0:
         code = 1
         try:
-            # a child that outlives this process must not keep its pipes open
-            for number in (back, *(each.fileno() for each in channels)):
+            # a child that outlives this process must close its pipes
+            for number in (back, *(pipe.fileno() for pipe in channels)):
                 os.close(number)
             _limit(seconds, memory)
             with os.fdopen(forth, "wb") as channel:
@@ -80,16 +80,16 @@ def _apart(
             os._exit(code)
     os.close(forth)
     with os.fdopen(back, "rb") as channel:
-        whole = channel.read()
+        message = channel.read()
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    return receive(io.BytesIO(whole)) if status == 0 else [json.dumps({"died": -status}).encode()]
+    return receive(io.BytesIO(message)) if status == 0 else [json.dumps({"died": -status}).encode()]
 
 
 def _limit(seconds: float, memory: int) -> None:
     import resource
 
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})  # a parent may have held it back
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})  # a parent may have blocked it
     signal.setitimer(signal.ITIMER_REAL, seconds)
     loaded = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (loaded + memory, loaded + memory))
@@ -97,9 +97,9 @@ def _limit(seconds: float, memory: int) -> None:
 
 
 def main(script: str, seconds: float, memory: int) -> None:
-    """Answer messages until there are no more; limits of time [s] and of memory beyond the loaded reader's [bytes]."""
+    """Process messages to the end of input; limits of time [s] and of memory beyond the loaded reader [bytes]."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # what libraries print must not come between the messages
+    # output of libraries must not mix with the messages
     channels = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in range(3):

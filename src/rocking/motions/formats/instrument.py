@@ -1,4 +1,4 @@
-"""The response of an instrument, taken out of a record by what a StationXML file says of it."""
+"""Removal of the instrument response from a record with a StationXML file."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,24 +13,32 @@ from rocking.motions.formats.sac import OBSPY, check_stations
 from rocking.motions.formats.stations import Places, channel_at, sensitivity_of, station_sources
 from rocking.motions.motion import GroundMotion, checked_motion
 
-ABOVE = 1.25  # the edge of the band goes to zero at so many times its upper end, and at half its lower end [-]
+ABOVE = 1.25  # upper end of the band edge / upper frequency; the lower edge ends at half the lower frequency [-]
 
 
 def without_response(motion: GroundMotion, stations: Places, low: float, high: float) -> GroundMotion:
-    """Return a record, divided by its sensitivity already, without the rest of its instrument's response.
+    """Return a record, already divided by its sensitivity, without the frequency dependence of its instrument.
 
-    Between `low` and `high` [Hz] it is the acceleration of the ground; beyond, cosine edges end at half and 1.25 times.
-    Stations are StationXML files or folders of them, of which the one that describes the channel is taken.
+    The result is the acceleration of the ground from `low` to `high` [Hz], with cosine edges to 0.5 `low` and 1.25
+    `high`. Stations are StationXML files or folders of them; one of them must describe the channel.
     """
     motion = checked_motion(motion)
     if "sensitivity" not in motion.metadata:
         raise InvalidValueError(
-            "response is for counts of a recorder, as miniSEED files hold, got {motion}", motion=f"{motion!r:.100}"
+            "response requires counts of a recorder, as in miniSEED files, got {motion}", motion=f"{motion!r:.100}"
         )
     nyquist = 0.5 / motion.time_step
     low = checks.within("low", low, 0.0, nyquist, unit="Hz", open_low=True, open_high=True)
-    high = checks.within("high", high, low, nyquist / ABOVE, unit="Hz", open_low=True, hint="1.25 of it below Nyquist")
-    count = 1 << (2 * len(motion) - 1).bit_length()  # as many zeros behind it at least: nothing wraps round
+    high = checks.within(
+        "high",
+        high,
+        low,
+        nyquist / ABOVE,
+        unit="Hz",
+        open_low=True,
+        hint="1.25 times this frequency must be below Nyquist",
+    )
+    count = 1 << (2 * len(motion) - 1).bit_length()  # zero padding against circular wrap
     about = {key: motion.metadata.get(key, "") for key in ("network", "station", "location", "channel", "starttime")}
     response, file = _relative_response(about, stations, motion.time_step, count)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
@@ -41,8 +49,8 @@ def without_response(motion: GroundMotion, stations: Places, low: float, high: f
         response, file = _relative_response(about, stations, motion.time_step, count)
         fields["vertical"] = _without(motion.vertical, response, edge, count)
         files.append(file)
-    by = " and ".join(dict.fromkeys(files))
-    return motion.changed(f"response of the instrument by {by} removed from {low:g} to {high:g} Hz", **fields)
+    sources = " and ".join(dict.fromkeys(files))
+    return motion.changed(f"response of the instrument by {sources} removed from {low:g} to {high:g} Hz", **fields)
 
 
 def _without(samples: FloatArray, response: Any, edge: FloatArray, count: int) -> FloatArray:
@@ -51,22 +59,26 @@ def _without(samples: FloatArray, response: Any, edge: FloatArray, count: int) -
 
 
 def _relative_response(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
-    """Return the response of a channel over its overall sensitivity at FFT frequencies; its file with its SHA-256."""
+    """Return the response of a channel / sensitivity at FFT frequencies, and its file with the SHA-256."""
     sources = station_sources(stations, [about["station"]])
     name = ".".join(about[key] for key in ("network", "station", "location", "channel"))
-    found, arrays = OBSPY.answer(
-        sources[0], {"channel": about, "step": step, "count": count}, *(one.content for one in sources)
+    answer, arrays = OBSPY.answer(
+        sources[0],
+        {"channel": about, "step": step, "count": count},
+        *(station_source.content for station_source in sources),
     )
-    check_stations(found, sources)
-    channel, source = channel_at(sources[0], found["channels"], sources, name, about["starttime"])
-    sensitivity_of(replace(source, doubts=[]), channel, name)  # of acceleration, or refused
+    check_stations(answer, sources)
+    channel, source = channel_at(sources[0], answer["channels"], sources, name, about["starttime"])
+    sensitivity_of(replace(source, doubts=[]), channel, name)  # refuses other quantities than acceleration
     if "array" not in channel:
         raise source.error(
-            None, "{station}: the StationXML states no stages of a response; ask for level=response", station=name
+            None,
+            "{station}: the StationXML contains no response stages; request the file with level=response",
+            station=name,
         )
     return arrays[channel["array"]], f"{source.name}, SHA-256 {source.sha256}"
 
 
-def _edge(place: FloatArray) -> FloatArray:
-    cosine = cosine_sine(np.asarray(np.pi * np.clip(place, 0.0, 1.0), dtype=np.float64))[0]
+def _edge(position: FloatArray) -> FloatArray:
+    cosine = cosine_sine(np.asarray(np.pi * np.clip(position, 0.0, 1.0), dtype=np.float64))[0]
     return np.asarray(0.5 * (1.0 - cosine), dtype=np.float64)  # Eq. 154

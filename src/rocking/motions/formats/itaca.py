@@ -1,6 +1,6 @@
-"""ITACA's older accelerations, as GEM and Chile's and Italy's groups pass them on: ten lines of header, five columns.
+"""Older accelerations of ITACA, also distributed by GEM: ten header lines, then five columns.
 
-Layout: the header itself, on a file of 2009 (processed, DPC network); numbers of 14 characters without blanks between.
+Layout: from the header of a file of 2009 (processed, DPC network); numbers have 14 characters without separators.
 """
 
 from typing import ClassVar
@@ -27,7 +27,7 @@ class Itaca(RecordFormat):
     name: ClassVar[str] = "itaca"
     title: ClassVar[str] = "ITACA / GEM (.acc), Italy"
     suffixes: ClassVar[tuple[str, ...]] = (".acc",)
-    notes: ClassVar[str] = "Verified on one file of 2009, in m/s2. ITACA's DYNA files are the format esm."
+    notes: ClassVar[str] = "Verified with one file of 2009, in m/s2. The DYNA files of ITACA have the format esm."
     marks: ClassVar[tuple[str, ...]] = (
         r"Orientation\s*:", r"Time Increment \(s\)\s*:", r"Number of Data\s*:", r"PGA \(m/s/s\)\s*:",
         r"Acc\w+ time series in",
@@ -50,11 +50,11 @@ class Itaca(RecordFormat):
     def write(self, record: Record) -> bytes:
         """Return a file of one component, in m/s2 with 8 digits."""
         (values,) = headers.in_unit(record, self.name, "m/s2", 1)
-        part = record.components[0]
+        component = record.components[0]
         texts = {word.replace("\\", ""): record.text(key, 100) for key, word in _KEYS.items()}
         texts |= {
-            "Orientation": one_line(part.name, 20),
-            "Time Increment (s)": f"{part.time_step:.9f}",
+            "Orientation": one_line(component.name, 20),
+            "Time Increment (s)": f"{component.time_step:.9f}",
             "Number of Data": str(values.size),
             "PGA (m/s/s)": f"{np.abs(values).max():.7E}",
         }

@@ -1,8 +1,8 @@
-"""K-NET and KiK-net ASCII of NIED, Japan: 17 lines of header, then counts of the recorder, 8 on a line.
+"""K-NET and KiK-net ASCII of NIED, Japan: 17 header lines, then counts of the recorder, 8 per line.
 
-Counts times the scale factor are accelerations with the recorder's offset. The mean of the whole record is removed:
-the header's largest acceleration is after that, and without it peaks come out many times too large. Checked on 48 files
-of both networks.
+Counts times the scale factor are accelerations with the offset of the recorder. The mean of the record is removed,
+as for the largest acceleration in the header; otherwise the peaks are many times too large. Verified with 48 files of
+both networks.
 """
 
 import math
@@ -38,75 +38,75 @@ class Knet(RecordFormat):
     title: ClassVar[str] = "K-NET and KiK-net ASCII of NIED, Japan"
     suffixes: ClassVar[tuple[str, ...]] = (".ns", ".ew", ".ud", ".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2")
     notes: ClassVar[str] = (
-        "The mean of the whole record is removed, as for the header's largest acceleration; nothing is filtered or "
-        "corrected otherwise. KiK-net directions 1 to 3 are in the borehole, 4 to 6 at the surface."
+        "The mean of the record is removed, as for the largest acceleration in the header; there is no filter or other "
+        "correction. KiK-net directions 1 to 3 are in the borehole, 4 to 6 at the surface."
     )
     marks: ClassVar[tuple[str, ...]] = tuple(re.escape(_KEYS[k]) for k in (0, 10, 13, 14))
     top: ClassVar[int] = len(_KEYS) + 3
 
     def resembles(self, source: Source) -> bool:
-        """Return whether several keys of its header are there."""
+        """Return True if the file has several header keys of this format."""
         top = source.lines[: self.top] if source.is_text else []
         return sum(any(line.startswith(key) for line in top) for key in _KEYS) > 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram without its mean."""
-        said = _header(source)
+        fields = _header(source)
         unit = headers.acceleration_unit(source, "gal", units)
-        rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", said[10])[0]
-        seconds = numbers.number(source, 11, said[11], "duration")
+        rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", fields[10])[0]
+        seconds = numbers.number(source, 11, fields[11], "duration")
         step = headers.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
-        gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", said[13])
+        gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", fields[13])
         if not gal or not counts_per_gal:
-            raise source.error(13, "scale factor must be above zero, found {entry!r}", entry=said[13][:40])
+            raise source.error(13, "scale factor must be above zero, found {entry!r}", entry=fields[13][:40])
         counts = _counts(source)
         headers.check_count(source, headers.samples_of(source, 11, rate, seconds, "duration"), counts.size)
         raw = counts * (gal / counts_per_gal)
         values = raw - raw.mean()
-        peak = numbers.number(source, 14, said[14], "largest acceleration")
-        what = "largest acceleration after removal of the mean"
-        headers.check_peak(source, peak, values, headers.half_digit(said[14]), what)
-        metadata = {key.strip(". "): text for key, text in zip(_KEYS, said, strict=True) if text}
+        peak = numbers.number(source, 14, fields[14], "largest acceleration")
+        quantity = "largest acceleration after removal of the mean"
+        headers.check_peak(source, peak, values, headers.half_digit(fields[14]), quantity)
+        metadata = {key.strip(". "): text for key, text in zip(_KEYS, fields, strict=True) if text}
         metadata |= {"processing": _REMOVED, "mean removed": f"{raw.mean():.6g} gal"}
-        number = said[12] if said[12] in _SIDES else ""
+        number = fields[12] if fields[12] in _SIDES else ""
         if number:
             metadata["position"] = "borehole" if number < "4" else "surface"
         if number and number < "4":
-            source.doubt(12, f"direction {number} is of the instrument in the borehole, below the surface")
-        name = _SIDES.get(number, said[12]) or "unnamed"
-        # numbers are directions 1 to 6, and no azimuths
+            source.doubt(12, f"direction {number} belongs to the instrument in the borehole, below the surface")
+        name = _SIDES.get(number, fields[12]) or "unnamed"
+        # numbers are directions 1 to 6, not azimuths
         odd = {directions.KEY: directions.UNCLEAR} if not number and re.fullmatch(r"\d\d?", name) else {}
         component = Component(name, values, unit, step, abs(peak), odd)
         return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return a K-NET file with a scale factor that suits the record's peak."""
-        (given,) = headers.in_unit(record, self.name, "gal", 1)
-        part = record.components[0]
-        rate = round(1.0 / part.time_step)
-        if rate < 1 or abs(rate * part.time_step - 1.0) > 1e-9 or given.size % rate:
+        """Return a K-NET file with a scale factor for the peak of the record."""
+        (samples,) = headers.in_unit(record, self.name, "gal", 1)
+        component = record.components[0]
+        rate = round(1.0 / component.time_step)
+        if rate < 1 or abs(rate * component.time_step - 1.0) > 1e-9 or samples.size % rate:
             raise RecordError(
-                "K-NET holds whole seconds at a whole number of samples a second, got {count} samples at {step:g} s",
-                count=given.size, step=part.time_step,
+                "K-NET requires whole seconds and whole samples per second, got {count} samples at {step:g} s",
+                count=samples.size, step=component.time_step,
             )  # fmt: skip
-        largest = float(np.abs(given).max())
+        largest = float(np.abs(samples).max())
         if largest > 1e8:
             raise RecordError(
-                "K-NET holds accelerations up to 1e8 gal, got {largest:g}", largest=largest, hint="wrong unit?"
+                "K-NET allows accelerations up to 1e8 gal, got {largest:g}", largest=largest, hint="check the unit"
             )
         gal = max(1, math.ceil(2.0 * largest))
-        counts = np.rint(given * (_FULL_SCALE / gal))
+        counts = np.rint(samples * (_FULL_SCALE / gal))
         if abs(counts.mean()) > 0.5:
             raise RecordError(
-                "K-NET records lose their mean when read, got a mean of {mean:g} gal", mean=float(given.mean()),
-                hint="remove it",
+                "K-NET requires a zero mean, got {mean:g} gal", mean=float(samples.mean()),
+                hint="remove the mean",
             )  # fmt: skip
         peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
-        known = {key: record.text(key.strip(". "), 60) for key in _KEYS}
-        known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}
-        known |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
-        known["Dir."] = one_line(part.name, 20)
-        lines = [f"{key:<18}{known[key]}" for key in _KEYS]
+        values = {key: record.text(key.strip(". "), 60) for key in _KEYS}
+        values |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(samples.size // rate)}
+        values |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
+        values["Dir."] = one_line(component.name, 20)
+        lines = [f"{key:<18}{values[key]}" for key in _KEYS]
         lines += numbers.in_columns(counts, _PER_LINE, "{:8.0f} ")
         return ("\n".join(lines) + "\n").encode("latin-1")
 
@@ -114,7 +114,7 @@ class Knet(RecordFormat):
 def _header(source: Source) -> list[str]:
     if not source.is_text or len(source.lines) <= len(_KEYS):
         raise source.error(
-            None, "a K-NET header of {expected} lines expected, found {count} lines", expected=len(_KEYS),
+            None, "K-NET header of {expected} lines expected, found {count} lines", expected=len(_KEYS),
             count=len(source.lines),
         )  # fmt: skip
     for line, key in enumerate(_KEYS):
@@ -126,10 +126,10 @@ def _header(source: Source) -> list[str]:
 
 
 def _stated(source: Source, line: int, form: str, text: str) -> list[float]:
-    found = re.fullmatch(form, text)
-    if found is None:
+    match = re.fullmatch(form, text)
+    if match is None:
         raise source.error(line, "{key} cannot be understood: {entry!r}", key=_KEYS[line], entry=text[:40])
-    return [numbers.number(source, line, word) for word in found.groups()]
+    return [numbers.number(source, line, word) for word in match.groups()]
 
 
 def _counts(source: Source) -> FloatArray:
@@ -144,7 +144,7 @@ def _counts(source: Source) -> FloatArray:
             rows[-1][0], "at most {most} counts expected, found {count}", most=_PER_LINE, count=len(rows[-1][1])
         )
     counts = [
-        numbers.whole(source, line, word, "count of the recorder", least=-_LARGEST_COUNT)
+        numbers.whole(source, line, word, "count of the recorder", minimum=-_LARGEST_COUNT)
         for line, words in rows
         for word in words
     ]

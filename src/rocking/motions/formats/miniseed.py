@@ -1,9 +1,9 @@
-"""The exchange format of seismology, miniSEED, through ObsPy.
+"""The exchange format of seismology, miniSEED, read with ObsPy.
 
-It holds counts of the recorder, which are no accelerations: StationXML files, named by the user or in the folder that
-the user names, turn them into m/s2 by the overall sensitivity of the channel, after their mean is removed: it is the
-recorder's offset (0.02 g in the file that this was checked on). Whole responses are not removed: above the corner of
-the sensor the sensitivity is no longer true. Checked on one channel of the 2019 Ridgecrest earthquake.
+The files contain counts of the recorder. StationXML files convert them to m/s2 with the overall sensitivity of the
+channel. The mean, the offset of the recorder (0.02 g in the test file), is removed first. The frequency dependence of
+the response is not removed: the sensitivity is not valid above the corner frequency of the sensor. Verified with one
+channel of the 2019 Ridgecrest earthquake.
 """
 
 import re
@@ -22,32 +22,32 @@ from rocking.motions.formats.record import Component, Record, RecordFormat, Sour
 from rocking.motions.formats.sac import Trace, need_obspy, read_traces, trace_of
 from rocking.motions.formats.stations import Places, channel_at, sensitivity_of, station_sources
 
-_HEAD = re.compile(rb"\d{6}[DRQM][ \0](.{5})")  # of a record; behind it the code of the station
+_HEAD = re.compile(rb"\d{6}[DRQM][ \0](.{5})")  # start of a record and station code
 _ENCODING = 1000
-"""Blockette that says how samples are encoded, and how long a record is (SEED Reference Manual, version 2.4)."""
+"""Blockette with the encoding of samples and the length of a record (SEED Reference Manual, version 2.4)."""
 _SI = "SI"
-"""Location code of real numbers in m/s2: what the format leaves to whoever writes, and no network is known to use."""
+"""Location code of real numbers in m/s2 in files of this package; no known network uses it."""
 STATIONS = Message(
-    "name their StationXML file or a folder of such files, {process}, or the folder that holds both",
+    "add their StationXML file or a folder of such files with {process}, or use a folder with both files",
     {"process": Option("motion.process", "response:stations=FILE.xml")},
 )
-"""How the counts of a recorder become accelerations."""
+"""Hint about the conversion of counts to accelerations."""
 
-_LEAST_BITS = {0: 8.0, 1: 16.0, 2: 24.0, 3: 32.0, 4: 32.0, 5: 64.0, 10: 8.0, 11: 32.0 / 7.0, 19: 8.0}
-"""Least number of bits that a sample takes, by encoding: text, whole numbers, real numbers, Steim 1, 2 and 3."""
+_MIN_BITS = {0: 8.0, 1: 16.0, 2: 24.0, 3: 32.0, 4: 32.0, 5: 64.0, 10: 8.0, 11: 32.0 / 7.0, 19: 8.0}
+"""Smallest number of bits per sample, by encoding: text, integers, real numbers, Steim 1, 2 and 3."""
 
 
 class MiniSeed(RecordFormat):
-    """The miniSEED format, with the overall sensitivity of a StationXML file if one is named."""
+    """The miniSEED format, with the overall sensitivity of an optional StationXML file."""
 
     name: ClassVar[str] = "miniseed"
     title: ClassVar[str] = "miniSEED, version 2"
     suffixes: ClassVar[tuple[str, ...]] = (".mseed", ".miniseed", ".ms")
     states_unit: ClassVar[bool] = False
     notes: ClassVar[str] = (
-        "Whole numbers are counts: a StationXML file turns them into m/s2, and their offset is removed. "
-        "Real numbers may be accelerations: say units=; those written here are in m/s2, which their location code SI "
-        "says. Files with gaps or overlaps are refused. It needs ObsPy."
+        "Integers are counts: a StationXML file converts them to m/s2, and their offset is removed. Real numbers may "
+        "be accelerations: add units=; files of this package are in m/s2, with the location code SI. Files with gaps "
+        "or overlaps raise an error. ObsPy is required."
     )
 
     def __init__(self) -> None:
@@ -55,16 +55,16 @@ class MiniSeed(RecordFormat):
 
     @classmethod
     def with_response(cls, stations: Places) -> "MiniSeed":
-        """Return a reader that divides counts by the overall sensitivity of their channel in m/s2.
+        """Return a reader that converts counts to m/s2 with the overall sensitivity of the channel.
 
         Stations are StationXML files, or folders of them.
         """
-        made = cls()
-        made._stations = stations
-        return made
+        reader = cls()
+        reader._stations = stations
+        return reader
 
     def recognises(self, source: Source) -> bool:
-        """Return whether a miniSEED record stands at the beginning."""
+        """Return True if the file begins with a miniSEED record."""
         return re.match(rb"\d{6}[DRQM][ \0]", source.content) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
@@ -73,14 +73,16 @@ class MiniSeed(RecordFormat):
         _check_room(source)
         stations: list[Source] = []
         if self._stations is not None:
-            wanted = {code.decode("latin-1").strip() for code in _HEAD.findall(source.content)}
-            stations = station_sources(self._stations, wanted)
+            station_codes = {code.decode("latin-1").strip() for code in _HEAD.findall(source.content)}
+            stations = station_sources(self._stations, station_codes)
         traces = read_traces(source, "MSEED", stations)
         ids = [trace.id for trace in traces]
         if len(set(ids)) != len(ids):
             twice = next(name for name in ids if ids.count(name) > 1)
             raise source.error(
-                None, "channel {channel} has a gap, an overlap or a change of rate; cut it out first", channel=twice
+                None,
+                "channel {channel} has a gap, an overlap or a change of rate; remove this section first",
+                channel=twice,
             )
         codes = [trace.about["channel"] for trace in traces]
         names = codes if len(set(codes)) == len(codes) else ids
@@ -93,16 +95,16 @@ class MiniSeed(RecordFormat):
         return Record(self.name, components, header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
-        """Return a miniSEED file of real numbers in m/s2, which their location code says."""
+        """Return a miniSEED file of real numbers in m/s2, with the location code of this unit."""
         rows = headers.in_unit(record, self.name, "m/s2", 100)
-        codes = [part.name[:3] for part in record.components]
+        codes = [component.name[:3] for component in record.components]
         if len(set(codes)) != len(codes):
             raise RecordError(
                 "components need different channel codes of 3 letters, got {codes}", codes=", ".join(codes)[:60]
             )
         obspy = need_obspy("miniSEED")
         pairs = zip(rows, record.components, strict=True)
-        stream = obspy.Stream([trace_of(values, part, record) for values, part in pairs])
+        stream = obspy.Stream([trace_of(values, component, record) for values, component in pairs])
         for trace in stream:
             trace.stats.location = _SI
         content = BytesIO()
@@ -111,41 +113,41 @@ class MiniSeed(RecordFormat):
 
 
 def _check_room(source: Source) -> None:
-    """Refuse records that state more samples than they have room for: ObsPy reads on in whatever lies behind them."""
-    content, at = source.content, 0
-    while at + 48 <= len(content):
-        order = ">" if 1900 <= struct.unpack_from(">H", content, at + 20)[0] <= 2100 else "<"
-        count, start, blockette = struct.unpack_from(f"{order}H12xHH", content, at + 30)
+    """Refuse records with more stated samples than space; ObsPy would read past their end."""
+    content, position = source.content, 0
+    while position + 48 <= len(content):
+        order = ">" if 1900 <= struct.unpack_from(">H", content, position + 20)[0] <= 2100 else "<"
+        count, start, blockette = struct.unpack_from(f"{order}H12xHH", content, position + 30)
         kind = 0
-        while kind != _ENCODING and 48 <= blockette <= len(content) - at - 8:
-            where = at + blockette
-            kind, blockette, encoding, length = struct.unpack_from(f"{order}HHBxB", content, where)
+        while kind != _ENCODING and 48 <= blockette <= len(content) - position - 8:
+            offset = position + blockette
+            kind, blockette, encoding, length = struct.unpack_from(f"{order}HHBxB", content, offset)
         if kind != _ENCODING or not 7 <= length <= 20:
             return
-        bits = _LEAST_BITS.get(encoding, 16.0)
+        bits = _MIN_BITS.get(encoding, 16.0)
         most = int(max((1 << length) - start, 0) * 8 / bits)
         if count > most:
             raise source.error(
-                None, "the record at byte {byte} states {count} samples, it has room for {most}; damaged", byte=at,
-                count=count, most=most,
+                None, "the record at byte {byte} states {count} samples, but has space for {most}; the file is damaged",
+                byte=position, count=count, most=most,
             )  # fmt: skip
-        at += 1 << length
+        position += 1 << length
 
 
 def _component(
-    source: Source, trace: Trace, stations: Sequence[Source], name: str, units: str | None, asked: float | None
+    source: Source, trace: Trace, stations: Sequence[Source], name: str, units: str | None, requested_step: float | None
 ) -> Component:
     values: FloatArray = trace.samples.astype(np.float64)
     if values.size < 2 or not np.isfinite(values).all():
         raise source.error(
-            None, "{channel}: at least 2 finite samples are needed, found {count}", channel=trace.id, count=values.size
+            None, "{channel}: at least 2 finite samples required, found {count}", channel=trace.id, count=values.size
         )
-    step = headers.step_between_samples(source, trace.step, asked)
+    step = headers.step_between_samples(source, trace.step, requested_step)
     about = {key: text for key, text in trace.about.items() if text}
     side = directions.orientation(trace.about["channel"])
     if trace.channels is None:
         if trace.samples.dtype.kind in "iu":
-            raise source.error(None, "{channel} holds counts, no accelerations", channel=trace.id, hint=STATIONS)
+            raise source.error(None, "{channel} contains counts, not accelerations", channel=trace.id, hint=STATIONS)
         headers.doubt_channel(source, trace.about["channel"])
         stated = "m/s2" if trace.id.split(".")[2:3] == [_SI] else None
         about[directions.KEY] = directions.as_text(side)
@@ -155,17 +157,17 @@ def _component(
     sensitivity = sensitivity_of(source, channel, trace.id)
     if abs(channel["rate"] * trace.step - 1.0) > 1e-4:
         raise source.error(
-            None, "{channel}: {rate:g} samples/s, the StationXML states {stated:g}", channel=trace.id,
+            None, "{channel}: {rate:g} samples/s in the file, but {stated:g} in the StationXML", channel=trace.id,
             rate=1 / trace.step, stated=channel["rate"],
         )  # fmt: skip
-    if channel["dip"] is not None:  # downwards from the level
+    if channel["dip"] is not None:  # from horizontal, downwards
         side = directions.both(side, directions.of_angles(channel["azimuth"], 90.0 + channel["dip"]))
     offset = float(values.mean())
     about |= {
         directions.KEY: directions.as_text(side),
         "sensitivity": f"{sensitivity:.9g} counts/(m/s2)",
         "stations": f"{described_in.name}, SHA-256 {described_in.sha256}",
-        "processing": "mean of the whole record removed, divided by the overall sensitivity",
+        "processing": "mean of the record removed, divided by the overall sensitivity",
         "mean removed": f"{offset:.9g} counts",
     }
     return Component(name, (values - offset) / sensitivity, unit, step, None, about)

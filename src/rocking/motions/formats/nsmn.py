@@ -1,6 +1,6 @@
-"""AFAD, Turkey's national strong-motion network (NSMN): 18 lines of header, then the three components side by side.
+"""AFAD, national strong-motion network of Turkey (NSMN): 18 header lines, then three components in columns.
 
-Layout: the header itself, on a file of 2017; the same in the reader of the USGS' `gmprocess` (io/nsmn), not copied.
+Layout: from the header of a file of 2017; it agrees with the reader io/nsmn of `gmprocess` (USGS), not copied.
 """
 
 import re
@@ -23,7 +23,7 @@ class Nsmn(RecordFormat):
     name: ClassVar[str] = "nsmn"
     title: ClassVar[str] = "AFAD, national strong-motion network of Turkey (NSMN, TR-NSMN)"
     suffixes: ClassVar[tuple[str, ...]] = (".txt",)
-    notes: ClassVar[str] = "Verified on one file of 2017, in gal, of which the mean was removed."
+    notes: ClassVar[str] = "Verified with one file of 2017, in gal, with its mean removed."
     marks: ClassVar[tuple[str, ...]] = (
         "STRONG GROUND MOTION RECORDS OF", r"NUMBER OF DATA\b", r"SAMPLING INTERVAL\b", r"(RAW |CORRECTED )?PGA VALUES",
         r"STATION ID\b",
@@ -35,14 +35,14 @@ class Nsmn(RecordFormat):
         count = int(header_value(source, first, r"NUMBER OF DATA\s*:", r"\d{1,9}")[0])
         stated = float(header_value(source, first, r"SAMPLING INTERVAL \(sec\)\s*:", r"\d*\.?\d+")[0])
         step = headers.step_between_samples(source, stated, time_step)
-        found = header_value(source, first, r"(?:RAW |CORRECTED )?PGA VALUES", rf"\(gal\)\s*:\s*((?:{_PEAK}\s*){{3}})")
+        pga = header_value(source, first, r"(?:RAW |CORRECTED )?PGA VALUES", rf"\(gal\)\s*:\s*((?:{_PEAK}\s*){{3}})")
         unit = headers.acceleration_unit(source, "gal", units)
-        peaks = re.findall(_PEAK, found[1])
+        peaks = re.findall(_PEAK, pga[1])
         names = source.lines[first - 1].split()
         if [name.strip() for name, _ in peaks] != names:
             raise source.error(
                 first - 1,
-                "the peaks are of {components}, the columns of others",
+                "the peaks belong to {components}, but the columns have other names",
                 components=", ".join(name for name, _ in peaks),
             )
         texts = {key: header_text(source, first, rf"{word}\s*:") for key, word in _KEYS.items()}
@@ -54,10 +54,10 @@ class Nsmn(RecordFormat):
     def write(self, record: Record) -> bytes:
         """Return a file of three components, in gal with 6 decimals."""
         table, step = columns_of(record, self.name, "gal", 3)
-        names = [part.name for part in record.components]
+        names = [component.name for component in record.components]
         if len(names) != 3 or not re.fullmatch(r"N\S*-S\S* E\S*-W\S* U\S*-D\S*", " ".join(names)):
             raise RecordError(
-                "NSMN holds components such as N-S, E-W, U-D, got {components}", components=", ".join(names)[:60]
+                "NSMN requires components such as N-S, E-W, U-D, got {components}", components=", ".join(names)[:60]
             )
         table = table.round(6)
         largest = " ".join(f"({name}) {np.abs(row).max():.6f}" for name, row in zip(names, table.T, strict=True))

@@ -1,4 +1,4 @@
-"""Numbers in fixed columns or between blanks, read and written; an error names the line where one is damaged."""
+"""Reading and writing of numbers in fixed columns or between blanks; errors contain the line of a damaged number."""
 
 import math
 import re
@@ -11,7 +11,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats.record import Source
 
-# what float() takes beyond plain decimal numbers (nan, infinity, 1_000) is damage in a record
+# other inputs of float() than plain decimal numbers (nan, infinity, 1_000) are damage in a record
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,3})?")
 _CHARACTERS = b"0123456789+-.eE \t\n"  # of plain decimal numbers
 _ZEROS = bytes.maketrans(b"123456789E", b"000000000e")
@@ -19,21 +19,21 @@ _ZEROS = bytes.maketrans(b"123456789E", b"000000000e")
 Row = tuple[int, Sequence[str]]  # index of a line, and the numbers on it as text
 
 
-def number(source: Source, line: int, word: str, what: str = "number") -> float:
+def number(source: Source, line: int, word: str, quantity: str = "number") -> float:
     """Return one number."""
     text = word.strip()
     if not _NUMBER.fullmatch(text):
         raise source.error(
-            line, "{quantity} expected, found {entry!r}{gap}", quantity=what, entry=text[:40], gap=gap_words(text)
+            line, "{quantity} expected, found {entry!r}{gap}", quantity=quantity, entry=text[:40], gap=gap_words(text)
         )
     value = float(text.replace("D", "e").replace("d", "e"))
     if not math.isfinite(value):
-        raise source.error(line, "{quantity} is beyond all range: {entry!r}", quantity=what, entry=text[:40])
+        raise source.error(line, "{quantity} is too large: {entry!r}", quantity=quantity, entry=text[:40])
     return value
 
 
 def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
-    """Return all numbers of rows in one array; of a number and a row that are refused, the error of the first."""
+    """Return all numbers of rows in one array; of several errors, raise the first."""
     read: list[Row] = []
     refusal = None
     try:
@@ -49,7 +49,7 @@ def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
 
 
 def at_once(words: Sequence[str]) -> FloatArray | None:
-    """Return words as numbers; None if `number` may be needed for one of them.
+    """Return words as numbers; None if they are not all plain decimal numbers.
 
     >>> at_once(["1.5", "-2e-3"]), at_once(["1.5", "nan"]), at_once(["1_000", "2"])
     (array([ 1.5  , -0.002]), None, None)
@@ -64,7 +64,7 @@ def at_once(words: Sequence[str]) -> FloatArray | None:
 
 
 def plain_table(lines: Sequence[str], separator: str | None) -> FloatArray | None:
-    """Return lines of equally many numbers, of shape (n, columns); None if `number` may be needed for one of them.
+    """Return lines of numbers, shape (lines, columns); None if they are not all plain decimal numbers.
 
     >>> plain_table(["0.0, 1.5", "0.1, -2e-3"], ",").tolist(), plain_table(["0.0 1.5", "0.1"], None)
     ([[0.0, 1.5], [0.1, -0.002]], None)
@@ -79,7 +79,7 @@ def plain_table(lines: Sequence[str], separator: str | None) -> FloatArray | Non
 
 
 def _is_plain(text: str, separator: str = "") -> bool:
-    """Return whether a text holds no character, and no exponent, beyond those of plain decimal numbers."""
+    """Return True if a text has only characters and exponents of plain decimal numbers."""
     data = text.encode("utf-8")
     if data.translate(None, _CHARACTERS + separator.encode()):
         return False
@@ -87,30 +87,30 @@ def _is_plain(text: str, separator: str = "") -> bool:
 
 
 def gap_words(text: str) -> str:
-    """Return what a word that is no number means, where that is known."""
+    """Return an explanation of a word for a missing value; empty for other words."""
     if text.lower().lstrip("+-") not in {"nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "--", "-", "?"}:
         return ""
-    return ": the record has a gap, a sample without a value; fill the gap, or cut the record before it"
+    return ": a sample has no value; fill the gap, or trim the record before it"
 
 
-def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> int:
+def whole(source: Source, line: int, word: str, quantity: str, minimum: int = 0) -> int:
     """Return one whole number."""
     text = word.strip()
-    if not re.fullmatch(r"[+-]?\d{1,9}", text) or int(text) < least:
-        raise source.error(line, "{quantity} expected, found {entry!r}", quantity=what, entry=text[:40])
+    if not re.fullmatch(r"[+-]?\d{1,9}", text) or int(text) < minimum:
+        raise source.error(line, "{quantity} expected, found {entry!r}", quantity=quantity, entry=text[:40])
     return int(text)
 
 
 def matched(source: Source, line: int, form: str) -> re.Match[str]:
-    """Return a line, of which a pattern must make sense."""
-    found = re.fullmatch(form, source.lines[line].strip())
-    if found is None:
-        raise source.error(line, "cannot be understood: {entry!r}", entry=source.lines[line].strip()[:60])
-    return found
+    """Return the match of a pattern on a line."""
+    match = re.fullmatch(form, source.lines[line].strip())
+    if match is None:
+        raise source.error(line, "the line is not understood: {entry!r}", entry=source.lines[line].strip()[:60])
+    return match
 
 
 def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
-    """Return the numbers between blanks on some lines, of shape (n,) or (lines, columns)."""
+    """Return the numbers between blanks on lines, shape (n,) or (lines, columns)."""
     values = read_rows(source, _free_rows(source, first, last, columns))
     return values if columns is None else values.reshape(-1, columns)
 
@@ -124,7 +124,7 @@ def _free_rows(source: Source, first: int, last: int, columns: int | None) -> It
 
 
 def rows(source: Source, first: int, last: int) -> FloatArray:
-    """Return the numbers on some lines, which hold as many as the first of them, save the last; blank ones none."""
+    """Return the numbers on lines of equal length; the last line may be shorter, blank lines are ignored."""
     columns, short = 0, False
     last = min(last, source.end) if last == len(source.lines) else last
     for line in range(first, last):
@@ -132,55 +132,58 @@ def rows(source: Source, first: int, last: int) -> FloatArray:
         columns = columns or words
         if words and (short or words > columns):
             raise source.error(
-                line, "{columns} numbers a line expected save on the last", columns=columns, hint="missing or damaged?"
+                line,
+                "{columns} numbers per line expected, except on the last line",
+                columns=columns,
+                hint="check the line",
             )
         short = short or 0 < words < columns
     if not columns:
-        raise source.error(None, "no sample after the header")
+        raise source.error(None, "the file has no sample after the header")
     return free(source, first, last)
 
 
-def word(source: Source, first: int, place: int, per_line: int, width: int) -> str:
-    """Return how one of the numbers in columns of fixed width is printed."""
-    line, column = divmod(place, per_line)
+def word(source: Source, first: int, index: int, per_line: int, width: int) -> str:
+    """Return the printed text of a number in columns of fixed width, by its index."""
+    line, column = divmod(index, per_line)
     return source.lines[first + line].rstrip()[column * width : (column + 1) * width].strip()
 
 
 def fixed(source: Source, first: int, count: int, per_line: int, width: int, skip: int = 0) -> tuple[FloatArray, int]:
-    """Return `count` numbers in columns of fixed width, which need no blank between them, and the line after them.
+    """Return `count` numbers in columns of fixed width, with or without blanks, and the line after them.
 
-    Each line begins with `skip` blanks that belong to no column.
+    Each line begins with `skip` blanks before the first column.
     """
     values = read_rows(source, _fixed_rows(source, first, count, per_line, width, skip))
     return values, first + math.ceil(count / per_line)
 
 
 def _fixed_rows(source: Source, first: int, count: int, per_line: int, width: int, skip: int) -> Iterator[Row]:
-    for done in range(0, count, per_line):
-        line = first + done // per_line
+    for read in range(0, count, per_line):
+        line = first + read // per_line
         if line >= len(source.lines):
-            raise source.error(None, "{count} samples expected, the file ends after {read}", count=count, read=done)
+            raise source.error(None, "{count} samples expected, but the file ends after {read}", count=count, read=read)
         text = source.lines[line].rstrip()
         text = text[skip:] if not text[:skip].strip() else text
-        wanted = min(per_line, count - done)
-        if len(text) > wanted * width or len(text) <= (wanted - 1) * width:
+        columns = min(per_line, count - read)
+        if len(text) > columns * width or len(text) <= (columns - 1) * width:
             raise source.error(
-                line, "{columns} columns of {width} characters expected, found {count} characters", columns=wanted,
+                line, "{columns} columns of {width} characters expected, found {count} characters", columns=columns,
                 width=width, count=len(text),
             )  # fmt: skip
-        yield line, [text[k * width : (k + 1) * width] for k in range(wanted)]
+        yield line, [text[k * width : (k + 1) * width] for k in range(columns)]
 
 
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
-    """Return how many numbers a line holds and how wide they are, by a Fortran format.
+    """Return the number of columns and their width from a Fortran format.
 
     >>> fortran_form(Source("a.v1", b"x"), 0, "(8F10.5)")
     (8, 10)
     """
-    found = re.fullmatch(r"\(?(?:1P,?)?(\d{1,3})[FEGI](\d{1,2})(?:\.\d{1,2})?\)?", word.strip().upper())
-    if found is None or not int(found[1]) or not int(found[2]):
-        raise source.error(line, "a format such as (8F10.5) expected, found {entry!r}", entry=word.strip()[:40])
-    return int(found[1]), int(found[2])
+    match = re.fullmatch(r"\(?(?:1P,?)?(\d{1,3})[FEGI](\d{1,2})(?:\.\d{1,2})?\)?", word.strip().upper())
+    if match is None or not int(match[1]) or not int(match[2]):
+        raise source.error(line, "format such as (8F10.5) expected, found {entry!r}", entry=word.strip()[:40])
+    return int(match[1]), int(match[2])
 
 
 def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -> list[str]:
@@ -201,13 +204,13 @@ def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, de
         if len(text) != count * width:
             raise RecordError(
                 "a number does not fit into {width} characters with {decimals} decimals", width=width,
-                decimals=decimals, hint="wrong unit?",
+                decimals=decimals, hint="check the unit",
             )  # fmt: skip
     return lines
 
 
 def fortran_e(value: float, digits: int, width: int, before: str = "") -> str:
-    """Return a number as Fortran's E format prints it, with or without the zero before the point, for writers.
+    """Return a number in the E format of Fortran, with optional text before the point, for writers.
 
     >>> fortran_e(-0.0123, 4, 11), fortran_e(12.5, 4, 11, "0")
     (' -.1230E-01', ' 0.1250E+02')

@@ -1,4 +1,4 @@
-"""What ObsPy does with a file or says of an instrument, in a process of its own (`foreign_worker` runs this file)."""
+"""Files and instrument responses read with ObsPy in a separate process (`foreign_worker` runs this file)."""
 
 import io
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 
 def prepare() -> None:
-    """Load ObsPy with its plugins, by one file of each kind, before there is a process for each file."""
+    """Load ObsPy with its plugins by one file of each format, before the fork of processes."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         obspy = import_module("obspy")
@@ -23,9 +23,9 @@ def prepare() -> None:
 
 
 def answer(request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
-    """Return descriptions of a file's traces, each with its channel in StationXML files, and their samples.
+    """Return descriptions of the traces in a file, each with its channel in StationXML files, and their samples.
 
-    A request for a channel has StationXML files alone.
+    A request for a channel has only StationXML files.
     """
     if "channel" in request:
         return _response(request, files)
@@ -47,19 +47,19 @@ def answer(request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list
 
 
 def _damage() -> list[type[Warning]]:
-    """Return the classes of warnings that say that samples are damaged or missing."""
+    """Return the classes of warnings about damaged or missing samples."""
     return [import_module("obspy.io.mseed").InternalMSEEDWarning, RuntimeWarning]
 
 
 def _is_of_programs(warning: warnings.WarningMessage) -> bool:
-    """Return whether a warning is about code, or about the rounding of a step that is read without it."""
+    """Return True if a warning is about code, or about the rounding of a step, which is read separately."""
     return issubclass(warning.category, (DeprecationWarning, FutureWarning, ImportWarning)) or (
         "Sample spacing read from SAC" in str(warning.message)
     )
 
 
 def _inventories(files: Sequence[bytes]) -> tuple[list[Any], dict[str, Any]]:
-    """Return StationXML files as ObsPy reads them, or which of them it cannot read, and why."""
+    """Return StationXML files as inventories of ObsPy, or the index and error of an unreadable file."""
     obspy, read = import_module("obspy"), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -73,16 +73,18 @@ def _inventories(files: Sequence[bytes]) -> tuple[list[Any], dict[str, Any]]:
 
 def _described(trace: Any, inventories: Sequence[Any]) -> dict[str, Any]:
     stats = trace.stats
-    said = dict(stats.get("sac", {}))
+    sac_header = dict(stats.get("sac", {}))
     about = {key: str(stats[key]) for key in ("network", "station", "location", "channel", "starttime")}
     return {
         "id": trace.id,
         "text": str(trace),
         "step": float(stats.delta),
         "about": about,
-        "sac": {key: _plain(value) for key, value in said.items()},
-        "header": "\n".join(f"{key} = {said[key]}" for key in sorted(said)),
-        "channels": [_described_channel(about, *one) for one in _channels(about, inventories)] if inventories else None,
+        "sac": {key: _plain(value) for key, value in sac_header.items()},
+        "header": "\n".join(f"{key} = {sac_header[key]}" for key in sorted(sac_header)),
+        "channels": [_described_channel(about, *match) for match in _channels(about, inventories)]
+        if inventories
+        else None,
     }
 
 
@@ -95,7 +97,7 @@ def _location(code: Any) -> str:
 
 
 def _channels(about: dict[str, str], inventories: Sequence[Any]) -> list[tuple[int, Any]]:
-    """Return the channels of one network, station and code at whatever location and time, each with its file."""
+    """Return the channels of one network, station and code for all locations and times, with their file index."""
     return [
         (index, channel)
         for index, inventory in enumerate(inventories)
@@ -125,7 +127,7 @@ def _described_channel(about: dict[str, str], file_index: int, channel: Any) -> 
 
 
 def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str, Any], list[Any]]:
-    """Return descriptions of a channel, and the response of each over its sensitivity at the frequencies of an FFT."""
+    """Return descriptions of a channel, and the response / sensitivity of each at the frequencies of an FFT."""
     warnings.simplefilter("ignore")
     inventories, refusal = _inventories(files)
     if refusal:
@@ -144,7 +146,7 @@ def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str
 
 
 def _in_one_unit(response: Any) -> None:
-    """Give a response one name for its unit of acceleration: ObsPy has factors for some of them, and not for others."""
+    """Set one name for the unit of acceleration in a response: ObsPy has no factors for some names."""
     total, first = response.instrument_sensitivity, response.response_stages[0]
     if first.input_units == total.input_units:
         total.input_units = first.input_units = "M/S**2"

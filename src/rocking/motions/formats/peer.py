@@ -1,4 +1,4 @@
-"""PEER AT2: accelerations in g behind a header of four lines, or a freer one that ends in the same line."""
+"""PEER AT2: accelerations in g after a header of four lines, or another header with the same last line."""
 
 import re
 from typing import ClassVar
@@ -14,7 +14,7 @@ _OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", r
 _UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
 _OTHER = re.compile(r"\s*(VELOCITY|DISPLACEMENT)\b.*(?:TIME|HISTORY|SERIES|UNITS)", re.IGNORECASE)
 _IN_WORDS = re.compile(r"(\d+)\s+points\s+at\s+equal\s+spacing\s+of\s+(\d*\.\d+)\s*sec", re.IGNORECASE)
-# behind the step NGA files say how they were filtered: "SEC,  -5 POLE @ .03000 HZ"
+# NGA files contain the filter after the step: "SEC,  -5 POLE @ .03000 HZ"
 _REST = re.compile(r"[\s,.]*(SEC(ONDS?)?[\s.]*(,.*)?)?[\s,.]*")
 _NUMBERS = re.compile(r"[\s\d.+\-EeDd]*\d[\s\d.+\-EeDd]*")
 _PROSE = re.compile(r"\b[A-Za-z]{3,}\b.*\b[A-Za-z]{3,}\b")
@@ -29,12 +29,12 @@ class Peer(RecordFormat):
     title: ClassVar[str] = "PEER AT2, Pacific Earthquake Engineering Research Center"
     suffixes: ClassVar[tuple[str, ...]] = (".at2",)
     notes: ClassVar[str] = (
-        "Verified on seven real files of four header variants. `DT=` before `NPTS` and the `NPTS, DT` line without "
-        "keys follow published examples. The format states no peak: only the number of samples can be checked."
+        "Verified with seven real files of four header variants. `DT=` before `NPTS` and the `NPTS, DT` line without "
+        "keys follow published examples. The files contain no peak: only the number of samples is checked."
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether titles, a line that states NPTS and DT and nothing else, and numbers follow one another."""
+        """Return True if the file has titles, a line with only NPTS and DT, and then numbers."""
         line = _size_line(source) if source.is_text else None
         if not line or not (_OLD.fullmatch(source.lines[line]) or _keyed(source.lines[line])):
             return False
@@ -49,20 +49,20 @@ class Peer(RecordFormat):
         )
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, of one component, named by its azimuth or direction, or "acceleration"."""
+        """Return the record with one component, named by its azimuth or direction, or "acceleration"."""
         line = _size_line(source) if source.is_text else None
         if line is None:
-            raise source.error(None, "no line with NPTS and DT near the top; not a PEER file")
+            raise source.error(None, "not a PEER file: no line with NPTS and DT near the top")
         header = source.lines[: line + 1]
         count, stated = _size(source, line)
         step = step_between_samples(source, stated, time_step)
         unit = acceleration_unit(source, _unit(source, header), units)
-        for at, text in enumerate(header):
+        for header_line, text in enumerate(header):
             for points, spacing in _IN_WORDS.findall(text):
-                if whole(source, at, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
+                if whole(source, header_line, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
                     raise source.error(
-                        at, "{points} points at {spacing} s stated here, {count} at {step:g} s below", points=points,
-                        spacing=spacing, count=count, step=step,
+                        header_line, "{points} points at {spacing} s here, but {count} at {step:g} s below",
+                        points=points, spacing=spacing, count=count, step=step,
                     )  # fmt: skip
         values = _values(source, line + 1)
         check_count(source, count, values.size)
@@ -72,14 +72,16 @@ class Peer(RecordFormat):
     def write(self, record: Record) -> bytes:
         """Return the content of a PEER file, in g with 8 digits."""
         (values,) = in_unit(record, self.name, "g", 1)
-        part = record.components[0]
-        known = {"event": "unknown", "station": "unknown", **record.metadata}
-        who = [one_line(known[key], 60).replace(",", " ") for key in ("event", "date", "station") if key in known]
+        component = record.components[0]
+        metadata = {"event": "unknown", "station": "unknown", **record.metadata}
+        description = [
+            one_line(metadata[key], 60).replace(",", " ") for key in ("event", "date", "station") if key in metadata
+        ]
         lines = [
             "STRONG MOTION RECORD IN THE PEER FORMAT",
-            ", ".join([*who, one_line(part.name, 20).replace(",", " ")]),
+            ", ".join([*description, one_line(component.name, 20).replace(",", " ")]),
             "ACCELERATION TIME SERIES IN UNITS OF G",
-            f"NPTS= {values.size}, DT= {part.time_step:.12g} SEC",
+            f"NPTS= {values.size}, DT= {component.time_step:.12g} SEC",
             *in_columns(values, 5, "{:16.7E}"),
         ]
         return ("\n".join(lines) + "\n").encode("latin-1")
@@ -87,7 +89,7 @@ class Peer(RecordFormat):
 
 def _size_line(source: Source) -> int | None:
     for line, text in enumerate(source.lines[:_LONGEST_HEADER]):
-        # no header has such lines, and patterns take ages over them
+        # no header has such lines, and patterns are slow on them
         if len(text) > _LONGEST_LINE:
             return None
         if _KEYED.search(text) or _OLD.fullmatch(text):
@@ -105,30 +107,30 @@ def _size(source: Source, line: int) -> tuple[int, float]:
 
 
 def _keyed(text: str) -> dict[str, str] | None:
-    """Return what NPTS and DT are equal to; none if the line says anything else, save behind the seconds."""
-    found = re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper())
-    rest = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
-    return dict(found) if len(found) == len(dict(found)) == 2 and _REST.fullmatch(rest) else None
+    """Return the values of NPTS and DT; None if the line contains other text, except after the seconds."""
+    values = re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper())
+    remaining = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
+    return dict(values) if len(values) == len(dict(values)) == 2 and _REST.fullmatch(remaining) else None
 
 
 def _unit(source: Source, header: list[str]) -> str | None:
-    found: str | None = None
+    unit: str | None = None
     for line, text in enumerate(header):
         other = _OTHER.match(text)
-        beside = f": a {other[1].lower()}; its acceleration is in the .AT2 file beside it" if other else ""
+        kind = f", a {other[1].lower()}; use the .AT2 file with the acceleration" if other else ""
         for stated in _UNIT.findall(text):
             if stated.strip("()").upper() != "G":
                 raise source.error(
-                    line, "PEER accelerations are in g, the header states {entry!r}{kind}", entry=stated[:20],
-                    kind=beside,
+                    line, "PEER accelerations are in g, but the header states {entry!r}{kind}", entry=stated[:20],
+                    kind=kind,
                 )  # fmt: skip
-            found = "g"
-        if beside:
+            unit = "g"
+        if kind:
             raise source.error(
-                line, "PEER accelerations are in g, the header states {entry!r}{kind}", entry=text.strip()[:40],
-                kind=beside,
+                line, "PEER accelerations are in g, but the header states {entry!r}{kind}", entry=text.strip()[:40],
+                kind=kind,
             )  # fmt: skip
-    return found
+    return unit
 
 
 def _values(source: Source, first: int) -> FloatArray:
@@ -140,20 +142,20 @@ def _values(source: Source, first: int) -> FloatArray:
 
 
 def _who(header: list[str]) -> tuple[dict[str, str], str]:
-    """Split ``event date, station, component``, which only files with the usual four lines have."""
+    """Return metadata and component name from ``event date, station, component`` in headers of four lines."""
     metadata = {"title": header[0].strip()} if len(header) > 1 else {}
-    found = re.search(r"\bHP\s*=\s*(\S+)\s*Hz\s+LP\s*=\s*(\S+)\s*Hz", " ".join(header), re.IGNORECASE)
-    if found:
-        metadata["filter"] = f"high-pass {found[1]} Hz, low-pass {found[2]} Hz"
+    corners = re.search(r"\bHP\s*=\s*(\S+)\s*Hz\s+LP\s*=\s*(\S+)\s*Hz", " ".join(header), re.IGNORECASE)
+    if corners:
+        metadata["filter"] = f"high-pass {corners[1]} Hz, low-pass {corners[2]} Hz"
     if len(header) != 4:
         return metadata, "acceleration"
-    parts = [part.strip() for part in re.sub(r"\([^()]*\)", "", header[1]).split(",")]
+    fields = [field_text.strip() for field_text in re.sub(r"\([^()]*\)", "", header[1]).split(",")]
     date = _DATE.search(header[1])
     if date:
         metadata["date"] = date[0]
-    metadata["event"] = re.sub(r"\s+\d{1,2}/\d.*", "", parts[0])
-    places = [part for part in parts[1:-1] if part and not _DATE.fullmatch(part)]
-    if places or (len(parts) == 2 and parts[0]):
-        metadata["station"] = ", ".join(places) or metadata["event"]
-    name = parts[-1] if len(parts) > 1 else ""
+    metadata["event"] = re.sub(r"\s+\d{1,2}/\d.*", "", fields[0])
+    stations = [field_text for field_text in fields[1:-1] if field_text and not _DATE.fullmatch(field_text)]
+    if stations or (len(fields) == 2 and fields[0]):
+        metadata["station"] = ", ".join(stations) or metadata["event"]
+    name = fields[-1] if len(fields) > 1 else ""
     return {key: value for key, value in metadata.items() if value not in {"", "unknown"}}, name or "acceleration"

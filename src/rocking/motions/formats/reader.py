@@ -1,4 +1,4 @@
-"""Reading a record file of whatever format, and writing one."""
+"""Reading and writing of record files in all formats."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -21,12 +21,12 @@ from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 
 _STARTS = ("starttime", "Record Time", "first time")
-"""What miniSEED and SAC, K-NET, and columns say about the time of the first sample."""
+"""Metadata keys of the time of the first sample: miniSEED and SAC, K-NET, columns."""
 
 
 @cache
 def _classes() -> tuple[type[RecordFormat], ...]:
-    """Return every format in the order in which they are tried; a new one is one file, one import and one name here."""
+    """Return all formats in the order of detection; a new format needs one file, and one import and name here."""
     from rocking.motions.formats.bhrc import Bhrc
     from rocking.motions.formats.columns import Columns
     from rocking.motions.formats.cosmos import Cosmos
@@ -51,25 +51,25 @@ def _classes() -> tuple[type[RecordFormat], ...]:
     return (
         Peer, Esm, Cosmos, CsmipV1, CsmipV2, Usc, SmcUsgs, SmcBoore, Knet, Cwa, GeonetV1A, GeonetV2A, Bhrc, Csmnc, Nsmn,
         Unam, Itaca, Csn, Slist, Eqsig, MiniSeed, Sac,
-        Columns,  # the last resort: numbers without a header describe nothing
+        Columns,  # last, because the files have no header
     )  # fmt: skip
 
 
 def formats() -> dict[str, RecordFormat]:
-    """Return every record format by name.
+    """Return all record formats by name.
 
     Returns
     -------
     dict of str to RecordFormat
-        In the order in which they are tried.
+        Formats by name, in the order of detection.
     """
     return {kind.name: kind() for kind in _classes()}
 
 
 def format_named(name: str) -> RecordFormat:
-    """Return one record format."""
-    known = formats()
-    return known[checks.one_of("format", name, known)]
+    """Return a record format by name."""
+    available = formats()
+    return available[checks.one_of("format", name, available)]
 
 
 def read_record(
@@ -85,27 +85,27 @@ def read_record(
     Parameters
     ----------
     path : path-like
-        The file.
+        Path of the file.
     format : str, optional
-        Name of its format; found by content if not given.
+        Name of the format; the default is the detected format.
     units : str, optional
-        Unit of acceleration, where the file does not state it: a key of `rocking.conventions.ACCELERATION_UNITS`.
+        Unit of acceleration for files without a unit: a key of `rocking.conventions.ACCELERATION_UNITS`.
     time_step : float, optional
-        Step between samples, where the file does not state it [s].
+        Time step for files without a time step [s].
     skip : int
-        Lines at the top of a text file that are passed over.
+        Number of lines to skip at the top of a text file.
 
     Returns
     -------
     Record
-        Components and header.
+        Components and header of the file.
 
     Raises
     ------
     InvalidValueError
-        If there is no format or unit of that name.
+        If the format or unit is unknown.
     RecordError
-        If the file is missing, of no known format or of more than one, damaged, or at odds with its own header.
+        If the file is missing or damaged, its format is unknown or ambiguous, or it contradicts its header.
 
     Examples
     --------
@@ -120,7 +120,7 @@ def read_record(
     return _read(Source.of_path(Path(path), skip), format, units, time_step)
 
 
-def read_motion(  # noqa: PLR0913 - every one of them is a property of some files
+def read_motion(  # noqa: PLR0913 - all are properties of some files
     path: str | PathLike[str],
     format: str | None = None,
     units: str | None = None,
@@ -132,45 +132,45 @@ def read_motion(  # noqa: PLR0913 - every one of them is a property of some file
     stations: Places | None = None,
     skip: int = 0,
 ) -> GroundMotion:
-    """Return one component of a record file as a ground motion, with a second one as its vertical part if wanted.
+    """Return one component of a record file as a ground motion, with an optional vertical part.
 
-    Where components are in files of their own (PEER, ESM, K-NET), `vertical_path` is the file of the vertical one;
-    `format`, `units` and `time_step` then hold for both files.
+    For formats with one component per file (PEER, ESM, K-NET), `vertical_path` is the file of the vertical component;
+    `format`, `units` and `time_step` apply to both files.
 
     Parameters
     ----------
     path : path-like
-        The file.
+        Path of the file.
     format : str, optional
-        Name of its format; found by content if not given.
+        Name of the format; the default is the detected format.
     units : str, optional
-        Unit of acceleration, where the file does not state it: a key of `rocking.conventions.ACCELERATION_UNITS`.
+        Unit of acceleration for files without a unit: a key of `rocking.conventions.ACCELERATION_UNITS`.
     time_step : float, optional
-        Step between samples, where the file does not state it [s].
+        Time step for files without a time step [s].
     component : str, optional
-        Name of the horizontal component, in any case; needed where the file has several.
+        Name of the horizontal component, case-insensitive; required for files with several components.
     vertical : str, optional
-        Name of the vertical component, in any case; with `vertical_path` only needed where that file has several.
+        Name of the vertical component, case-insensitive; with `vertical_path`, required if that file has several.
     vertical_path : path-like, optional
-        Another file, which has the vertical component: of the same step and start; the longer one is cut.
+        File of the vertical component, with equal time step and start; the longer motion is cut.
     stations : path-like or sequence of path-like, optional
-        StationXML files, or folders of them, by which the counts of a miniSEED file become accelerations.
+        StationXML files, or folders of them, for the conversion of counts in miniSEED files to accelerations.
     skip : int
-        Lines at the top of a text file that are passed over.
+        Number of lines to skip at the top of a text file.
 
     Returns
     -------
     GroundMotion
-        In m/s2; its metadata hold the raw header, its provenance the SHA-256 of each file.
+        Motion in m/s2; the metadata contain the raw header, the provenance contains the SHA-256 of each file.
 
     Raises
     ------
     InvalidValueError
-        If there is no format, unit or component of that name, a component must be named, or the two files hold
-        the same component or have different steps.
+        If the format, unit or component is unknown, or `component` is required; if both files contain the same
+        component or have different time steps.
     RecordError
-        If a file is missing, of no known format or of more than one, damaged, or at odds with its own header, or
-        the two files state different starts.
+        If a file is missing or damaged, its format is unknown or ambiguous, or it contradicts its header; if both
+        files state different start times.
 
     Examples
     --------
@@ -196,16 +196,16 @@ def read_motion(  # noqa: PLR0913 - every one of them is a property of some file
     level = _chosen(record, "component", component, upright)
     if upright.time_step != level.time_step:
         raise source.error(
-            None, "steps of {step:g} s and {vertical_step:g} s; resample one first", step=level.time_step,
+            None, "time steps of {step:g} s and {vertical_step:g} s; resample one motion first", step=level.time_step,
             vertical_step=upright.time_step,
         )  # fmt: skip
-    told = f"component {upright.name}, unit {upright.unit}"
+    note = f"component {upright.name}, unit {upright.unit}"
     acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
     about = {"component": upright.name}
     if "channel" in upright.metadata:
         about["channel"] = upright.metadata["channel"]
-    part = GroundMotion(acceleration, upright.time_step, None, "", about, (told,))
-    return with_vertical(_motion(source, record, level), part)
+    vertical_part = GroundMotion(acceleration, upright.time_step, None, "", about, (note,))
+    return with_vertical(_motion(source, record, level), vertical_part)
 
 
 def motions_in(
@@ -216,10 +216,10 @@ def motions_in(
     stations: Places | None = None,
     skip: int = 0,
 ) -> list[GroundMotion]:
-    """Return every component of a record file as a motion of its own; stations: StationXML files, which counts need."""
+    """Return every component of a record file as a motion; stations: StationXML files for counts."""
     source = Source.of_path(path, skip)
     record = _read(source, format, units, time_step, stations)
-    return [_motion(source, record, part) for part in record.components]
+    return [_motion(source, record, component) for component in record.components]
 
 
 def write_record(record: Record, path: str | PathLike[str], format: str) -> None:
@@ -228,18 +228,18 @@ def write_record(record: Record, path: str | PathLike[str], format: str) -> None
     Parameters
     ----------
     record : Record
-        What to write; a format that states its unit converts to it.
+        Record to write; formats with a fixed unit convert to it.
     path : path-like
-        The file; one that exists is replaced.
+        Path of the file; an existing file is replaced.
     format : str
         Name of the format.
 
     Raises
     ------
     InvalidValueError
-        If there is no format of that name.
+        If the format is unknown.
     RecordError
-        If the format cannot hold the record or the file cannot be written.
+        If the record does not fit the format, or the file cannot be written.
     """
     content = format_named(format).write(record)
     try:
@@ -249,34 +249,34 @@ def write_record(record: Record, path: str | PathLike[str], format: str) -> None
 
 
 def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, units: str = "m/s2") -> None:
-    """Write a ground motion to a file, its vertical part as a second component.
+    """Write a ground motion to a file, with its vertical part as second component.
 
     Parameters
     ----------
     motion : GroundMotion
-        What to write.
+        Motion to write.
     path : path-like
-        The file; one that exists is replaced.
+        Path of the file; an existing file is replaced.
     format : str
         Name of the format.
     units : str
-        Unit of acceleration in formats that state none; the others have their own and convert to it.
+        Unit of acceleration in formats without a fixed unit.
 
     Raises
     ------
     InvalidValueError
-        If there is no format or unit of that name.
+        If the format or unit is unknown.
     RecordError
-        If the format cannot hold the motion or the file cannot be written.
+        If the motion does not fit the format, or the file cannot be written.
     """
     units = checks.one_of("units", units, ACCELERATION_UNITS)
     rows = {motion.metadata.get("component", "horizontal"): motion.acceleration}
     if motion.vertical is not None:
         rows[motion.metadata.get("vertical component", "vertical")] = motion.vertical
     factor = ACCELERATION_UNITS[units]
-    parts = tuple(Component(name, values / factor, units, motion.time_step) for name, values in rows.items())
+    components = tuple(Component(name, values / factor, units, motion.time_step) for name, values in rows.items())
     metadata: Mapping[str, str] = {"event": motion.name, **motion.metadata}
-    write_record(Record(format, parts, metadata=metadata), path, format)
+    write_record(Record(format, components, metadata=metadata), path, format)
 
 
 def _read(
@@ -286,7 +286,7 @@ def _read(
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
     stated = {"format": format, "unit": units, "time step": None if time_step is None else f"{time_step:g} s"}
-    stated["lines at the top passed over"] = str(source.skip) if source.skip else None
+    stated["lines skipped at the top"] = str(source.skip) if source.skip else None
     source.stated.extend(f"{name} {value}" for name, value in stated.items() if value is not None)
     chosen: RecordFormat | None = None
     try:
@@ -298,11 +298,11 @@ def _read(
         record = chosen.read(source, units, time_step)
     except RockingError:
         raise
-    except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
-        where = "while its format was looked for" if chosen is None else f"as {chosen.name}"
+    except Exception as error:  # any error of a reader refuses the file
+        stage = "during the detection of its format" if chosen is None else f"as {chosen.name}"
         raise source.error(
-            None, "it cannot be read {stage} ({type}: {reason:.120})", stage=where, type=type(error).__name__,
-            reason=str(error), hint="damaged, or another format?",
+            None, "the file cannot be read {stage} ({type}: {reason:.120})", stage=stage, type=type(error).__name__,
+            reason=str(error), hint="check the file and its format",
         ) from error  # fmt: skip
     if not source.doubts:
         return record
@@ -310,31 +310,31 @@ def _read(
     return replace(record, metadata={**record.metadata, "doubts": "; ".join(source.doubts)})
 
 
-def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
-    own = {"format": record.format, "unit": part.unit, "component": part.name, "header": record.header}
-    own[directions.KEY] = directions.as_text(_direction(source, record, part))
-    metadata = {**record.metadata, **part.metadata, **own}
-    told = f"read from {source.name}, SHA-256 {source.sha256}, format {record.format}"
-    told += f", component {part.name}, unit {part.unit}"
-    told += f", counts by {metadata['stations']}" if "stations" in metadata else ""
+def _motion(source: Source, record: Record, component: Component) -> GroundMotion:
+    own = {"format": record.format, "unit": component.unit, "component": component.name, "header": record.header}
+    own[directions.KEY] = directions.as_text(_direction(source, record, component))
+    metadata = {**record.metadata, **component.metadata, **own}
+    note = f"read from {source.name}, SHA-256 {source.sha256}, format {record.format}"
+    note += f", component {component.name}, unit {component.unit}"
+    note += f", counts by {metadata['stations']}" if "stations" in metadata else ""
     name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
     name += " borehole" if metadata.get("position") == "borehole" else ""
-    acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
+    acceleration = component.acceleration * ACCELERATION_UNITS[component.unit]
     by_hand = [f"stated by the user: {', '.join(source.stated)}"] if source.stated else []
-    motion = GroundMotion(acceleration, part.time_step, None, name, metadata, (told, *by_hand, *source.doubts))
+    motion = GroundMotion(acceleration, component.time_step, None, name, metadata, (note, *by_hand, *source.doubts))
     if quiet := plausibility.of_quiet(motion.peak):
         motion = motion.changed(f"{source.name}: {quiet[0]}")
-        plausibility.warn(f"{source.name}: component {part.name}: {doubt}" for doubt in quiet)
+        plausibility.warn(f"{source.name}: component {component.name}: {doubt}" for doubt in quiet)
     velocity, displacement = ground_velocity(motion), ground_displacement(motion)
     ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
     plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))
     return motion
 
 
-def _direction(source: Source, record: Record, part: Component) -> directions.Direction:
-    """Return the direction of a component by its record, and by the name of the file where it is alone in it."""
-    sides = directions.settled([one.direction for one in record.components])
-    side = sides[record.components.index(part)]
+def _direction(source: Source, record: Record, component: Component) -> directions.Direction:
+    """Return the direction of a component from its record, and from the file name for a single component."""
+    sides = directions.settled([other.direction for other in record.components])
+    side = sides[record.components.index(component)]
     return directions.both(directions.of_file_name(source.name), side) if len(sides) == 1 else side
 
 
@@ -342,18 +342,20 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
     name = upright.metadata["component"]
     if same_file and name == motion.metadata["component"]:
         raise InvalidValueError(
-            "{file} holds the horizontal component {component} and cannot be the vertical one", file=beside.name,
+            "{file} contains the horizontal component {component}, not the vertical one", file=beside.name,
             component=name,
         )  # fmt: skip
     if late := delay(motion, upright):
         raise beside.error(
-            None, "it starts {delay:g} s after the horizontal component; trim both to one start", delay=late
+            None,
+            "the motion starts {delay:g} s after the horizontal component; trim both to a common start",
+            delay=late,
         )
     return with_vertical(motion, upright)
 
 
 def delay(motion: GroundMotion, other: GroundMotion) -> float:
-    """Return how much later another motion starts, as far as both state it and beyond half a step; else zero [s]."""
+    """Return the delay of another motion if both state their start and it exceeds half a step; else zero [s]."""
     for key in _STARTS:
         if key in motion.metadata and key in other.metadata:
             late = _seconds(other.metadata[key]) - _seconds(motion.metadata[key])
@@ -362,60 +364,66 @@ def delay(motion: GroundMotion, other: GroundMotion) -> float:
     return 0.0
 
 
-def _seconds(said: str) -> float:
-    """Return a stated time in seconds since some instant; NaN, which no comparison finds late, if it is unclear."""
-    number, space, unit = said.partition(" ")
+def _seconds(text: str) -> float:
+    """Return a stated time in seconds since a fixed origin; NaN if it is unclear."""
+    number, space, unit = text.partition(" ")
     try:
         if space and unit == "s":
             return float(number)
-        return datetime.fromisoformat(said.replace("/", "-")).replace(tzinfo=UTC).timestamp()
+        return datetime.fromisoformat(text.replace("/", "-")).replace(tzinfo=UTC).timestamp()
     except ValueError:
         return float("nan")
 
 
 def _recognised(source: Source) -> RecordFormat:
-    *known, last = formats().values()
-    found = [one for one in known if one.recognises(source)]
-    if len(found) > 1:
-        names = ", ".join(one.name for one in found)
-        hint = Message("say {option} one of these", {"option": Option("motion.format")})
-        raise source.error(None, "it could be {formats}", formats=names, hint=hint)
-    if found:
-        return found[0]
-    if near := next((one for one in known if one.resembles(source)), None):
-        hint = Message("say {option} to see where", {"option": Option("motion.format", near.name)})
-        raise source.error(None, "its header is nearly that of {format}; damaged?", format=near.name, hint=hint)
+    *candidates, last = formats().values()
+    matches = [candidate for candidate in candidates if candidate.recognises(source)]
+    if len(matches) > 1:
+        names = ", ".join(candidate.name for candidate in matches)
+        hint = Message("add {option} with one of these", {"option": Option("motion.format")})
+        raise source.error(None, "the format is ambiguous: {formats}", formats=names, hint=hint)
+    if matches:
+        return matches[0]
+    if near := next((candidate for candidate in candidates if candidate.resembles(source)), None):
+        hint = Message("add {option} to find the damage", {"option": Option("motion.format", near.name)})
+        raise source.error(None, "the header resembles {format}; the file may be damaged", format=near.name, hint=hint)
     if last.recognises(source):
         return last
     top = " ".join(source.lines[:5])[:1000].lower() if source.is_text else ""
-    held = next((word for word in ("spectra", "spectrum", "velocity", "displacement", "counts") if word in top), None)
-    speaks = held is not None and (held.startswith("spectr") or "accel" not in top)
+    quantity = next(
+        (word for word in ("spectra", "spectrum", "velocity", "displacement", "counts") if word in top), None
+    )
+    is_other_quantity = quantity is not None and (quantity.startswith("spectr") or "accel" not in top)
     raise last.refusal(source) or source.error(
         None,
-        (_UNKNOWN_QUANTITY if speaks else _UNKNOWN).text,
+        (_UNKNOWN_QUANTITY if is_other_quantity else _UNKNOWN).text,
         formats=", ".join(formats()),
-        **({"quantity": Message(held or "")} if speaks else {}),
+        **({"quantity": Message(quantity or "")} if is_other_quantity else {}),
     )
 
 
-_UNKNOWN = Message("not recognised as any of {formats}; damaged, or another format?")
-_UNKNOWN_QUANTITY = Message("it contains {quantity}, and accelerations over time are needed; formats: {formats}")
+_UNKNOWN = Message("unknown format, allowed are {formats}; the file may be damaged")
+_UNKNOWN_QUANTITY = Message("the file contains {quantity}; accelerations over time are required; formats: {formats}")
 
 
-def _chosen(record: Record, what: str, name: str | None, other: Component | None = None) -> Component:
-    names = [part.name for part in record.components]
+def _chosen(record: Record, parameter: str, name: str | None, other: Component | None = None) -> Component:
+    names = [component.name for component in record.components]
     if name is None:
-        left = [part for part in record.components if part is not other]
-        if len(record.components) > 1 or not left:
-            hint = Message("say {option} one of these", {"option": Option(f"motion.{what}")})
+        remaining = [component for component in record.components if component is not other]
+        if len(record.components) > 1 or not remaining:
+            hint = Message("add {option} with one of these", {"option": Option(f"motion.{parameter}")})
             raise InvalidValueError(
                 "the file has the components {names}", hint=hint, names=", ".join(names), components=tuple(names)
             )
-        return left[0]
-    found = [part for part in record.components if part.name.casefold() == str(name).strip().casefold()]
-    if len(found) != 1 or found[0] is other:
-        why = "it is the vertical one already" if found and found[0] is other else f"the file has {', '.join(names)}"
-        raise InvalidValueError(
-            "{parameter} must name one component, got {value}", parameter=what, value=name, hint=why
+        return remaining[0]
+    matches = [
+        component for component in record.components if component.name.casefold() == str(name).strip().casefold()
+    ]
+    if len(matches) != 1 or matches[0] is other:
+        reason = (
+            "this is the vertical component" if matches and matches[0] is other else f"the file has {', '.join(names)}"
         )
-    return found[0]
+        raise InvalidValueError(
+            "{parameter} must be the name of one component, got {value}", parameter=parameter, value=name, hint=reason
+        )
+    return matches[0]

@@ -1,4 +1,4 @@
-"""A record file: its bytes and lines, what it holds, and what every format of such files is."""
+"""Record files: content, components, and the base class of formats."""
 
 import hashlib
 import re
@@ -23,30 +23,30 @@ _TURKISH = re.compile(
     r"[İi]vme|zaman|d[üu]şey|doğu|bat[\u0131i]|kuzey|güney|istasyon|bileşen|birim|örnekleme|deprem|saat|süre|kay[\u0131i]t",
     re.IGNORECASE,
 )
-LARGEST_FILE = 256 * 1024 * 1024  # larger files are refused [bytes]
+LARGEST_FILE = 256 * 1024 * 1024  # largest allowed file [bytes]
 
 
 @dataclass(frozen=True)
 class Source:
-    """The file that a reader looks at."""
+    """A file for the readers."""
 
-    name: str  # its name, for messages
-    content: bytes  # what is in it
-    doubts: list[str] = field(default_factory=list, compare=False)  # what a reader found odd and did not refuse
-    stated: list[str] = field(default_factory=list, compare=False)  # what the user stated of it by hand
-    skip: int = 0  # lines at the top that the user passes over
+    name: str  # file name, for messages
+    content: bytes
+    doubts: list[str] = field(default_factory=list, compare=False)  # warnings of the reader
+    stated: list[str] = field(default_factory=list, compare=False)  # properties stated by the user
+    skip: int = 0  # number of lines to skip at the top
 
     @classmethod
     def of_path(cls, path: Path, skip: int = 0) -> "Source":
-        """Read a file, within limits; skip: lines at its top to pass over."""
+        """Read a file of limited size; skip: number of lines to skip at the top."""
         if not path.is_file():
             raise RecordError("not a plain file" if path.exists() else "no such file").at(str(path))
         try:
             size = path.stat().st_size
             if size > LARGEST_FILE:
-                raise RecordError(
-                    "{size} bytes, more than the {limit} that are read", size=size, limit=LARGEST_FILE
-                ).at(str(path))
+                raise RecordError("{size} bytes exceed the limit of {limit} bytes", size=size, limit=LARGEST_FILE).at(
+                    str(path)
+                )
             content = path.read_bytes()
         except OSError as error:
             raise RecordError(error.strerror or str(error)).at(str(path)) from error
@@ -61,19 +61,19 @@ class Source:
 
     @cached_property
     def is_text(self) -> bool:
-        """Whether it looks like text: no NUL among its bytes."""
+        """True if the content has no NUL byte."""
         return b"\0" not in self.content
 
     @cached_property
     def lines(self) -> list[str]:
-        """Lines without their ends; CR, LF, CR LF and CR CR LF all end one."""
+        """Lines without line ends: CR, LF, CR LF or CR CR LF."""
         text = self.content.decode("latin-1")
         lines = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
         return [*([""] * min(self.skip, len(lines))), *lines[self.skip :]]
 
     @cached_property
     def end(self) -> int:
-        """Number of lines up to words that close the file, such as ``END``, which are doubted, and to blanks."""
+        """Number of lines without final blank lines and closing words such as ``END``, which give a doubt."""
         # Ctrl-Z padded files to whole blocks under CP/M and DOS
         last, closing = len(self.lines), 0
         while last:
@@ -81,34 +81,34 @@ class Source:
             if bare and not (closing < _MOST_CLOSING and _CLOSING.fullmatch(bare)):
                 break
             if bare:
-                self.doubt(last - 1, f"{bare[:40]!r} behind the last number is passed over")
+                self.doubt(last - 1, f"{bare[:40]!r} after the last number is ignored")
                 closing += 1
             last -= 1
         return last
 
     def error(self, line: int | None, cause: str, **facts: Any) -> RecordError:
-        """Return the error for a line, to be raised; facts: as of `RockingError`."""
+        """Return the error of a line; facts as in `RockingError`."""
         return RecordError(cause, **facts).at(self.name, 0 if line is None else line + 1)
 
     def doubt(self, line: int | None, cause: str) -> None:
-        """Keep a doubt about a line, which is said once the file is read."""
+        """Add a warning about a line, for output after the file is read."""
         self.doubts.append(str(self.error(line, cause)))
 
     @contextmanager
     def doubting(self) -> Iterator[None]:
-        """Make a doubt of what is refused within: it is no count, unit, step or peak of the acceleration."""
+        """Turn errors inside into doubts: they do not concern count, unit, step or peak of the acceleration."""
         try:
             yield
         except RecordError as error:
             self.doubts.append(str(error))
 
     def begins(self, line: int, mark: str) -> bool:
-        """Return whether there is such a line and it begins with a mark."""
+        """Return True if the line exists and begins with a mark."""
         return line < len(self.lines) and self.lines[line].startswith(mark)
 
-    def expected(self, line: int, what: str) -> RecordError:
-        """Return the error for a line that should say something else, or of which the file ends too early."""
-        return self.error(min(line, len(self.lines) - 1), "{content} expected", content=what)
+    def expected(self, line: int, content: str) -> RecordError:
+        """Return the error of a line with other content, or of a file that ends before it."""
+        return self.error(min(line, len(self.lines) - 1), "{content} expected", content=content)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,17 +118,17 @@ class Component:
     Parameters
     ----------
     name : str
-        What the file calls it: an azimuth, a channel code, ``U``, ``column 2``.
+        Name in the file: an azimuth, a channel code, ``U``, ``column 2``.
     acceleration : ndarray
         Samples, in `unit`.
     unit : str
         A key of `rocking.conventions.ACCELERATION_UNITS`.
     time_step : float
-        Step between samples [s].
+        Time step between samples [s].
     stated_peak : float, optional
-        Largest acceleration by the file's own header, without its sign, in `unit`; the reader has checked it.
+        Largest magnitude in the header of the file, checked against the samples, in `unit`.
     metadata : mapping of str to str
-        What the header says about this component.
+        Facts from the header about this component.
     """
 
     name: str
@@ -140,12 +140,12 @@ class Component:
 
     @property
     def peak(self) -> float:
-        """Largest acceleration without its sign, in the unit of the file."""
+        """Largest magnitude of the acceleration, in the unit of the file."""
         return float(np.abs(self.acceleration).max())
 
     @property
     def direction(self) -> directions.Direction:
-        """Direction by the file: ``up``, ``down``, ``unclear``, an azimuth [degree]; None if it states none."""
+        """Direction in the file: ``up``, ``down``, ``unclear``, an azimuth [degree]; None without a direction."""
         if directions.KEY in self.metadata:
             return directions.of_metadata(self.metadata)
         return directions.orientation(self.metadata.get("direction") or self.name)
@@ -153,18 +153,18 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A record file: its components in the order of the file, and its header as it stands.
+    """A record file: its components and its header.
 
     Parameters
     ----------
     format : str
-        Name of the format it was read as.
+        Name of the format.
     components : tuple of Component
-        In the order of the file.
+        Components in the order of the file.
     header : str
-        The raw header.
+        Raw header.
     metadata : mapping of str to str
-        What the header says: event, station, network, processing.
+        Facts from the header: event, station, network, processing.
     """
 
     format: str
@@ -173,16 +173,16 @@ class Record:
     metadata: Mapping[str, str] = field(default_factory=dict)
 
     def text(self, key: str, width: int, default: str = "") -> str:
-        """Return what is known of the record on one line of a header, for writers.
+        """Return a text of the metadata for one line of a header, for writers.
 
         Parameters
         ----------
         key : str
             A key of the metadata.
         width : int
-            Most characters.
+            Largest number of characters.
         default : str
-            What a header says where nothing is known.
+            Text for missing metadata.
 
         Returns
         -------
@@ -193,30 +193,30 @@ class Record:
 
 
 class RecordFormat(ABC):
-    """One format of ground-motion files; a new one is a subclass in a file of its own and a line in `reader`."""
+    """A format of ground-motion files; a new format is a subclass in its own module and a line in `reader`."""
 
     name: ClassVar[str]  # name for `format=` and on the command line
-    title: ClassVar[str]  # who publishes such files, in one line
-    suffixes: ClassVar[tuple[str, ...]] = ()  # usual endings, lower case, for people only: content decides
-    states_unit: ClassVar[bool] = True  # whether the file itself says so; where not, the user must
-    states_time_step: ClassVar[bool] = True  # whether the file itself says so; where not, the user must
-    notes: ClassVar[str] = ""  # what to know before trusting it
-    marks: ClassVar[tuple[str, ...]] = ()  # patterns of text with which lines near the top begin
-    top: ClassVar[int] = 0  # how many lines are looked at for them
+    title: ClassVar[str]  # publisher of such files, in one line
+    suffixes: ClassVar[tuple[str, ...]] = ()  # usual extensions, in lower case; the content defines the format
+    states_unit: ClassVar[bool] = True  # True if the files contain the unit; else the user must state it
+    states_time_step: ClassVar[bool] = True  # True if the files contain the time step; else the user must state it
+    notes: ClassVar[str] = ""  # limits of the format and its verification
+    marks: ClassVar[tuple[str, ...]] = ()  # patterns at the start of lines near the top
+    top: ClassVar[int] = 0  # number of lines searched for marks
 
     def __init_subclass__(cls) -> None:
-        """Refuse a format that nothing recognises."""
+        """Refuse a format without detection."""
         super().__init_subclass__()
         if not (cls.marks and cls.top) and cls.recognises is RecordFormat.recognises:
-            raise TypeError(f"{cls.__name__}: say marks and top, or write recognises")
+            raise TypeError(f"{cls.__name__}: define marks and top, or recognises")
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the content looks like this format: all marks but one are there; never raises."""
-        # a damaged header must not turn a file into a nameless table of numbers
+        """Return True if the content has all marks of this format except at most one; raises no error."""
+        # a file with a damaged header must not count as columns of numbers
         return bool(self.marks) and self._marks_in(source) >= len(self.marks) - 1
 
     def resembles(self, source: Source) -> bool:
-        """Return whether half of the marks of this format are there, as in a damaged header."""
+        """Return True if the content has at least half of the marks of this format, as in a damaged header."""
         return len(self.marks) > 3 and 2 * self._marks_in(source) >= len(self.marks)
 
     def _marks_in(self, source: Source) -> int:
@@ -224,7 +224,7 @@ class RecordFormat(ABC):
         return sum(any(re.match(mark, line[:400]) for line in top) for mark in self.marks)
 
     def refusal(self, source: Source) -> RecordError | None:
-        """Return why a file that no format recognises would be of this one but for a damage that can be named."""
+        """Return the error of a file that has this format except for a known damage; else None."""
         return None
 
     @abstractmethod
@@ -233,11 +233,11 @@ class RecordFormat(ABC):
 
     @abstractmethod
     def write(self, record: Record) -> bytes:
-        """Return the content of a file that `read` reads back, to the digits that the format can hold."""
+        """Return the content of a file of this format, for `read`."""
 
 
 def readable(text: str, *, turkish: bool = False) -> str:
-    r"""Return a line in the alphabet in which it was written: UTF-8 where it is that, Turkish by its words, or Latin-1.
+    r"""Return a line in its encoding: UTF-8 if valid, Turkish if it has Turkish words, else Latin-1.
 
     >>> readable("\xddvme (g)"), readable("\xc5\xa0i\xc5\xa1")
     ('İvme (g)', 'Šiš')
@@ -251,7 +251,7 @@ def readable(text: str, *, turkish: bool = False) -> str:
 
 
 def one_line(text: object, width: int) -> str:
-    r"""Return Latin-1 text that fits on one line of a header, for writers; other letters become question marks.
+    r"""Return Latin-1 text for one line of a header, for writers; other letters become question marks.
 
     >>> one_line("El Centro\r\n 1940", 12)
     'El Centro 19'
@@ -261,7 +261,7 @@ def one_line(text: object, width: int) -> str:
 
 
 def metadata_of(**texts: str) -> dict[str, str]:
-    """Return what a header says, without what it leaves empty; an underscore is a blank.
+    """Return metadata without empty texts; underscores in keys become blanks.
 
     >>> metadata_of(event="Kobe", station_name=" ")
     {'event': 'Kobe'}

@@ -1,4 +1,4 @@
-"""ObsPy's and IRIS' text formats SLIST and TSPAIR: a line TIMESERIES a channel, then samples, or times and samples.
+"""Text formats SLIST and TSPAIR of ObsPy and IRIS: a line TIMESERIES per channel, then samples, or times and samples.
 
 Layout: ObsPy's documentation of `obspy.io.ascii`; IRIS DMC, "ASCII time series formats".
 """
@@ -25,41 +25,41 @@ class Slist(RecordFormat):
     name: ClassVar[str] = "slist"
     title: ClassVar[str] = "SLIST and TSPAIR, text of ObsPy and IRIS"
     suffixes: ClassVar[tuple[str, ...]] = (".ascii", ".slist", ".tspair")
-    notes: ClassVar[str] = "Counts are refused; where the unit is no acceleration by name it must be told."
+    notes: ClassVar[str] = "Counts raise an error; units= is required unless the unit is an acceleration."
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the first line begins as that of a channel."""
+        """Return True if the first line begins with TIMESERIES."""
         return source.is_text and source.lines[0].startswith("TIMESERIES ")
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, a component for each channel; its gaps would be channels of one name."""
+        """Return the record, one component per channel; gaps appear as channels of one name and raise an error."""
         starts = [line for line, text in enumerate(source.lines) if text.startswith("TIMESERIES")]
         if not starts or starts[0] != 0:
-            raise source.error(0, "a line that begins with TIMESERIES expected")
-        parts = []
+            raise source.error(0, "line that begins with TIMESERIES expected")
+        components = []
         for first, last in zip(starts, [*starts[1:], len(source.lines)], strict=True):
-            parts.append(_channel(source, first, last, units, time_step))
-        names = [part.name for part in parts]
+            components.append(_channel(source, first, last, units, time_step))
+        names = [component.name for component in components]
         if len(set(names)) != len(names):
             raise source.error(
                 None,
-                "a channel of {channels} has a gap or an overlap; cut it out first",
+                "a channel of {channels} has a gap or an overlap; remove this section first",
                 channels=", ".join(sorted(set(names))),
             )
-        metadata = {key: text for key, text in parts[0].metadata.items() if text}
-        return Record(self.name, tuple(parts), "\n".join(source.lines[line] for line in starts), metadata)
+        metadata = {key: text for key, text in components[0].metadata.items() if text}
+        return Record(self.name, tuple(components), "\n".join(source.lines[line] for line in starts), metadata)
 
     def write(self, record: Record) -> bytes:
         """Return an SLIST file in m/s2."""
         lines: list[str] = []
         station = re.sub(r"\W|_", "", record.text("station", 5)) or "XXXXX"
-        codes = [re.sub(r"\W|_", "", one_line(part.name, 20)) or "X" for part in record.components]
+        codes = [re.sub(r"\W|_", "", one_line(component.name, 20)) or "X" for component in record.components]
         if len(set(codes)) != len(codes):
-            raise RecordError("components need different channel codes, got {codes}", codes=", ".join(codes)[:60])
-        for part, code, values in zip(
+            raise RecordError("components require different channel codes, got {codes}", codes=", ".join(codes)[:60])
+        for component, code, values in zip(
             record.components, codes, headers.in_unit(record, self.name, "m/s2", 99), strict=True
         ):
-            size = f"{values.size} samples, {1.0 / part.time_step:.12g} sps, 1970-01-01T00:00:00.000000"
+            size = f"{values.size} samples, {1.0 / component.time_step:.12g} sps, 1970-01-01T00:00:00.000000"
             lines += [
                 f"TIMESERIES XX_{station}__{code}_D, {size}, SLIST, FLOAT, m/s**2",
                 *numbers.in_columns(values, 6, "{:+.10e}  "),
@@ -68,12 +68,12 @@ class Slist(RecordFormat):
 
 
 def _channel(source: Source, first: int, last: int, units: str | None, time_step: float | None) -> Component:
-    found = _HEAD.fullmatch(source.lines[first][:300])
-    if found is None:
+    match = _HEAD.fullmatch(source.lines[first][:300])
+    if match is None:
         raise source.error(first, "TIMESERIES code, ... samples, ... sps, time, SLIST or TSPAIR, kind, unit expected")
-    network, station, _, code, count, rate, start, layout, kind, word = found.groups()
+    network, station, _, code, count, rate, start, layout, kind, word = match.groups()
     if kind == "ASCII":
-        raise source.error(first, "the file holds text, no accelerations")
+        raise source.error(first, "the file contains text, not accelerations")
     unit = headers.acceleration_unit(source, unit_named(source, first, word), units)
     step = headers.step_between_samples(source, 1.0 / float(rate) if float(rate) > 0.0 else 0.0, time_step)
     if layout == "SLIST":
@@ -84,10 +84,10 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
         times = [np.datetime64(words[0].rstrip("Z"), "ns") for _, words in rows]
         late = np.array([float((time - times[0]) / np.timedelta64(1, "ns")) * 1e-9 for time in times])
         if np.abs(late - step * np.arange(late.size)).max(initial=0.0) > 0.01 * step + 1e-6:
-            raise source.error(first, "the times are not {step:g} s apart throughout; a line missing?", step=step)
+            raise source.error(first, "the times are not evenly spaced at {step:g} s; a line may be missing", step=step)
     headers.check_count(source, int(count), values.size)
     if values.size < 2:
-        raise source.error(first, "at least 2 samples are needed, found {count}", count=values.size)
+        raise source.error(first, "at least 2 samples required, found {count}", count=values.size)
     headers.doubt_channel(source, code)
     return Component(
         code or "unnamed", values, unit, step, None, {"network": network, "station": station, "starttime": start}
@@ -96,5 +96,5 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
 
 def _value(source: Source, line: int, words: list[str]) -> float:
     if len(words) != 2 or not re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z?", words[0]):
-        raise source.error(line, "a time and a sample expected, found {entry!r}", entry=" ".join(words)[:60])
+        raise source.error(line, "time and sample expected, found {entry!r}", entry=" ".join(words)[:60])
     return numbers.number(source, line, words[1])

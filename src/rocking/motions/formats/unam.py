@@ -1,6 +1,6 @@
-"""UNAM, Mexico: the ASA standard file of accelerations, version 2.0, with up to 12 channels side by side.
+"""UNAM, Mexico: the ASA standard file of accelerations, version 2.0, with up to 12 channels in columns.
 
-Layout: the header itself, which names every field and the Fortran format of the samples. Checked on one file of 2017.
+Layout: from the header, which contains every field name and the Fortran format. Verified with one file of 2017.
 """
 
 import re
@@ -22,7 +22,7 @@ class Unam(RecordFormat):
     name: ClassVar[str] = "unam"
     title: ClassVar[str] = "UNAM, Mexico: archivo estandar de aceleracion (ASA), version 2.0"
     suffixes: ClassVar[tuple[str, ...]] = (".txt",)
-    notes: ClassVar[str] = "Verified on one file of 2017 with three channels in gal. Channels are named by orientation."
+    notes: ClassVar[str] = "Verified with one file of 2017 with three channels in gal. Channel names are orientations."
     marks: ClassVar[tuple[str, ...]] = (
         "ARCHIVO ESTANDAR DE ACELERACION", r"NUMERO DE CANALES\s*:", r"INTERVALO DE MUESTREO, C1-C6",
         r"NUM\. TOTAL DE MUESTRAS, C1-C6", r"FORMATO DATOS", "DATOS DE ACELERACION",
@@ -37,37 +37,37 @@ class Unam(RecordFormat):
         steps = _listed(source, head, "INTERVALO DE MUESTREO", channels, r"\d*\.?\d+")
         names = _listed(source, head, "ORIENTACION", channels, r"[^/]*")
         peaks = _listed(source, head, r"ACEL\. MAX\.\s*\(Gal\)", channels, r"[-+]?\d*\.?\d+")
-        if len(set(counts)) > 1 or len({float(one) for one in steps}) > 1:
-            raise source.error(None, "channels of different length or step are not read")
+        if len(set(counts)) > 1 or len({float(step) for step in steps}) > 1:
+            raise source.error(None, "channels must have equal length and time step")
         header_value(source, head, r"UNIDADES DE LOS DATOS\s*:", r"(?:Gal|cm/s/s|cm/s\^?2)\b.*")
         unit = headers.acceleration_unit(source, "gal", units)
         step = headers.step_between_samples(source, float(steps[0]), time_step)
         form = header_value(source, head, r"FORMATO DATOS[^:]*:", r".*")[0]
-        across, width = numbers.fortran_form(source, head, form)
-        if across != channels:
+        columns, width = numbers.fortran_form(source, head, form)
+        if columns != channels:
             raise source.error(
-                None, "{channels} channels are stated, and samples in {form}", channels=channels, form=form[:20]
+                None, "the header states {channels} channels, but samples in {form}", channels=channels, form=form[:20]
             )
         sides = names
         if len(set(names)) < channels or "" in names:
-            names = [f"CHAN {place}" for place in range(1, channels + 1)]
+            names = [f"CHAN {number}" for number in range(1, channels + 1)]
         texts = {
             "event": r"FECHA DEL SISMO[^:]*:",
             "station": r"NOMBRE DE LA ESTACION\s*:",
             "magnitude": r"MAGNITUD\(ES\)\s*:",
         }
         metadata = metadata_of(**{key: header_text(source, head, word) for key, word in texts.items()})
-        parts = zip(names, sides, strict=True)
-        channels_of = tuple(Component(name, np.empty(0), unit, step, None, {"direction": side}) for name, side in parts)
+        pairs = zip(names, sides, strict=True)
+        channels_of = tuple(Component(name, np.empty(0), unit, step, None, {"direction": side}) for name, side in pairs)
         about = Record(self.name, channels_of, "", metadata)
-        return side_by_side(source, about, first, int(counts[0]), peaks, (across, width))
+        return side_by_side(source, about, first, int(counts[0]), peaks, (columns, width))
 
     def write(self, record: Record) -> bytes:
         """Return a file of up to six channels, in gal with 4 decimals."""
         table, step = columns_of(record, self.name, "gal", 6)
         table, count = table.round(4), len(record.components)
         largest = [f"{row[int(np.abs(row).argmax())]:.4f}" for row in table.T]
-        names = [one_line(part.name, 9).replace("/", "-") for part in record.components]
+        names = [one_line(component.name, 9).replace("/", "-") for component in record.components]
         stated = {
             "NOMBRE DE LA ESTACION": record.text("station", 40),
             "NUMERO DE CANALES": str(count),
@@ -85,15 +85,15 @@ class Unam(RecordFormat):
 
 
 def _listed(source: Source, last: int, key: str, channels: int, form: str) -> list[str]:
-    """Return what the lines of channels 1 to 6 and 7 to 12 say, one behind each slash."""
-    words: list[str] = []
-    for which in ("C1-C6", "C7-C12"):
-        if len(words) < channels:
-            words += header_value(source, last, rf"{key},?\s*{which}[^:]*:", r"/.*")[0][1:].split("/")
-    words = [word.strip() for word in words]
-    if len(words) != channels or not all(re.fullmatch(form, word) for word in words):
+    """Return the values in the lines of channels 1 to 6 and 7 to 12, separated by slashes."""
+    texts: list[str] = []
+    for group in ("C1-C6", "C7-C12"):
+        if len(texts) < channels:
+            texts += header_value(source, last, rf"{key},?\s*{group}[^:]*:", r"/.*")[0][1:].split("/")
+    texts = [word.strip() for word in texts]
+    if len(texts) != channels or not all(re.fullmatch(form, word) for word in texts):
         raise source.error(
-            None, "{key}: {channels} values behind slashes expected, found {entry}", key=key.replace(chr(92), ""),
-            channels=channels, entry=str(words[:12]),
+            None, "{key}: {channels} values after slashes expected, found {entry}", key=key.replace(chr(92), ""),
+            channels=channels, entry=str(texts[:12]),
         )  # fmt: skip
-    return words
+    return texts

@@ -209,7 +209,7 @@ def test_lost_contact_stands_beside_the_verdicts(kind, result):
     words = torn["contact"]
     assert torn["messages"][words]["facts"]
     lost, of = map(int, re.findall(r"\d+", words)[:2])
-    (share,) = map(float, re.findall(r"\(([\d.]+) %\) the ground would have to pull", words))
+    (share,) = map(float, re.findall(r"\(([\d.]+) %\); their results", words))
     assert 0 < lost <= of
     assert share == pytest.approx(100.0 * lost / of, abs=0.05)
     assert of == 8 if kind != "minimum-acceleration" else of >= 4 * 20

@@ -240,7 +240,7 @@ def refusal(words, folder):
 ELSEWHERE = {
     "levels": ("stripes", "levels = { from = 2, to = 10, count = 5 }", "", r"fragility\.levels is missing"),
     "falling": ("stripes", "from = 2, to = 10", "from = 10, to = 2",
-        r"fragility: levels must increase \[m/s2\] from value to value; these decrease"),
+        r"fragility: levels must increase \[m/s2\] from value to value; reverse the order"),
     "measure": ("stripes", '"pga"', '"pgaa"', r"fragility: measure must be one of pga, .*got 'pgaa'"),
     "ratio": ("stripes", '"pga"', '"pgv/pga"', r"fragility: measure must be one that grows with the motion"),
     "states": ("stripes", "limit_states = [0.3]", "limit_states = [0.3, -1]",
