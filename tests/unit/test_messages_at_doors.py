@@ -176,7 +176,10 @@ def test_units_in_pulses(words: str, plain: str) -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ("sine:amplitude=0.3gg,period=1", "amplitude must be a number, without unit or with one of m/s2, .*, got '0.3gg'"),
+        (
+            "sine:amplitude=0.3gg,period=1",
+            "amplitude must be a number, without unit or with one of m/s2, .*, got '0.3gg'",
+        ),
         ("sine:amplitude=3s,period=1", "amplitude must be a number, without unit or with one of m/s2, .*, got '3s'"),
         ("sine:amplitude=3,period=1min", "period must be a number, without unit or with one of s, ms, got '1min'"),
         ("harmonic:amplitude=3,period=1,cycles=5g", "cycles must be a number without a unit, got '5g'"),
