@@ -72,7 +72,7 @@ def test_the_measure_of_the_page_is_at_every_door(monkeypatch, printed, tmp_path
     made = SyntheticSet("point-source", 2, 1, rms=1.0)
     assert [rms.of(motion) for motion in (made[0], made[1])] == pytest.approx([1.0, 1.0], rel=1e-14, abs=0.0)
     assert made.description()["rms_m_s2"] == 1.0
-    pulse = ("motion", "sine:amplitude=3,period=0.8")
+    pulse = ("record", "show", "sine:amplitude=3,period=0.8")
     assert "Root mean square of the acceleration" in printed(*pulse)
     assert json.loads(printed(*pulse, "--json"))["intensity"]["rms"] == pytest.approx(4.5**0.5, rel=1e-3)
     file = tmp_path / "curves.xml"

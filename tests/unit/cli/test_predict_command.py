@@ -86,7 +86,7 @@ def test_a_conservator_with_a_scan(tmp_path, capsys, monkeypatch):
     vertices, sides, _ = bad_scans.statue(12, 9)
     trimesh.Trimesh(1000.0 * vertices[:-1], sides, process=False).export(tmp_path / "statue.stl")
     text = DOCS.read_text("utf-8").partition("## Compute a probability from a scan")[2]
-    commands = [line.split()[1:] for line in text.partition("```\n")[2].partition("```")[0].splitlines()]
+    commands = [line.split()[1:] for line in text.partition("\n\n```\n")[2].partition("```")[0].splitlines()]
     assert [words[0] for words in commands] == ["equilibria", "predict", "predict"]
     monkeypatch.chdir(tmp_path)
     said = []
