@@ -1,0 +1,170 @@
+// Histories over many periods, and flights between impacts, for one instruction set; compiled once for each.
+#include "kernel.hpp"
+
+#include "lanes.hpp"
+
+namespace rocking {
+namespace ROCKING_ISA {
+namespace longrun {
+
+// Whole periods of the first sine. Time is counted from the start of the present period where there is one sine.
+template <int V>
+class Periods {
+    const Cycles& work;
+    Queue& queue;
+
+    double period(const Lane<V>& lane) const { return 2.0 * kPi / lane.sines[0].omega; }
+    const double* start(const Lane<V>& lane) const { return work.starts + kStart * lane.row; }
+
+    void next_period(Lane<V>& lane) const {
+        if (lane.cycle == work.settled) {
+            lane.peak = lane.y / lane.side[lane.s].alpha;
+            lane.growth[0] = lane.growth[1] = 0.0;
+            lane.earlier_impacts = lane.impacts;
+            lane.earlier_rests = lane.rests;
+        }
+        if (work.set.sines == 1) lane.t = start(lane)[0];
+        lane.until = start(lane)[0] + period(lane) * static_cast<double>(work.set.sines == 1 ? 1 : lane.cycle + 1);
+    }
+
+    void grow(Lane<V>& lane) const {
+        const double p = std::sqrt(lane.side[lane.s].p2);
+        for (int m = 0; m < V; ++m) {
+            double* vector = lane.tangent[m];
+            if (m == 1) {  // orthogonal to the first
+                const double along = fma(vector[0], lane.tangent[0][0], vector[1] * lane.tangent[0][1] / (p * p));
+                for (int k = 0; k < 2; ++k) vector[k] = fma(-along, lane.tangent[0][k], vector[k]);
+            }
+            const double norm = std::sqrt(fma(vector[0], vector[0], vector[1] * vector[1] / (p * p)));
+            lane.growth[m] += std::log(norm);
+            vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;  // a rest erases every difference: it is followed anew
+            vector[1] = norm > 0.0 ? vector[1] / norm : m * p;
+        }
+    }
+
+    void write(const Lane<V>& lane, Event end) const {
+        double* result = work.results + kResults * lane.row;
+        const double values[kResults] = {static_cast<double>(end), static_cast<double>(lane.cycle), static_cast<double>(lane.impacts - lane.earlier_impacts),
+                                         static_cast<double>(lane.rests - lane.earlier_rests), lane.peak, lane.growth[0], lane.growth[1],
+                                         static_cast<double>(lane.stored), static_cast<double>(lane.steps)};
+        std::copy(values, values + kResults, result);
+    }
+
+  public:
+    Periods(const Cycles& cycles, Queue& next) : work(cycles), queue(next) {}
+    const Settings& settings() const { return work.set; }
+    bool counts_peaks(const Lane<V>& lane) const { return lane.cycle >= work.settled; }
+
+    bool begin(Lane<V>& lane) {
+        const std::int64_t row = queue.fetch_add(1);
+        if (row >= work.rows) return false;
+        lane.begin(work.bodies + kBody * row, work.sines + work.set.sines * row, work.set);
+        lane.row = row;
+        const double* from = start(lane);
+        lane.t = from[0];
+        lane.s = from[1] < 0.0 || (from[1] == 0.0 && from[2] < 0.0);
+        lane.y = std::fabs(from[1]);
+        lane.v = lane.s ? -from[2] : from[2];
+        for (int m = 0; m < V; ++m) {
+            lane.tangent[m][0] = 1.0 - m;
+            lane.tangent[m][1] = std::sqrt(lane.side[0].p2) * (m == 0 ? 0.6 : 1.0);
+        }
+        if (lane.y == 0.0 && lane.v == 0.0) lane.settle();
+        next_period(lane);
+        return true;
+    }
+    // The end of a period.
+    bool arrived(Lane<V>& lane) {
+        if (lane.cycle >= work.settled) {
+            double* section = work.sections + 2 * (work.kept * lane.row + lane.cycle - work.settled);
+            section[0] = lane.sign() * lane.y;
+            section[1] = lane.sign() * lane.v;
+        }
+        grow(lane);
+        ++lane.cycle;
+        if (lane.cycle == work.settled + work.kept) {
+            write(lane, Event::none);
+            return false;
+        }
+        next_period(lane);
+        return true;
+    }
+    bool happened(Lane<V>& lane, Event event) {
+        if (event == Event::overturned || event == Event::failed) {
+            write(lane, event);
+            return false;
+        }
+        if (event == Event::impact && lane.cycle >= work.settled && lane.stored < work.most_impacts) {
+            double* impact = work.impacts + 3 * (work.most_impacts * lane.row + lane.stored++);
+            impact[0] = work.set.sines == 1 ? fma(static_cast<double>(lane.cycle), period(lane), lane.t) : lane.t;
+            impact[1] = lane.sign() * lane.v;
+            impact[2] = lane.before;
+        }
+        return true;
+    }
+};
+
+// Flights over a number of impacts: tangent vectors by start time, by start speed, by a parameter.
+class Impacts {
+    static constexpr std::int64_t kMostSteps = 10000;  // between two impacts
+    const Flights& work;
+    Queue& queue;
+
+    void write(const Lane<3>& lane, Event event) const {
+        double* end = work.ends + kEnds * lane.row;
+        end[0] = lane.t;
+        end[1] = lane.v;
+        end[2] = lane.sign();
+        end[3] = static_cast<double>(event);
+        const double after = lane.acceleration();
+        for (int m = 0; m < 3; ++m) {
+            const double time = -lane.tangent[m][0] / lane.v;
+            end[4 + m] = time;
+            end[7 + m] = fma(after, time, lane.tangent[m][1]);
+        }
+        end[10] = lane.peak;
+        end[11] = lane.before;
+    }
+
+  public:
+    Impacts(const Flights& flights, Queue& next) : work(flights), queue(next) {}
+    const Settings& settings() const { return work.set; }
+    bool counts_peaks(const Lane<3>&) const { return true; }
+    bool begin(Lane<3>& lane) {
+        const std::int64_t row = queue.fetch_add(1);
+        if (row >= work.rows) return false;
+        lane.begin(work.bodies + kBody * row, work.sines + work.set.sines * row, work.set);
+        lane.row = row;
+        const double* start = work.starts + kStart * row;
+        lane.t = start[0];
+        lane.v = start[1];
+        lane.s = start[2] < 0.0;
+        lane.until = 1e300;
+        lane.tangent[0][0] = -lane.v;
+        lane.tangent[0][1] = -lane.acceleration();
+        lane.tangent[1][1] = 1.0;
+        return true;
+    }
+    bool arrived(Lane<3>& lane) {
+        write(lane, Event::failed);
+        return false;
+    }
+    bool happened(Lane<3>& lane, Event event) {
+        if (event == Event::impact && lane.steps > kMostSteps * lane.impacts) event = Event::failed;
+        if (event == Event::impact && lane.impacts < work.impacts) return true;
+        write(lane, event);
+        return false;
+    }
+};
+
+void cycles(const Cycles& work, int vectors, Queue& queue) {
+    if (vectors == 0) Lanes<0, Periods<0>>({work, queue}).run();
+    if (vectors == 1) Lanes<1, Periods<1>>({work, queue}).run();
+    if (vectors == 2) Lanes<2, Periods<2>>({work, queue}).run();
+}
+
+void flights(const Flights& work, Queue& queue) { Lanes<3, Impacts>({work, queue}).run(); }
+
+}  // namespace longrun
+}  // namespace ROCKING_ISA
+}  // namespace rocking

@@ -1,0 +1,209 @@
+// One history among those that step side by side: its body, its forcing, its state, and everything that happens to it apart from
+// plain steps: impacts, rest, uplift.
+//
+// y = |rotation| about the corner in contact: y'' = -p^2 (sin(alpha - y) + s u cos(alpha - y)), u = ground acceleration / g,
+// s = +-1 the side; linear: y'' = -p^2 (alpha - y + s u). An impact turns the velocity v < 0 at y = 0 into r |v| on the other side.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "../pack.hpp"
+#include "../sine.hpp"
+#include "kernel.hpp"
+
+namespace rocking {
+namespace ROCKING_ISA {
+namespace longrun {
+
+using namespace rocking::longrun;
+
+constexpr int kOrder = 18, kTerms = kOrder + 1;
+constexpr double kPi = 3.14159265358979323846, kPiLow = 1.2246467991473532e-16;
+constexpr double kStepError = 1e-16;  // of one step, relative to the slenderness angle
+
+enum class Event : int { none, impact, rest, overturned, failed };
+
+// An angle less a whole number of half turns; the sign is that of the sine of what was taken away.
+inline double reduced(double angle, double& sign) {
+    const double halves = std::nearbyint(angle / kPi);
+    sign = static_cast<std::int64_t>(halves) & 1 ? -1.0 : 1.0;
+    return fma(-halves, kPiLow, fma(-halves, kPi, angle));
+}
+
+inline void any_sine_cosine(double angle, double& sine, double& cosine) {
+    double sign;
+    const double x = reduced(angle, sign);
+    sine_cosine(x, sine, cosine);
+    sine *= sign;
+    cosine *= sign;
+}
+
+// A polynomial of a step; its value, slope and half curvature at x.
+struct Column {
+    double c[kTerms];
+    double value(double x, int first = 0) const {
+        double sum = c[kOrder];
+        for (int k = kOrder - 1; k >= first; --k) sum = fma(sum, x, c[k]);
+        return sum;
+    }
+    void derivatives(double x, double& value, double& slope, double& half) const {
+        value = c[kOrder];
+        slope = half = 0.0;
+        for (int k = kOrder - 1; k >= 0; --k) {
+            half = fma(half, x, slope);
+            slope = fma(slope, x, value);
+            value = fma(value, x, c[k]);
+        }
+    }
+    // First zero on (0, h], without the zero of multiplicity `skip` at the start; negative where there is none.
+    double first_zero(double h, int skip) const {
+        double bend = 0.0, power = 1.0;  // bound of h^2 times the second derivative
+        for (int k = skip; k < kTerms; ++k, power *= h) bend = fma((k - skip) * (k - skip - 1.0) * std::fabs(c[k]), power, bend);
+        return zero_between(0.0, c[skip], h, value(h, skip), bend, skip);
+    }
+
+  private:
+    // A chord bounds the polynomial to an eighth of `bend`; where that decides nothing the interval is halved.
+    double zero_between(double a, double at_a, double b, double at_b, double bend, int skip) const {
+        if (at_b > 0.0) {
+            if (std::min(at_a, at_b) > bend / 8.0 || b - a < 1e-9 * b) return -1.0;
+        } else if (bend < at_a - at_b || b - a < 1e-9 * b) {
+            return polished(a, b, skip);
+        }
+        const double middle = 0.5 * (a + b), at_middle = value(middle, skip);
+        const double left = zero_between(a, at_a, middle, at_middle, 0.25 * bend, skip);
+        return left >= 0.0 || at_middle <= 0.0 ? left : zero_between(middle, at_middle, b, at_b, 0.25 * bend, skip);
+    }
+    double polished(double a, double b, int skip) const {
+        double x = 0.5 * (a + b);
+        for (int k = 0; k < 60; ++k) {
+            double f = c[kOrder], g = 0.0;
+            for (int n = kOrder - 1; n >= skip; --n) {
+                g = fma(g, x, f);
+                f = fma(f, x, c[n]);
+            }
+            (f > 0.0 ? a : b) = x;
+            double next = x - f / g;
+            if (!(next > a && next < b)) next = 0.5 * (a + b);
+            if (std::fabs(next - x) <= 1e-16 * b) return next;
+            x = next;
+        }
+        return x;
+    }
+};
+
+template <int V>
+struct Lane {
+    Side side[2];
+    double threshold[2];  // ground acceleration over g that lifts the body
+    const Sine* sines;
+    Settings set;
+    std::int64_t row = -1, impacts = 0, rests = 0, steps = 0;
+    int s = 0;  // side in contact: 0 for a positive rotation
+    bool resting = false, lifts = false;
+    double t = 0.0, y = 0.0, v = 0.0, until = 0.0, tangent[V > 0 ? V : 1][2] = {};
+    double peak = 0.0, before = 0.0, falling = 0.0;  // largest y over alpha; velocity and acceleration before the last impact
+    std::int64_t cycle = 0, stored = 0, earlier_impacts = 0, earlier_rests = 0;  // of the driver
+    double growth[2] = {};
+
+    void begin(const double* body, const Sine* forcing, const Settings& settings) {
+        *this = Lane();
+        sines = forcing;
+        set = settings;
+        for (int k = 0; k < 2; ++k) {
+            side[k] = {body[4 * k], body[4 * k + 1], body[4 * k + 2], body[4 * k + 3]};
+            double sine, cosine;
+            sine_cosine(side[k].alpha, sine, cosine);
+            threshold[k] = set.linear ? side[k].alpha : sine / cosine;
+        }
+    }
+    double sign() const { return s == 0 ? 1.0 : -1.0; }
+
+    // Ground acceleration over g and its rate.
+    void ground(double& acceleration, double& rate) const {
+        acceleration = rate = 0.0;
+        for (int i = 0; i < set.sines; ++i) {
+            double sine, cosine;
+            any_sine_cosine(fma(sines[i].omega, t, sines[i].phase), sine, cosine);
+            acceleration = fma(sines[i].amplitude, sine, acceleration);
+            rate = fma(sines[i].amplitude * sines[i].omega, cosine, rate);
+        }
+    }
+    // Acceleration of y on the side in contact at y = 0.
+    double acceleration() const {
+        double u, rate, sine, cosine;
+        ground(u, rate);
+        if (set.linear) return -side[s].p2 * fma(sign(), u, side[s].alpha);
+        sine_cosine(side[s].alpha, sine, cosine);
+        return -side[s].p2 * fma(sign() * u, cosine, sine);
+    }
+    // Put the body at rest, or let it rise where the ground lifts it already.
+    void settle() {
+        double u, rate;
+        ground(u, rate);
+        y = v = 0.0;
+        resting = true;
+        for (int k = 0; k < 2; ++k)
+            if ((k == 0 ? -u : u) > threshold[k]) {
+                s = k;
+                resting = false;
+            }
+    }
+    // Wait for the ground to reach the threshold of a side, by steps that cannot pass it.
+    void wait() {
+        double bound = 0.0;  // of the second derivative of the ground acceleration
+        for (int i = 0; i < set.sines; ++i) bound = fma(std::fabs(sines[i].amplitude) * sines[i].omega, sines[i].omega, bound);
+        while (resting && t < until) {
+            double u, rate, h = until - t;
+            ground(u, rate);
+            for (int k = 0; k < 2; ++k) {
+                const double from = k == 0 ? -1.0 : 1.0, gap = threshold[k] - from * u, towards = from * rate;
+                const double safe = gap > 0.0 ? 2.0 * gap / (towards + std::sqrt(towards * towards + 2.0 * bound * gap)) : 0.0;
+                if (safe <= 2e-16 * std::fabs(t) + 1e-300 && towards > 0.0) {
+                    s = k;
+                    resting = false;
+                    lifts = true;
+                    return;
+                }
+                h = std::min(h, std::max(safe, 2e-16 * std::fabs(t)));
+            }
+            t = h < until - t ? t + h : until;
+        }
+    }
+    // The impact at y = 0 with a velocity v < 0; tangent vectors by the saltation matrix [[r, 0], [(a+ - r' a-) / v-, r']], r' = d(r v) / dv.
+    Event land() {
+        const double rate = -v, r = fma(side[s].slope, rate, side[s].r), derivative = fma(side[s].slope, rate, r);
+        before = v;
+        ++impacts;
+        s = 1 - s;
+        y = 0.0;
+        if (!(r * rate > set.rest * side[s].alpha * std::sqrt(side[s].p2))) {
+            ++rests;
+            for (auto& vector : tangent) vector[0] = vector[1] = 0.0;
+            settle();
+            return Event::rest;
+        }
+        v = r * rate;
+        if constexpr (V > 0) {
+            const double after = acceleration();
+            for (auto& vector : tangent) {
+                vector[1] = fma(fma(derivative, falling, after) / before, vector[0], -derivative * vector[1]);
+                vector[0] *= -r;
+            }
+            if (set.parameter == Parameter::restitution) tangent[V - 1][1] += rate;
+        }
+        return Event::impact;
+    }
+    // With speeds this far beyond the point of no return no ground motion of its size brings the body back.
+    bool is_lost() const {
+        if (!set.linear) return y > set.overturned;
+        double most = 0.0;
+        for (int i = 0; i < set.sines; ++i) most += std::fabs(sines[i].amplitude);
+        return v > 0.0 && y - side[s].alpha > most;
+    }
+};
+
+}  // namespace longrun
+}  // namespace ROCKING_ISA
+}  // namespace rocking
