@@ -7,7 +7,12 @@ namespace rocking {
 namespace longrun {
 
 struct Side {
-    double alpha, p2, r, slope;  // coefficient of restitution r + slope |rotation rate before the impact|
+    double alpha, p2, r;  // coefficient of restitution of impacts that end the contact on this side
+};
+// Factor on the coefficients of restitution over the rotation rate before the impact: linear between points, constant outside.
+struct SpeedLaw {
+    const double *at, *factors;
+    int points;
 };
 struct Sine {
     double amplitude, omega, phase;  // of the ground acceleration over g
@@ -19,9 +24,10 @@ struct Settings {
     bool linear;
     double overturned, rest;  // rotation that ends a history; speed over alpha p below which a body comes to rest
     Parameter parameter;      // of the last tangent vector; the amplitudes change in proportion
+    SpeedLaw law;
 };
 
-constexpr int kBody = 8, kStart = 3, kResults = 9, kEnds = 12, kMostSines = 32;
+constexpr int kBody = 6, kStart = 3, kResults = 9, kEnds = 12, kMostSines = 32;
 
 // Rows of histories over whole periods of the first sine: settled ones, then kept ones with their states and impacts.
 struct Cycles {

@@ -112,7 +112,7 @@ struct Lane {
         sines = forcing;
         set = settings;
         for (int k = 0; k < 2; ++k) {
-            side[k] = {body[4 * k], body[4 * k + 1], body[4 * k + 2], body[4 * k + 3]};
+            side[k] = {body[3 * k], body[3 * k + 1], body[3 * k + 2]};
             double sine, cosine;
             sine_cosine(side[k].alpha, sine, cosine);
             threshold[k] = set.linear ? side[k].alpha : sine / cosine;
@@ -171,9 +171,21 @@ struct Lane {
             t = h < until - t ? t + h : until;
         }
     }
+    // Index of the last point of the speed law at or below a rate; -1 below all, the last one above all.
+    int interval(double rate) const { return static_cast<int>(std::upper_bound(set.law.at, set.law.at + set.law.points, rate) - set.law.at) - 1; }
+    double slope_at(double rate) const {
+        const int k = interval(rate);
+        if (k < 0 || k + 1 >= set.law.points) return 0.0;
+        return (set.law.factors[k + 1] - set.law.factors[k]) / (set.law.at[k + 1] - set.law.at[k]);
+    }
+    double factor_at(double rate) const {
+        if (set.law.points == 0) return 1.0;
+        const int k = std::max(interval(rate), 0);
+        return fma(slope_at(rate), rate - set.law.at[k], set.law.factors[k]);
+    }
     // The impact at y = 0 with a velocity v < 0; tangent vectors by the saltation matrix [[r, 0], [(a+ - r' a-) / v-, r']], r' = d(r v) / dv.
     Event land() {
-        const double rate = -v, r = fma(side[s].slope, rate, side[s].r), derivative = fma(side[s].slope, rate, r);
+        const double rate = -v, factor = factor_at(rate), r = side[s].r * factor, derivative = fma(side[s].r * slope_at(rate), rate, r);
         before = v;
         ++impacts;
         s = 1 - s;
@@ -191,7 +203,7 @@ struct Lane {
                 vector[1] = fma(fma(derivative, falling, after) / before, vector[0], -derivative * vector[1]);
                 vector[0] *= -r;
             }
-            if (set.parameter == Parameter::restitution) tangent[V - 1][1] += rate;
+            if (set.parameter == Parameter::restitution) tangent[V - 1][1] += rate * factor;
         }
         return Event::impact;
     }

@@ -44,18 +44,20 @@ static int level(const std::string& isa) {
     return asked;
 }
 
-// bodies: (rows, 8), sines: (rows, sines, 3), starts: (rows, 3) of time, rotation and rotation rate.
+static SpeedLaw of(const Array<const double, 2>& law) { return {law.data(), law.data() + law.shape(1), static_cast<int>(law.shape(1))}; }
+
+// bodies: (rows, 6), sines: (rows, sines, 3), starts: (rows, 3) of time, rotation and rotation rate.
 static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Array<const double, 2> starts, Array<double, 2> results, Array<double, 3> sections,
-                 Array<double, 3> impacts, std::int64_t settled, int vectors, bool linear, double overturned, double rest, int threads, const std::string& isa) {
+                 Array<double, 3> impacts, Array<const double, 2> law, std::int64_t settled, int vectors, bool linear, double overturned, double rest, int threads, const std::string& isa) {
     const auto rows = static_cast<std::int64_t>(bodies.shape(0));
     const auto fits = [&](const auto& array) { return static_cast<std::int64_t>(array.shape(0)) == rows; };
     expect(fits(sines) && fits(starts) && fits(results) && fits(sections) && fits(impacts) && bodies.shape(1) == kBody && starts.shape(1) == kStart &&
                sines.shape(2) == 3 && sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && results.shape(1) == kResults && sections.shape(2) == 2 &&
-               impacts.shape(2) == 3 && threads > 0 && vectors >= 0 && vectors <= 2 && settled >= 0,
+               impacts.shape(2) == 3 && threads > 0 && vectors >= 0 && vectors <= 2 && settled >= 0 && law.shape(0) == 2,
            "tables of histories expected");
     const Cycles work{bodies.data(), starts.data(), reinterpret_cast<const Sine*>(sines.data()), results.data(), sections.data(), impacts.data(), rows, settled,
                       static_cast<std::int64_t>(sections.shape(1)), static_cast<std::int64_t>(impacts.shape(1)),
-                      {static_cast<int>(sines.shape(1)), linear, overturned, rest, Parameter::none}};
+                      {static_cast<int>(sines.shape(1)), linear, overturned, rest, Parameter::none, of(law)}};
     const int set = level(isa);
     Queue queue{0};
     nb::gil_scoped_release release;
@@ -70,15 +72,15 @@ static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Ar
 
 // From one impact over n: starts (rows, 3) of time, speed after the impact and side; ends (rows, 12): time, speed, side, event, derivatives of
 // time and then of speed by start time, start speed and parameter, peak over alpha, velocity before the last impact.
-static void over_impacts(Array<const double, 2> bodies, Array<const double, 3> sines, Array<const double, 2> starts, Array<double, 2> ends, std::int64_t n, int parameter,
+static void over_impacts(Array<const double, 2> bodies, Array<const double, 3> sines, Array<const double, 2> starts, Array<double, 2> ends, Array<const double, 2> law, std::int64_t n, int parameter,
                          bool linear, double overturned, double rest, int threads, const std::string& isa) {
     const auto rows = static_cast<std::int64_t>(bodies.shape(0));
     const auto fits = [&](const auto& array) { return static_cast<std::int64_t>(array.shape(0)) == rows; };
     expect(fits(sines) && fits(starts) && fits(ends) && bodies.shape(1) == kBody && starts.shape(1) == kStart && ends.shape(1) == kEnds && sines.shape(2) == 3 &&
-               sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && n > 0 && parameter >= 0 && parameter <= 4 && threads > 0,
+               sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && n > 0 && parameter >= 0 && parameter <= 4 && threads > 0 && law.shape(0) == 2,
            "tables of flights expected");
     const Flights work{bodies.data(), starts.data(), reinterpret_cast<const Sine*>(sines.data()), ends.data(), rows, n,
-                       {static_cast<int>(sines.shape(1)), linear, overturned, rest, static_cast<Parameter>(parameter)}};
+                       {static_cast<int>(sines.shape(1)), linear, overturned, rest, static_cast<Parameter>(parameter), of(law)}};
     const int set = level(isa);
     Queue queue{0};
     nb::gil_scoped_release release;
@@ -92,9 +94,9 @@ static void over_impacts(Array<const double, 2> bodies, Array<const double, 3> s
 }
 
 NB_MODULE(_longrun, m) {
-    m.def("many", &many, "bodies"_a, "sines"_a, "starts"_a, "results"_a, "sections"_a, "impacts"_a, "settled"_a, "vectors"_a, "linear"_a, "overturned"_a, "rest"_a,
+    m.def("many", &many, "bodies"_a, "sines"_a, "starts"_a, "results"_a, "sections"_a, "impacts"_a, "law"_a, "settled"_a, "vectors"_a, "linear"_a, "overturned"_a, "rest"_a,
           "threads"_a, "isa"_a = "");
-    m.def("over_impacts", &over_impacts, "bodies"_a, "sines"_a, "starts"_a, "ends"_a, "n"_a, "parameter"_a, "linear"_a, "overturned"_a, "rest"_a, "threads"_a,
+    m.def("over_impacts", &over_impacts, "bodies"_a, "sines"_a, "starts"_a, "ends"_a, "law"_a, "n"_a, "parameter"_a, "linear"_a, "overturned"_a, "rest"_a, "threads"_a,
           "isa"_a = "");
 }
 

@@ -1,0 +1,486 @@
+"""Periodic orbits of harmonic rocking: Newton's method, continuation in a parameter, bifurcations and their branches."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.longrun.system import IMPACT, HarmonicRocking, Parameter, over_impacts
+
+TOLERANCE = 1e-12  # of phase [rad] and speed over alpha p that close an orbit
+
+
+class OrbitNotFoundError(RockingError):
+    """Newton's method found no periodic orbit near the start."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A periodic orbit, from one of its impacts.
+
+    For a symmetric body the state after an impact on one foot is equivalent to the mirrored state half a period later. The
+    orbit closes after `impacts` impacts and `halves` half periods of the ground motion, up to this symmetry.
+
+    Attributes
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phase, speed : float
+        Phase of the ground motion [rad] and speed over alpha p after an impact onto the right foot [-].
+    impacts, halves : int
+        Impacts and half periods until the orbit closes.
+    jacobian : ndarray
+        Derivative of phase and speed after `impacts` impacts by those at the start, shape (2, 2).
+    peak : float
+        Largest rotation over alpha [-].
+    """
+
+    system: HarmonicRocking
+    phase: float
+    speed: float
+    impacts: int
+    halves: int
+    jacobian: FloatArray
+    peak: float
+
+    @property
+    def trace(self) -> float:
+        """Trace of the jacobian [-]."""
+        return float(np.trace(self.jacobian))
+
+    @property
+    def determinant(self) -> float:
+        """Determinant of the jacobian [-]."""
+        (a, b), (c, d) = self.jacobian
+        return float(a * d - b * c)
+
+    @property
+    def multipliers(self) -> FloatArray:
+        """Eigenvalues of the jacobian, the largest modulus first, shape (2,)."""
+        values = np.linalg.eigvals(self.jacobian)
+        return values[np.argsort(-np.abs(values))]
+
+    @property
+    def is_stable(self) -> bool:
+        """True if all multipliers lie within the unit circle."""
+        return bool(np.abs(self.multipliers[0]) < 1.0)
+
+    @property
+    def exponents(self) -> FloatArray:
+        """Lyapunov exponents [1/s], shape (2,)."""
+        duration = self.halves * math.pi / self.system.excitation.frequency
+        return np.log(np.abs(self.multipliers)) / duration
+
+    @property
+    def fold(self) -> float:
+        """Test function of folds: 1 - trace + determinant."""
+        return 1.0 - self.trace + self.determinant
+
+    @property
+    def flip(self) -> float:
+        """Test function of pitchforks and period doublings: 1 + trace + determinant."""
+        return 1.0 + self.trace + self.determinant
+
+
+def find_orbit(
+    system: HarmonicRocking, phase: float, speed: float, *, impacts: int = 1, halves: int | None = None
+) -> PeriodicOrbit:
+    """Return the periodic orbit near a state, by Newton's method with exact derivatives.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phase, speed : float
+        Phase of the ground motion [rad] and speed over alpha p after an impact onto the right foot [-].
+    impacts : int, optional
+        Impacts until the orbit closes; even for a body that is not symmetric.
+    halves : int, optional
+        Half periods of the ground motion until the orbit closes; the number of impacts by default.
+
+    Returns
+    -------
+    PeriodicOrbit
+        The orbit; phase and speed close to 1e-12.
+
+    Raises
+    ------
+    OrbitNotFoundError
+        If the iteration does not converge.
+    InvalidValueError
+        If impacts and half periods do not have the same parity, or are odd for a body that is not symmetric.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 2.0, 2.0, restitution="housner")
+    >>> orbit = find_orbit(system, 2.76, 1.3)
+    >>> orbit.is_stable
+    True
+    """
+    halves = impacts if halves is None else halves
+    if impacts < 1 or (impacts - halves) % 2 or (impacts % 2 and not system.is_symmetric):
+        raise InvalidValueError(
+            "{impacts} impacts in {halves} half periods are no orbit of this body: both are even, or both odd for a "
+            "symmetric body", impacts=impacts, halves=halves,
+        )  # fmt: skip
+    state = np.array([phase, speed], dtype=float)
+    for _ in range(60):
+        flight = over_impacts(system, state[0], state[1], impacts)
+        if flight.event[0] != IMPACT:
+            break
+        residual = np.array([flight.phase[0] - state[0] - halves * math.pi, flight.speed[0] - state[1]])
+        step = np.linalg.solve(flight.jacobian[0] - np.eye(2), -residual)
+        if np.max(np.abs(residual)) < TOLERANCE and np.max(np.abs(step)) < 1e-9:
+            return _orbit(system, state + step, impacts, halves)
+        step /= max(1.0, abs(step[0]) / 0.3, abs(step[1]) / (0.3 * abs(state[1])))
+        state = state + step
+    raise OrbitNotFoundError(
+        "no periodic orbit of {impacts} impacts found near phase {phase:.6g} rad and speed {speed:.6g}",
+        impacts=impacts, phase=phase, speed=speed, hint="start nearer to the orbit",
+    )  # fmt: skip
+
+
+def _orbit(system: HarmonicRocking, state: FloatArray, impacts: int, halves: int) -> PeriodicOrbit:
+    flight = over_impacts(system, state[0], state[1], impacts)
+    return PeriodicOrbit(
+        system, float(state[0] % (2.0 * math.pi)), float(state[1]), impacts, halves, flight.jacobian[0],
+        float(flight.peak[0]),
+    )  # fmt: skip
+
+
+def symmetric_orbit(system: HarmonicRocking) -> PeriodicOrbit:
+    """Return the symmetric orbit of one impact per half period with the larger speed, from the closed form of slender bodies.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        A symmetric body and its ground motion.
+
+    Returns
+    -------
+    PeriodicOrbit
+        The orbit.
+
+    Raises
+    ------
+    OrbitNotFoundError
+        If the amplitude is too small for this orbit.
+    """
+    slender_speed, slender_phase = slender_orbit(system.amplitude_ratio, system.frequency_ratio, float(system.sides[2]))
+    phase = (slender_phase + math.pi) % (2.0 * math.pi)  # the ground pulls the body over its right foot
+    if system.linear:
+        return find_orbit(system, phase, slender_speed)
+    angle, orbit = system.alpha, None
+    for part in (0.05, 0.25, 0.5, 0.75, 1.0):  # from the slender body to the real one
+        near = system.changed("slenderness", part * angle).changed("amplitude", system.amplitude_ratio)
+        try:
+            orbit = find_orbit(near, phase, slender_speed)
+        except OrbitNotFoundError:
+            continue
+        phase, slender_speed = orbit.phase, orbit.speed
+    if orbit is None or orbit.system.alpha != angle:
+        orbit = find_orbit(system, phase, slender_speed)
+    return orbit
+
+
+def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tuple[float, float]:
+    """Return speed and phase after impact of the symmetric orbit of a slender body, in closed form.
+
+    Parameters
+    ----------
+    amplitude, frequency : float
+        Ratios as for `HarmonicRocking.of_ratios` with ``linear=True`` [-].
+    restitution : float
+        Coefficient of restitution [-].
+
+    Returns
+    -------
+    speed, phase : float
+        Speed over alpha p, and phase of -a(t) [rad].
+
+    Raises
+    ------
+    OrbitNotFoundError
+        If the amplitude is too small for this orbit.
+
+    References
+    ----------
+    Spanos and Koh (1984), J. Eng. Mech. 110:1627-1642.
+    """
+    half = math.pi / frequency
+    c, s = math.cosh(half), math.sinh(half)
+    # (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r); linear in the speed v
+    matrix = np.array([[1.0 + c, s], [s, 1.0 + c]])
+    free, by_speed = (np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / restitution)]))
+    scale = np.array([1.0, 1.0 / frequency])
+    free, by_speed = free * scale, by_speed * scale
+    size = amplitude / (1.0 + frequency**2)
+    a, b, d = by_speed @ by_speed, free @ by_speed, free @ free - size**2
+    root = b * b - a * d
+    if root < 0.0:
+        raise OrbitNotFoundError(
+            "no symmetric orbit at amplitude ratio {amplitude:.6g} and frequency ratio {frequency:.6g}: the smallest "
+            "amplitude ratio is {minimum:.6g}", amplitude=amplitude, frequency=frequency,
+            minimum=(1.0 + frequency**2) * math.sqrt(free @ free - b * b / a),
+        )  # fmt: skip
+    speed = (-b + math.sqrt(root)) / a
+    x, y = free + by_speed * speed
+    return speed, math.atan2(x, y) % (2.0 * math.pi)
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation:
+    """A bifurcation on a branch of periodic orbits.
+
+    Attributes
+    ----------
+    kind : {"fold", "pitchfork", "period doubling"}
+        A pitchfork breaks the symmetry of an orbit; a period doubling doubles its period.
+    value : float
+        Value of the parameter.
+    orbit : PeriodicOrbit
+        The orbit there.
+    """
+
+    kind: str
+    value: float
+    orbit: PeriodicOrbit
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch of periodic orbits over one parameter.
+
+    Attributes
+    ----------
+    parameter : str
+        Parameter, as for `HarmonicRocking.changed`.
+    orbits : list of PeriodicOrbit
+        Orbits along the branch.
+    bifurcations : list of Bifurcation
+        Bifurcations along the branch.
+    """
+
+    parameter: Parameter
+    orbits: list[PeriodicOrbit]
+    bifurcations: list[Bifurcation]
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """Values of the parameter, shape (orbits,)."""
+        return np.array([orbit.system.value(self.parameter) for orbit in self.orbits])
+
+    def first(self, kind: str) -> Bifurcation:
+        """Return the first bifurcation of a kind; LookupError if there is none."""
+        return next(iter([item for item in self.bifurcations if item.kind == kind]))
+
+
+class _Curve:
+    """Orbits of one kind as a curve of phase, speed and parameter over its first value: lengths are measured in these."""
+
+    def __init__(self, orbit: PeriodicOrbit, parameter: Parameter) -> None:
+        self.system, self.impacts, self.halves, self.parameter = orbit.system, orbit.impacts, orbit.halves, parameter
+        self.scale = abs(orbit.system.value(parameter))
+
+    def start(self, orbit: PeriodicOrbit) -> FloatArray:
+        """Return phase, speed and scaled parameter of an orbit, shape (3,)."""
+        return np.array([orbit.phase, orbit.speed, orbit.system.value(self.parameter) / self.scale])
+
+    def equations(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the residual, shape (2,), and its derivative, shape (2, 3)."""
+        system = self.system.changed(self.parameter, float(point[2]) * self.scale)
+        flight = over_impacts(system, point[0], point[1], self.impacts, parameter=self.parameter)
+        if flight.event[0] != IMPACT:
+            raise OrbitNotFoundError(
+                "the orbit ends at {name} {limit:.9g}", name=self.parameter, limit=float(point[2]) * self.scale
+            )
+        residual = np.array([flight.phase[0] - point[0] - self.halves * math.pi, flight.speed[0] - point[1]])
+        return residual, np.column_stack(
+            [flight.jacobian[0] - np.eye(2), flight.by_parameter[0] * self.scale]
+        )
+
+    def tangent(self, point: FloatArray, along: FloatArray) -> FloatArray:
+        """Return the unit tangent in the direction of another vector, shape (3,)."""
+        _, derivative = self.equations(point)
+        vector = np.cross(derivative[0], derivative[1])
+        vector /= np.linalg.norm(vector)
+        return vector if vector @ along >= 0.0 else -vector
+
+    def corrected(self, guess: FloatArray, normal: FloatArray) -> FloatArray:
+        """Return the orbit in the plane through a guess with a normal."""
+        point = guess.copy()
+        for _ in range(25):
+            residual, derivative = self.equations(point)
+            rows = np.vstack([derivative, normal])
+            step = np.linalg.solve(rows, -np.append(residual, normal @ (point - guess)))
+            point = point + step
+            if np.max(np.abs(step)) < 1e-11 and np.max(np.abs(residual)) < 1e-9:
+                return point
+            if not np.all(np.abs(step) < 1.0) or point[1] <= 0.0:
+                break
+        raise OrbitNotFoundError(
+            "the continuation finds no orbit near {name} {limit:.9g}", name=self.parameter,
+            limit=float(guess[2]) * self.scale,
+        )  # fmt: skip
+
+    def orbit(self, point: FloatArray) -> PeriodicOrbit:
+        return _orbit(self.system.changed(self.parameter, float(point[2]) * self.scale), point[:2], self.impacts, self.halves)
+
+
+def continue_orbit(
+    orbit: PeriodicOrbit,
+    limits: tuple[float, float],
+    *,
+    parameter: Parameter = "amplitude",
+    increasing: bool = True,
+    step: float = 0.02,
+    most: int = 2000,
+    stop: Callable[[Bifurcation], bool] | None = None,
+) -> Branch:
+    """Continue a periodic orbit in a parameter, through folds, and locate its bifurcations.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        First orbit.
+    limits : tuple of float
+        Smallest and largest value of the parameter.
+    parameter : {"amplitude", "frequency", "restitution", "slenderness"}, optional
+        Parameter, as for `HarmonicRocking.changed`.
+    increasing : bool, optional
+        True if the parameter increases at first.
+    step : float, optional
+        First step in phase [rad], speed and parameter [-]; it adapts.
+    most : int, optional
+        Largest number of orbits.
+    stop : callable, optional
+        Ends the branch at a bifurcation for which it returns True.
+
+    Returns
+    -------
+    Branch
+        Orbits and bifurcations; values of bifurcations are accurate to about 1e-10.
+
+    Raises
+    ------
+    OrbitNotFoundError
+        If the continuation fails at the first step.
+
+    References
+    ----------
+    Keller (1977), pseudo-arclength continuation; Hogan (1989), Proc. R. Soc. Lond. A 425:441-476.
+    """
+    curve = _Curve(orbit, parameter)
+    point = curve.start(orbit)
+    tangent = curve.tangent(point, np.array([0.0, 0.0, 1.0 if increasing else -1.0]))
+    return _followed(curve, point, tangent, limits, step, most, stop)
+
+
+def _followed(
+    curve: _Curve, point: FloatArray, tangent: FloatArray, limits: tuple[float, float], step: float, most: int,
+    stop: Callable[[Bifurcation], bool] | None,
+) -> Branch:  # fmt: skip
+    orbits, bifurcations = [curve.orbit(point)], []
+    length = step
+    while len(orbits) < most:
+        try:
+            following = curve.corrected(point + length * tangent, tangent)
+            ahead = curve.tangent(following, tangent)
+            if ahead @ tangent < 0.97:
+                raise OrbitNotFoundError("the step of the continuation is too long")
+        except (OrbitNotFoundError, np.linalg.LinAlgError):
+            length *= 0.5
+            if length < 1e-9:
+                if len(orbits) == 1:
+                    raise
+                break
+            continue
+        orbits.append(curve.orbit(following))
+        found = [
+            bifurcation
+            for name in ("fold", "flip")
+            if (bifurcation := _located(curve, point, tangent, following, name, orbits[-2], orbits[-1]))
+        ]
+        bifurcations += found
+        point, tangent = following, ahead
+        if not limits[0] <= point[2] * curve.scale <= limits[1] or (stop is not None and any(map(stop, found))):
+            break
+        length = min(1.5 * length, 5.0 * step) if ahead @ tangent > 0.995 else length
+    return Branch(curve.parameter, orbits, bifurcations)
+
+
+def _located(
+    curve: _Curve, point: FloatArray, tangent: FloatArray, following: FloatArray, name: str, before: PeriodicOrbit,
+    after: PeriodicOrbit,
+) -> Bifurcation | None:  # fmt: skip
+    """Locate the zero of a test function between two points of a curve."""
+    if getattr(before, name) * getattr(after, name) >= 0.0:
+        return None
+    ends = {}
+
+    def test(length: float) -> float:
+        ends[length] = curve.corrected(point + length * tangent, tangent)
+        return float(getattr(curve.orbit(ends[length]), name))
+
+    whole = float(tangent @ (following - point))
+    zero = brentq(test, 0.0, whole, xtol=1e-14, rtol=1e-14)
+    orbit = curve.orbit(curve.corrected(point + zero * tangent, tangent))
+    symmetric = curve.impacts % 2 == 1 and curve.system.is_symmetric
+    kind = "fold" if name == "fold" else "pitchfork" if symmetric else "period doubling"
+    return Bifurcation(kind, orbit.system.value(curve.parameter), orbit)
+
+
+def branch_off(
+    bifurcation: Bifurcation,
+    limits: tuple[float, float],
+    *,
+    parameter: Parameter = "amplitude",
+    step: float = 0.02,
+    most: int = 2000,
+    stop: Callable[[Bifurcation], bool] | None = None,
+) -> Branch:
+    """Follow the orbits that branch off at a pitchfork or a period doubling.
+
+    Parameters
+    ----------
+    bifurcation : Bifurcation
+        A pitchfork or a period doubling.
+    limits, parameter, step, most, stop
+        As for `continue_orbit`.
+
+    Returns
+    -------
+    Branch
+        Orbits with twice the number of impacts, and their bifurcations.
+
+    Raises
+    ------
+    InvalidValueError
+        If the bifurcation is a fold.
+    """
+    if bifurcation.kind == "fold":
+        raise InvalidValueError("no branch begins at a fold: continue_orbit passes it")
+    orbit = bifurcation.orbit
+    values, vectors = np.linalg.eig(orbit.jacobian)
+    direction = np.real(vectors[:, np.argmin(np.abs(values + 1.0))])
+    tangent = np.append(direction / np.linalg.norm(direction), 0.0)
+    double = PeriodicOrbit(
+        orbit.system, orbit.phase, orbit.speed, 2 * orbit.impacts, 2 * orbit.halves, orbit.jacobian @ orbit.jacobian,
+        orbit.peak,
+    )  # fmt: skip
+    curve = _Curve(double, parameter)
+    point, offset = curve.start(double), 1e-3
+    while True:
+        try:
+            first = curve.corrected(point + offset * tangent, tangent)
+            return _followed(curve, first, curve.tangent(first, tangent), limits, step, most, stop)
+        except OrbitNotFoundError:
+            offset *= 0.1
+            if offset < 1e-6:
+                raise

@@ -1,0 +1,415 @@
+"""A rocking body under harmonic ground motion, and its state over whole periods or from impact to impact."""
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, SpeedRestitution
+from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.restitution.registry import coefficients_of
+
+Parameter = Literal["amplitude", "frequency", "restitution", "slenderness"]
+_CODES = {"": 0, "amplitude": 1, "frequency": 2, "restitution": 3, "slenderness": 4}
+REST_SPEED = 1e-7  # over alpha p: slower impacts end in rest where the ground does not lift the body
+NONE, IMPACT, REST, OVERTURNED, FAILED = range(5)  # events of the engine
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """Harmonic horizontal ground acceleration, a(t) = amplitude sin(2 pi t / period + phase).
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak ground acceleration [m/s2].
+    period : float
+        Period [s].
+    phase : float, optional
+        Phase at time zero [rad].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is not finite, the amplitude is negative or the period not positive.
+
+    Examples
+    --------
+    >>> Harmonic(amplitude=2.0, period=0.8).frequency
+    7.853981633974483
+    """
+
+    amplitude: float
+    period: float
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        checks.within("amplitude", self.amplitude, 0.0, 1e4)
+        checks.positive("period", self.period, "s")
+        checks.number("phase", self.phase, "rad")
+
+    @property
+    def frequency(self) -> float:
+        """Circular frequency [rad/s]."""
+        return 2.0 * math.pi / self.period
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicRocking:
+    """A plane body with its restitution under harmonic ground motion.
+
+    Parameters
+    ----------
+    body : Body
+        Block, Section or MassPoints.
+    excitation : Harmonic
+        Ground motion.
+    restitution : str, RestitutionModel, float or mapping, optional
+        Model or coefficients, as for `simulate`.
+    law : ImpactLaw, optional
+        `SpeedRestitution` multiplies the coefficients by a factor that depends on the impact speed.
+    linear : bool, optional
+        Equations of a slender body: sin x = x, cos x = 1.
+    gravity : float, optional
+        Acceleration of gravity [m/s2].
+
+    Raises
+    ------
+    InvalidValueError
+        If the law depends on chance, or a coefficient would create energy.
+    MissingExtraError
+        If the compiled engine is missing.
+
+    References
+    ----------
+    Hogan (1989), Proc. R. Soc. Lond. A 425:441-476; Spanos and Koh (1984), J. Eng. Mech. 110:1627-1642.
+    """
+
+    body: Body
+    excitation: Harmonic
+    restitution: Any = "calibrated"
+    law: ImpactLaw = field(default_factory=ConstantRestitution)
+    linear: bool = False
+    gravity: float = conventions.g
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.law, ConstantRestitution | SpeedRestitution):
+            raise InvalidValueError(
+                parameter="law", allowed="a ConstantRestitution or a SpeedRestitution", value=type(self.law).__name__
+            )
+
+    @classmethod
+    def of_ratios(
+        cls, body: Body, amplitude: float, frequency: float, *, gravity: float = conventions.g, **options: Any
+    ) -> "HarmonicRocking":
+        """Return a system from ratios that do not depend on size.
+
+        Parameters
+        ----------
+        body : Body
+            Block, Section or MassPoints.
+        amplitude : float
+            Peak ground acceleration over g tan alpha of the right foot; over g alpha with ``linear=True`` [-].
+        frequency : float
+            Circular frequency over the frequency parameter p of the right foot [-].
+        gravity : float, optional
+            Acceleration of gravity [m/s2].
+        **options
+            Further parameters of the class.
+
+        Returns
+        -------
+        HarmonicRocking
+            The system.
+        """
+        side = body.side("right", gravity)
+        angle = side.slenderness_angle
+        reach = angle if options.get("linear") else math.tan(angle)
+        motion = Harmonic(amplitude * gravity * reach, 2.0 * math.pi / (frequency * side.frequency_parameter))
+        return cls(body, motion, gravity=gravity, **options)
+
+    @cached_property
+    def sides(self) -> FloatArray:
+        """Slenderness angle [rad], p squared [1/s2] and coefficient of restitution of right and left foot, shape (6,)."""
+        onto, _ = coefficients_of(self.restitution, self.body)
+        numbers = []
+        for foot, other in (("right", "left"), ("left", "right")):
+            side = self.body.side(foot, self.gravity)  # type: ignore[arg-type]
+            numbers += [side.slenderness_angle, side.frequency_parameter**2, onto[other]]  # type: ignore[index]
+        return np.array(numbers)
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle about the right foot [rad]."""
+        return float(self.sides[0])
+
+    @property
+    def p(self) -> float:
+        """Frequency parameter of the right foot [rad/s]."""
+        return math.sqrt(float(self.sides[1]))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """True if both feet have the same angle, frequency parameter and coefficient."""
+        return bool(np.allclose(self.sides[:3], self.sides[3:], rtol=1e-13, atol=0.0))
+
+    @property
+    def unit(self) -> float:
+        """Ground acceleration that lifts the body from its right foot [m/s2]."""
+        return self.gravity * (self.alpha if self.linear else math.tan(self.alpha))
+
+    @property
+    def amplitude_ratio(self) -> float:
+        """Peak ground acceleration over that of uplift from the right foot [-]."""
+        return self.excitation.amplitude / self.unit
+
+    @property
+    def frequency_ratio(self) -> float:
+        """Circular frequency over p of the right foot [-]."""
+        return self.excitation.frequency / self.p
+
+    def changed(self, parameter: Parameter, value: float) -> "HarmonicRocking":
+        """Return the system with another value of one parameter.
+
+        Parameters
+        ----------
+        parameter : {"amplitude", "frequency", "restitution", "slenderness"}
+            Amplitude and frequency ratio [-], the coefficient of both feet [-], or the slenderness angle of both feet
+            with constant p [rad].
+        value : float
+            The new value.
+
+        Returns
+        -------
+        HarmonicRocking
+            The new system.
+        """
+        sides, motion = self.sides.copy(), self.excitation
+        if parameter == "amplitude":
+            motion = replace(motion, amplitude=value * self.unit)
+        elif parameter == "frequency":
+            motion = replace(motion, period=2.0 * math.pi / (value * self.p))
+        elif parameter == "restitution":
+            sides[2::3] = value
+        else:
+            sides[0::3] = value
+        system = replace(self, excitation=motion)
+        system.__dict__["sides"] = sides
+        return system
+
+    def value(self, parameter: Parameter) -> float:
+        """Return the value of a parameter, as for `changed`."""
+        if parameter == "amplitude":
+            return self.amplitude_ratio
+        if parameter == "frequency":
+            return self.frequency_ratio
+        return float(self.sides[2 if parameter == "restitution" else 0])
+
+    @property
+    def sine(self) -> FloatArray:
+        """Amplitude over g [-], circular frequency [rad/s] and phase [rad], shape (3,)."""
+        motion = self.excitation
+        return np.array([motion.amplitude / self.gravity, motion.frequency, motion.phase])
+
+    @property
+    def factors(self) -> FloatArray:
+        """Points of the speed law: rates [rad/s] and factors [-], shape (2, points)."""
+        if isinstance(self.law, SpeedRestitution):
+            return np.ascontiguousarray([self.law.at, self.law.factors])
+        return np.empty((2, 0))
+
+
+@dataclass(frozen=True)
+class Periods:
+    """States of histories at the ends of periods.
+
+    Attributes
+    ----------
+    ending : ndarray of int
+        Event that ended each history; 0 if it was followed to its end, shape (rows,).
+    cycles : ndarray of int
+        Periods that each history lasted, shape (rows,).
+    impacts, rests : ndarray of int
+        Impacts, and those that ended in rest, in the kept periods, shape (rows,).
+    peak : ndarray
+        Largest rotation over alpha in the kept periods, shape (rows,).
+    growth : ndarray
+        Sum of the logarithms of the growth of the tangent vectors over the kept periods, shape (rows, 2).
+    states : ndarray
+        Rotation [rad] and angular velocity [rad/s] at the ends of the kept periods, shape (rows, periods, 2); NaN after
+        the end of a history.
+    hits : ndarray
+        Time [s], angular velocity after and speed before of the first impacts in the kept periods, shape
+        (rows, most, 3); NaN where there are fewer.
+    """
+
+    ending: Any
+    cycles: Any
+    impacts: Any
+    rests: Any
+    peak: FloatArray
+    growth: FloatArray
+    states: FloatArray
+    hits: FloatArray
+
+
+def engine() -> Any:
+    """Return the compiled engine."""
+    try:
+        from rocking.dynamics import _longrun
+    except ImportError as error:
+        raise MissingExtraError(
+            "long-run dynamics needs the compiled engine, which is missing: install rocking where a C++17 compiler is"
+        ) from error
+    return _longrun
+
+
+def over_periods(
+    systems: "HarmonicRocking | list[HarmonicRocking]",
+    starts: FloatArray,
+    *,
+    settled: int = 0,
+    kept: int = 1,
+    vectors: int = 0,
+    most_impacts: int = 0,
+    threads: int = 1,
+) -> Periods:
+    """Follow histories over whole periods.
+
+    Parameters
+    ----------
+    systems : HarmonicRocking or list of HarmonicRocking
+        One system for all rows, or one per row; the law and the equations of the first apply to all.
+    starts : array_like
+        Time [s], rotation [rad] and angular velocity [rad/s] at the start, shape (rows, 3).
+    settled, kept : int, optional
+        Periods before, and within, the part of which states are returned.
+    vectors : {0, 1, 2}, optional
+        Number of tangent vectors.
+    most_impacts : int, optional
+        Number of impacts that are kept.
+    threads : int, optional
+        Number of threads.
+
+    Returns
+    -------
+    Periods
+        The states.
+    """
+    starts = np.ascontiguousarray(np.atleast_2d(starts), dtype=float)
+    rows = len(starts)
+    first = systems[0] if isinstance(systems, list) else systems
+    results = np.full((rows, 9), np.nan)
+    states, hits = np.full((rows, kept, 2), np.nan), np.full((rows, most_impacts, 3), np.nan)
+    engine().many(
+        *_tables(systems, rows), starts, results, states, hits, first.factors, settled, vectors, first.linear,
+        math.pi / 2.0, REST_SPEED, threads,
+    )  # fmt: skip
+    whole = results[:, [0, 1, 2, 3]].astype(np.int64)
+    return Periods(*whole.T, results[:, 4], results[:, 5:7], states, hits)
+
+
+def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tuple[FloatArray, FloatArray]:
+    if isinstance(systems, list):
+        return np.array([system.sides for system in systems]), np.array([[system.sine] for system in systems])
+    return np.tile(systems.sides, (rows, 1)), np.tile(systems.sine, (rows, 1, 1))
+
+
+@dataclass(frozen=True)
+class Flights:
+    """Ends of flights from one impact over several.
+
+    Attributes
+    ----------
+    phase, speed : ndarray
+        Phase of the ground motion [rad] and speed after the last impact over alpha p [-], shape (rows,).
+    event : ndarray of int
+        1 if all impacts took place.
+    jacobian : ndarray
+        Derivatives of phase and speed by phase and speed at the start, shape (rows, 2, 2).
+    by_parameter : ndarray
+        Derivatives of phase and speed by the parameter, at constant phase at the start, shape (rows, 2).
+    peak : ndarray
+        Largest rotation over alpha, shape (rows,).
+    before : ndarray
+        Speed before the last impact over alpha p [-], shape (rows,).
+    """
+
+    phase: FloatArray
+    speed: FloatArray
+    event: Any
+    jacobian: FloatArray
+    by_parameter: FloatArray
+    peak: FloatArray
+    before: FloatArray
+
+
+def over_impacts(
+    system: HarmonicRocking,
+    phase: Any,
+    speed: Any,
+    impacts: int = 1,
+    *,
+    parameter: Parameter | Literal[""] = "",
+    side: Any = 1.0,
+    threads: int = 1,
+) -> Flights:
+    """Follow flights from the state after one impact over several impacts, with derivatives.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phase : array_like
+        Phases of the ground motion at the start [rad].
+    speed : array_like
+        Speeds after the impact over alpha p of the right foot [-].
+    impacts : int, optional
+        Number of impacts.
+    parameter : {"", "amplitude", "frequency", "restitution", "slenderness"}, optional
+        Parameter of `by_parameter`.
+    side : array_like, optional
+        1 for a body that moves over its right foot at the start, -1 for the left.
+    threads : int, optional
+        Number of threads.
+
+    Returns
+    -------
+    Flights
+        Ends and derivatives.
+    """
+    phase, speed, side = np.broadcast_arrays(*map(np.atleast_1d, (phase, speed, side)))
+    rate = system.alpha * system.p
+    sine = system.sine
+    omega = sine[1]
+    starts = np.ascontiguousarray(np.stack([(phase - sine[2]) / omega, speed * rate, side], axis=1), dtype=float)
+    ends = np.full((len(starts), 12), np.nan)
+    engine().over_impacts(
+        *_tables(system, len(starts)), starts, ends, system.factors, impacts, _CODES[parameter], system.linear,
+        math.pi / 2.0, REST_SPEED, threads,
+    )  # fmt: skip
+    jacobian = np.empty((len(starts), 2, 2))
+    jacobian[:, 0, 0], jacobian[:, 0, 1] = ends[:, 4], ends[:, 5] * omega * rate
+    jacobian[:, 1, 0], jacobian[:, 1, 1] = ends[:, 7] / (omega * rate), ends[:, 8]
+    by_time, by_speed = ends[:, 6], ends[:, 9]
+    if parameter == "amplitude":  # the engine's is relative
+        by = np.stack([by_time * omega, by_speed / rate], axis=1) / system.amplitude_ratio
+    elif parameter == "frequency":  # at constant phase the start time changes with the frequency
+        shift = -starts[:, 0] / omega
+        by_omega = [ends[:, 0] + omega * (by_time + ends[:, 4] * shift), (by_speed + ends[:, 7] * shift) / rate]
+        by = np.stack(by_omega, axis=1) * system.p
+    else:
+        by = np.stack([by_time * omega, by_speed / rate], axis=1)
+    if parameter == "slenderness":  # speeds are in units of alpha p
+        by[:, 0] += jacobian[:, 0, 1] * speed / system.alpha
+        by[:, 1] += (jacobian[:, 1, 1] * speed - ends[:, 1] / rate) / system.alpha
+    ends_phase = ends[:, 0] * omega + sine[2]
+    return Flights(
+        ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10],
+        np.abs(ends[:, 11]) / rate,
+    )  # fmt: skip
