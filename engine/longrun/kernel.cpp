@@ -104,20 +104,21 @@ class Periods {
     }
 };
 
-// Flights over a number of impacts: tangent vectors by start time, by start speed, by a parameter.
+// Flights over a number of impacts; with three tangent vectors: by start time, by start speed, by a parameter.
+template <int V>
 class Impacts {
     static constexpr std::int64_t kMostSteps = 10000;  // between two impacts
     const Flights& work;
     Queue& queue;
 
-    void write(const Lane<3>& lane, Event event) const {
+    void write(const Lane<V>& lane, Event event) const {
         double* end = work.ends + kEnds * lane.row;
         end[0] = lane.t;
         end[1] = lane.v;
         end[2] = lane.sign();
         end[3] = static_cast<double>(event);
         const double after = lane.acceleration();
-        for (int m = 0; m < 3; ++m) {
+        for (int m = 0; m < V; ++m) {
             const double time = -lane.tangent[m][0] / lane.v;
             end[4 + m] = time;
             end[7 + m] = fma(after, time, lane.tangent[m][1]);
@@ -129,8 +130,8 @@ class Impacts {
   public:
     Impacts(const Flights& flights, Queue& next) : work(flights), queue(next) {}
     const Settings& settings() const { return work.set; }
-    bool counts_peaks(const Lane<3>&) const { return true; }
-    bool begin(Lane<3>& lane) {
+    bool counts_peaks(const Lane<V>&) const { return true; }
+    bool begin(Lane<V>& lane) {
         const std::int64_t row = queue.fetch_add(1);
         if (row >= work.rows) return false;
         lane.begin(work.bodies + kBody * row, work.sines + work.set.sines * row, work.set);
@@ -140,16 +141,18 @@ class Impacts {
         lane.v = start[1];
         lane.s = start[2] < 0.0;
         lane.until = 1e300;
-        lane.tangent[0][0] = -lane.v;
-        lane.tangent[0][1] = -lane.acceleration();
-        lane.tangent[1][1] = 1.0;
+        if constexpr (V == 3) {
+            lane.tangent[0][0] = -lane.v;
+            lane.tangent[0][1] = -lane.acceleration();
+            lane.tangent[1][1] = 1.0;
+        }
         return true;
     }
-    bool arrived(Lane<3>& lane) {
+    bool arrived(Lane<V>& lane) {
         write(lane, Event::failed);
         return false;
     }
-    bool happened(Lane<3>& lane, Event event) {
+    bool happened(Lane<V>& lane, Event event) {
         if (event == Event::impact && lane.steps > kMostSteps * lane.impacts) event = Event::failed;
         if (event == Event::impact && lane.impacts < work.impacts) return true;
         write(lane, event);
@@ -163,7 +166,10 @@ void cycles(const Cycles& work, int vectors, Queue& queue) {
     if (vectors == 2) Lanes<2, Periods<2>>({work, queue}).run();
 }
 
-void flights(const Flights& work, Queue& queue) { Lanes<3, Impacts>({work, queue}).run(); }
+void flights(const Flights& work, bool derivatives, Queue& queue) {
+    if (derivatives) Lanes<3, Impacts<3>>({work, queue}).run();
+    else Lanes<0, Impacts<0>>({work, queue}).run();
+}
 
 }  // namespace longrun
 }  // namespace ROCKING_ISA

@@ -22,7 +22,7 @@ enum class Parameter : int { none, amplitude, omega, restitution, alpha };
 struct Settings {
     int sines;
     bool linear;
-    double overturned, rest;  // rotation that ends a history; speed over alpha p below which a body comes to rest
+    double overturned, rest, step_error;  // rotation that ends a history; speed over alpha p that may end in rest; error of a step over alpha
     Parameter parameter;      // of the last tangent vector; the amplitudes change in proportion
     SpeedLaw law;
 };
@@ -52,7 +52,7 @@ using Queue = std::atomic<std::int64_t>;
     namespace isa {                                                \
     namespace longrun {                                            \
     void cycles(const rocking::longrun::Cycles&, int vectors, Queue&); \
-    void flights(const rocking::longrun::Flights&, Queue&);        \
+    void flights(const rocking::longrun::Flights&, bool derivatives, Queue&); \
     }                                                              \
     }
 

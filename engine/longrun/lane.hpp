@@ -20,7 +20,6 @@ using namespace rocking::longrun;
 
 constexpr int kOrder = 18, kTerms = kOrder + 1;
 constexpr double kPi = 3.14159265358979323846, kPiLow = 1.2246467991473532e-16;
-constexpr double kStepError = 1e-16;  // of one step, relative to the slenderness angle
 
 enum class Event : int { none, impact, rest, overturned, failed };
 

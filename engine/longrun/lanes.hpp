@@ -194,7 +194,7 @@ class Lanes {
         for (int i = 0; i < W; ++i) {
             h[i] = lane[i].row >= 0 ? lane[i].until - lane[i].t : 0.0;
             for (int k = 0; k < 2; ++k)
-                if (size[k][i] > 0.0) h[i] = std::min(h[i], root(kStepError / size[k][i], kOrder - k));
+                if (size[k][i] > 0.0) h[i] = std::min(h[i], root(driver.settings().step_error / size[k][i], kOrder - k));
         }
     }
 

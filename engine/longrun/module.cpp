@@ -3,6 +3,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -48,7 +49,7 @@ static SpeedLaw of(const Array<const double, 2>& law) { return {law.data(), law.
 
 // bodies: (rows, 6), sines: (rows, sines, 3), starts: (rows, 3) of time, rotation and rotation rate.
 static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Array<const double, 2> starts, Array<double, 2> results, Array<double, 3> sections,
-                 Array<double, 3> impacts, Array<const double, 2> law, std::int64_t settled, int vectors, bool linear, double overturned, double rest, int threads, const std::string& isa) {
+                 Array<double, 3> impacts, Array<const double, 2> law, std::int64_t settled, int vectors, bool linear, double overturned, double rest, double step_error, int threads, const std::string& isa) {
     const auto rows = static_cast<std::int64_t>(bodies.shape(0));
     const auto fits = [&](const auto& array) { return static_cast<std::int64_t>(array.shape(0)) == rows; };
     expect(fits(sines) && fits(starts) && fits(results) && fits(sections) && fits(impacts) && bodies.shape(1) == kBody && starts.shape(1) == kStart &&
@@ -57,7 +58,7 @@ static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Ar
            "tables of histories expected");
     const Cycles work{bodies.data(), starts.data(), reinterpret_cast<const Sine*>(sines.data()), results.data(), sections.data(), impacts.data(), rows, settled,
                       static_cast<std::int64_t>(sections.shape(1)), static_cast<std::int64_t>(impacts.shape(1)),
-                      {static_cast<int>(sines.shape(1)), linear, overturned, rest, Parameter::none, of(law)}};
+                      {static_cast<int>(sines.shape(1)), linear, overturned, rest, step_error, Parameter::none, of(law)}};
     const int set = level(isa);
     Queue queue{0};
     nb::gil_scoped_release release;
@@ -71,32 +72,32 @@ static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Ar
 }
 
 // From one impact over n: starts (rows, 3) of time, speed after the impact and side; ends (rows, 12): time, speed, side, event, derivatives of
-// time and then of speed by start time, start speed and parameter, peak over alpha, velocity before the last impact.
+// time and then of speed by start time, start speed and parameter (none for -1), peak over alpha, velocity before the last impact.
 static void over_impacts(Array<const double, 2> bodies, Array<const double, 3> sines, Array<const double, 2> starts, Array<double, 2> ends, Array<const double, 2> law, std::int64_t n, int parameter,
-                         bool linear, double overturned, double rest, int threads, const std::string& isa) {
+                         bool linear, double overturned, double rest, double step_error, int threads, const std::string& isa) {
     const auto rows = static_cast<std::int64_t>(bodies.shape(0));
     const auto fits = [&](const auto& array) { return static_cast<std::int64_t>(array.shape(0)) == rows; };
     expect(fits(sines) && fits(starts) && fits(ends) && bodies.shape(1) == kBody && starts.shape(1) == kStart && ends.shape(1) == kEnds && sines.shape(2) == 3 &&
-               sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && n > 0 && parameter >= 0 && parameter <= 4 && threads > 0 && law.shape(0) == 2,
+               sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && n > 0 && parameter >= -1 && parameter <= 4 && threads > 0 && law.shape(0) == 2,
            "tables of flights expected");
     const Flights work{bodies.data(), starts.data(), reinterpret_cast<const Sine*>(sines.data()), ends.data(), rows, n,
-                       {static_cast<int>(sines.shape(1)), linear, overturned, rest, static_cast<Parameter>(parameter), of(law)}};
+                       {static_cast<int>(sines.shape(1)), linear, overturned, rest, step_error, static_cast<Parameter>(std::max(parameter, 0)), of(law)}};
     const int set = level(isa);
     Queue queue{0};
     nb::gil_scoped_release release;
     spread(threads, [&] {
 #if defined(ROCKING_X86)
-        if (set == 2) return avx512::longrun::flights(work, queue);
-        if (set == 1) return avx2::longrun::flights(work, queue);
+        if (set == 2) return avx512::longrun::flights(work, parameter >= 0, queue);
+        if (set == 1) return avx2::longrun::flights(work, parameter >= 0, queue);
 #endif
-        plain::longrun::flights(work, queue);
+        plain::longrun::flights(work, parameter >= 0, queue);
     });
 }
 
 NB_MODULE(_longrun, m) {
     m.def("many", &many, "bodies"_a, "sines"_a, "starts"_a, "results"_a, "sections"_a, "impacts"_a, "law"_a, "settled"_a, "vectors"_a, "linear"_a, "overturned"_a, "rest"_a,
-          "threads"_a, "isa"_a = "");
-    m.def("over_impacts", &over_impacts, "bodies"_a, "sines"_a, "starts"_a, "ends"_a, "law"_a, "n"_a, "parameter"_a, "linear"_a, "overturned"_a, "rest"_a, "threads"_a,
+          "step_error"_a, "threads"_a, "isa"_a = "");
+    m.def("over_impacts", &over_impacts, "bodies"_a, "sines"_a, "starts"_a, "ends"_a, "law"_a, "n"_a, "parameter"_a, "linear"_a, "overturned"_a, "rest"_a, "step_error"_a, "threads"_a,
           "isa"_a = "");
 }
 

@@ -15,6 +15,7 @@ def many(
     linear: bool,
     overturned: float,
     rest: float,
+    step_error: float,
     threads: int,
     isa: str = "",
 ) -> None: ...
@@ -29,6 +30,7 @@ def over_impacts(
     linear: bool,
     overturned: float,
     rest: float,
+    step_error: float,
     threads: int,
     isa: str = "",
 ) -> None: ...

@@ -1,4 +1,4 @@
-"""Periodic orbits of harmonic rocking: Newton's method, continuation in a parameter, bifurcations and their branches."""
+"""Periodic orbits of harmonic rocking: Newton's method, continuation in a parameter, bifurcations, their branches."""
 
 import math
 from collections.abc import Callable
@@ -12,6 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.longrun.system import IMPACT, HarmonicRocking, Parameter, over_impacts
 
+ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
 TOLERANCE = 1e-12  # of phase [rad] and speed over alpha p that close an orbit
 
 
@@ -23,8 +24,8 @@ class OrbitNotFoundError(RockingError):
 class PeriodicOrbit:
     """A periodic orbit, from one of its impacts.
 
-    For a symmetric body the state after an impact on one foot is equivalent to the mirrored state half a period later. The
-    orbit closes after `impacts` impacts and `halves` half periods of the ground motion, up to this symmetry.
+    For a symmetric body the state after an impact on one foot is equivalent to the mirrored state half a period later.
+    The orbit closes after `impacts` impacts and `halves` half periods of the ground motion, up to this symmetry.
 
     Attributes
     ----------
@@ -60,9 +61,9 @@ class PeriodicOrbit:
         return float(a * d - b * c)
 
     @property
-    def multipliers(self) -> FloatArray:
+    def multipliers(self) -> ComplexArray:
         """Eigenvalues of the jacobian, the largest modulus first, shape (2,)."""
-        values = np.linalg.eigvals(self.jacobian)
+        values = np.linalg.eigvals(self.jacobian).astype(complex)
         return values[np.argsort(-np.abs(values))]
 
     @property
@@ -155,7 +156,9 @@ def _orbit(system: HarmonicRocking, state: FloatArray, impacts: int, halves: int
 
 
 def symmetric_orbit(system: HarmonicRocking) -> PeriodicOrbit:
-    """Return the symmetric orbit of one impact per half period with the larger speed, from the closed form of slender bodies.
+    """Return the symmetric orbit of one impact per half period with the larger speed.
+
+    The closed form of slender bodies is the start of Newton's method.
 
     Parameters
     ----------
@@ -217,7 +220,9 @@ def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tup
     c, s = math.cosh(half), math.sinh(half)
     # (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r); linear in the speed v
     matrix = np.array([[1.0 + c, s], [s, 1.0 + c]])
-    free, by_speed = (np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / restitution)]))
+    free, by_speed = (
+        np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / restitution)])
+    )
     scale = np.array([1.0, 1.0 / frequency])
     free, by_speed = free * scale, by_speed * scale
     size = amplitude / (1.0 + frequency**2)
@@ -282,7 +287,7 @@ class Branch:
 
 
 class _Curve:
-    """Orbits of one kind as a curve of phase, speed and parameter over its first value: lengths are measured in these."""
+    """Orbits of one kind as a curve of phase, speed and parameter over its first value."""
 
     def __init__(self, orbit: PeriodicOrbit, parameter: Parameter) -> None:
         self.system, self.impacts, self.halves, self.parameter = orbit.system, orbit.impacts, orbit.halves, parameter
@@ -301,9 +306,7 @@ class _Curve:
                 "the orbit ends at {name} {limit:.9g}", name=self.parameter, limit=float(point[2]) * self.scale
             )
         residual = np.array([flight.phase[0] - point[0] - self.halves * math.pi, flight.speed[0] - point[1]])
-        return residual, np.column_stack(
-            [flight.jacobian[0] - np.eye(2), flight.by_parameter[0] * self.scale]
-        )
+        return residual, np.column_stack([flight.jacobian[0] - np.eye(2), flight.by_parameter[0] * self.scale])
 
     def tangent(self, point: FloatArray, along: FloatArray) -> FloatArray:
         """Return the unit tangent in the direction of another vector, shape (3,)."""
@@ -330,7 +333,19 @@ class _Curve:
         )  # fmt: skip
 
     def orbit(self, point: FloatArray) -> PeriodicOrbit:
-        return _orbit(self.system.changed(self.parameter, float(point[2]) * self.scale), point[:2], self.impacts, self.halves)
+        return _orbit(
+            self.system.changed(self.parameter, float(point[2]) * self.scale), point[:2], self.impacts, self.halves
+        )
+
+
+@dataclass(frozen=True)
+class _Course:
+    """Limits of the parameter, first step, largest number of orbits, and test of bifurcations that end a branch."""
+
+    limits: tuple[float, float]
+    step: float
+    most: int
+    stop: Callable[[Bifurcation], bool] | None
 
 
 def continue_orbit(
@@ -379,16 +394,13 @@ def continue_orbit(
     curve = _Curve(orbit, parameter)
     point = curve.start(orbit)
     tangent = curve.tangent(point, np.array([0.0, 0.0, 1.0 if increasing else -1.0]))
-    return _followed(curve, point, tangent, limits, step, most, stop)
+    return _followed(curve, point, tangent, _Course(limits, step, most, stop))
 
 
-def _followed(
-    curve: _Curve, point: FloatArray, tangent: FloatArray, limits: tuple[float, float], step: float, most: int,
-    stop: Callable[[Bifurcation], bool] | None,
-) -> Branch:  # fmt: skip
+def _followed(curve: _Curve, point: FloatArray, tangent: FloatArray, course: _Course) -> Branch:
     orbits, bifurcations = [curve.orbit(point)], []
-    length = step
-    while len(orbits) < most:
+    length = course.step
+    while len(orbits) < course.most:
         try:
             following = curve.corrected(point + length * tangent, tangent)
             ahead = curve.tangent(following, tangent)
@@ -402,34 +414,37 @@ def _followed(
                 break
             continue
         orbits.append(curve.orbit(following))
-        found = [
+        located = [
             bifurcation
             for name in ("fold", "flip")
-            if (bifurcation := _located(curve, point, tangent, following, name, orbits[-2], orbits[-1]))
+            if (bifurcation := _located(curve, (point, following), tangent, name, (orbits[-2], orbits[-1])))
         ]
-        bifurcations += found
+        bifurcations += located
         point, tangent = following, ahead
-        if not limits[0] <= point[2] * curve.scale <= limits[1] or (stop is not None and any(map(stop, found))):
+        is_end = course.stop is not None and any(map(course.stop, located))
+        if is_end or not course.limits[0] <= point[2] * curve.scale <= course.limits[1]:
             break
-        length = min(1.5 * length, 5.0 * step) if ahead @ tangent > 0.995 else length
+        length = min(1.5 * length, 5.0 * course.step) if ahead @ tangent > 0.995 else length
     return Branch(curve.parameter, orbits, bifurcations)
 
 
 def _located(
-    curve: _Curve, point: FloatArray, tangent: FloatArray, following: FloatArray, name: str, before: PeriodicOrbit,
-    after: PeriodicOrbit,
-) -> Bifurcation | None:  # fmt: skip
+    curve: _Curve,
+    points: tuple[FloatArray, FloatArray],
+    tangent: FloatArray,
+    name: str,
+    orbits: tuple[PeriodicOrbit, PeriodicOrbit],
+) -> Bifurcation | None:
     """Locate the zero of a test function between two points of a curve."""
-    if getattr(before, name) * getattr(after, name) >= 0.0:
+    before, after = (float(getattr(orbit, name)) for orbit in orbits)
+    if before * after >= 0.0:
         return None
-    ends = {}
+    point, following = points
 
     def test(length: float) -> float:
-        ends[length] = curve.corrected(point + length * tangent, tangent)
-        return float(getattr(curve.orbit(ends[length]), name))
+        return float(getattr(curve.orbit(curve.corrected(point + length * tangent, tangent)), name))
 
-    whole = float(tangent @ (following - point))
-    zero = brentq(test, 0.0, whole, xtol=1e-14, rtol=1e-14)
+    zero = brentq(test, 0.0, float(tangent @ (following - point)), xtol=1e-14, rtol=1e-14)
     orbit = curve.orbit(curve.corrected(point + zero * tangent, tangent))
     symmetric = curve.impacts % 2 == 1 and curve.system.is_symmetric
     kind = "fold" if name == "fold" else "pitchfork" if symmetric else "period doubling"
@@ -479,7 +494,7 @@ def branch_off(
     while True:
         try:
             first = curve.corrected(point + offset * tangent, tangent)
-            return _followed(curve, first, curve.tangent(first, tangent), limits, step, most, stop)
+            return _followed(curve, first, curve.tangent(first, tangent), _Course(limits, step, most, stop))
         except OrbitNotFoundError:
             offset *= 0.1
             if offset < 1e-6:

@@ -15,8 +15,9 @@ from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.restitution.registry import coefficients_of
 
 Parameter = Literal["amplitude", "frequency", "restitution", "slenderness"]
-_CODES = {"": 0, "amplitude": 1, "frequency": 2, "restitution": 3, "slenderness": 4}
+_CODES = {"none": -1, "": 0, "amplitude": 1, "frequency": 2, "restitution": 3, "slenderness": 4}
 REST_SPEED = 1e-7  # over alpha p: slower impacts end in rest where the ground does not lift the body
+STEP_ERROR = 1e-16  # of one step, over alpha
 NONE, IMPACT, REST, OVERTURNED, FAILED = range(5)  # events of the engine
 
 
@@ -135,7 +136,7 @@ class HarmonicRocking:
 
     @cached_property
     def sides(self) -> FloatArray:
-        """Slenderness angle [rad], p squared [1/s2] and coefficient of restitution of right and left foot, shape (6,)."""
+        """Slenderness angle [rad], p squared [1/s2] and coefficient of both feet, right first, shape (6,)."""
         onto, _ = coefficients_of(self.restitution, self.body)
         numbers = []
         for foot, other in (("right", "left"), ("left", "right")):
@@ -225,6 +226,28 @@ class HarmonicRocking:
 
 
 @dataclass(frozen=True)
+class Numerics:
+    """Numerical settings of long histories.
+
+    Parameters
+    ----------
+    rest_speed : float, optional
+        Speed over alpha p after an impact below which the body comes to rest if the ground does not lift it [-].
+    step_error : float, optional
+        Error of one Taylor step over alpha [-].
+    threads : int, optional
+        Number of threads.
+    """
+
+    rest_speed: float = REST_SPEED
+    step_error: float = STEP_ERROR
+    threads: int = 1
+
+
+DEFAULTS = Numerics()
+
+
+@dataclass(frozen=True)
 class Periods:
     """States of histories at the ends of periods.
 
@@ -277,7 +300,7 @@ def over_periods(
     kept: int = 1,
     vectors: int = 0,
     most_impacts: int = 0,
-    threads: int = 1,
+    numerics: Numerics = DEFAULTS,
 ) -> Periods:
     """Follow histories over whole periods.
 
@@ -293,6 +316,8 @@ def over_periods(
         Number of tangent vectors.
     most_impacts : int, optional
         Number of impacts that are kept.
+    step_error : float, optional
+        Error of one Taylor step over alpha [-].
     threads : int, optional
         Number of threads.
 
@@ -308,10 +333,11 @@ def over_periods(
     states, hits = np.full((rows, kept, 2), np.nan), np.full((rows, most_impacts, 3), np.nan)
     engine().many(
         *_tables(systems, rows), starts, results, states, hits, first.factors, settled, vectors, first.linear,
-        math.pi / 2.0, REST_SPEED, threads,
+        math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
     )  # fmt: skip
     whole = results[:, [0, 1, 2, 3]].astype(np.int64)
-    return Periods(*whole.T, results[:, 4], results[:, 5:7], states, hits)
+    ending, cycles, impacts, rests = whole.T
+    return Periods(ending, cycles, impacts, rests, results[:, 4], results[:, 5:7], states, hits)
 
 
 def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tuple[FloatArray, FloatArray]:
@@ -329,7 +355,7 @@ class Flights:
     phase, speed : ndarray
         Phase of the ground motion [rad] and speed after the last impact over alpha p [-], shape (rows,).
     event : ndarray of int
-        1 if all impacts took place.
+        1 if all impacts took place, 2 if the body came to rest, 3 if it overturned, 4 if the integration failed.
     jacobian : ndarray
         Derivatives of phase and speed by phase and speed at the start, shape (rows, 2, 2).
     by_parameter : ndarray
@@ -355,9 +381,9 @@ def over_impacts(
     speed: Any,
     impacts: int = 1,
     *,
-    parameter: Parameter | Literal[""] = "",
+    parameter: Parameter | Literal["", "none"] = "",
     side: Any = 1.0,
-    threads: int = 1,
+    numerics: Numerics = DEFAULTS,
 ) -> Flights:
     """Follow flights from the state after one impact over several impacts, with derivatives.
 
@@ -371,12 +397,12 @@ def over_impacts(
         Speeds after the impact over alpha p of the right foot [-].
     impacts : int, optional
         Number of impacts.
-    parameter : {"", "amplitude", "frequency", "restitution", "slenderness"}, optional
-        Parameter of `by_parameter`.
+    parameter : {"", "amplitude", "frequency", "restitution", "slenderness", "none"}, optional
+        Parameter of `by_parameter`; "none" computes no derivatives.
     side : array_like, optional
         1 for a body that moves over its right foot at the start, -1 for the left.
-    threads : int, optional
-        Number of threads.
+    numerics : Numerics, optional
+        Numerical settings.
 
     Returns
     -------
@@ -391,7 +417,7 @@ def over_impacts(
     ends = np.full((len(starts), 12), np.nan)
     engine().over_impacts(
         *_tables(system, len(starts)), starts, ends, system.factors, impacts, _CODES[parameter], system.linear,
-        math.pi / 2.0, REST_SPEED, threads,
+        math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
     )  # fmt: skip
     jacobian = np.empty((len(starts), 2, 2))
     jacobian[:, 0, 0], jacobian[:, 0, 1] = ends[:, 4], ends[:, 5] * omega * rate

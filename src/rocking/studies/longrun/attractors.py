@@ -1,0 +1,282 @@
+"""Sections of long histories, the attractors on them, and bifurcation diagrams."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.longrun.system import (
+    DEFAULTS,
+    NONE,
+    OVERTURNED,
+    HarmonicRocking,
+    Numerics,
+    Parameter,
+    Periods,
+    over_periods,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LONGEST = 64  # periods of a periodic attractor that are recognised
+CLOSURE = 1e-6  # of rotation over alpha and velocity over alpha p
+REST, STICKING, PERIODIC, IRREGULAR, LOST, FAILURE = range(6)
+KINDS = ("rest", "sticking", "periodic", "irregular", "overturned", "failed")
+"""Kinds of long histories: at rest throughout, with rests in between, periodic, none of these, overturned, failed."""
+
+
+def start_states(system: HarmonicRocking, phases: Any, speeds: Any) -> FloatArray:
+    """Return starts right after an impact onto the right foot.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phases : array_like
+        Phases of the ground motion [rad].
+    speeds : array_like
+        Speeds over alpha p [-].
+
+    Returns
+    -------
+    ndarray
+        Time [s], rotation [rad] and angular velocity [rad/s] of all combinations, shape (phases x speeds, 3).
+    """
+    phase, speed = (grid.ravel() for grid in np.meshgrid(phases, speeds, indexing="ij"))
+    times = (phase - system.excitation.phase) / system.excitation.frequency
+    return np.column_stack([times, np.zeros(len(phase)), speed * system.alpha * system.p])
+
+
+@dataclass(frozen=True, eq=False)
+class PoincareSection:
+    """States of long histories at a phase of the ground motion, or right after impacts.
+
+    Attributes
+    ----------
+    at : {"period", "impact"}
+        Where the states are taken.
+    first, second : ndarray
+        Rotation over alpha and velocity over alpha p at the ends of periods; phase [rad] and velocity over alpha p
+        after impacts, positive over the right foot; shape (histories, states), NaN after the end of a history.
+    ending : ndarray of int
+        Event that ended each history, 0 for none, shape (histories,).
+    """
+
+    at: str
+    first: FloatArray
+    second: FloatArray
+    ending: Any
+
+
+def poincare(
+    system: HarmonicRocking,
+    starts: FloatArray,
+    *,
+    cycles: int = 500,
+    settled: int = 100,
+    at: Literal["period", "impact"] = "period",
+    numerics: Numerics = DEFAULTS,
+) -> PoincareSection:
+    """Return the section of long histories.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    starts : array_like
+        Time [s], rotation [rad] and angular velocity [rad/s], shape (histories, 3).
+    cycles : int, optional
+        Periods of which states are returned.
+    settled : int, optional
+        Periods before these.
+    at : {"period", "impact"}, optional
+        States at the ends of periods, or right after impacts.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    PoincareSection
+        The states.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range.
+    """
+    checks.one_of("at", at, ("period", "impact"))
+    cycles, settled = checks.whole("cycles", cycles, 1), checks.whole("settled", settled, 0)
+    most = 8 * cycles if at == "impact" else 0
+    result = over_periods(system, starts, settled=settled, kept=cycles, most_impacts=most, numerics=numerics)
+    rate = system.alpha * system.p
+    if at == "period":
+        return PoincareSection(at, result.states[..., 0] / system.alpha, result.states[..., 1] / rate, result.ending)
+    phase = (result.hits[..., 0] * system.excitation.frequency + system.excitation.phase) % (2.0 * np.pi)
+    return PoincareSection(at, phase, result.hits[..., 1] / rate, result.ending)
+
+
+def classified(result: Periods, alpha: float, p: float, longest: int = LONGEST) -> tuple[Any, Any, Any]:
+    """Return kind, number of periods and symmetry of long histories.
+
+    Parameters
+    ----------
+    result : Periods
+        Histories with at least ``2 * longest`` kept periods.
+    alpha, p : float
+        Slenderness angle [rad] and frequency parameter [rad/s], which scale the states.
+    longest : int, optional
+        Longest period that is recognised, in periods of the ground motion.
+
+    Returns
+    -------
+    kind : ndarray of int
+        Index in `KINDS`, shape (rows,).
+    period : ndarray of int
+        Periods of the ground motion after which a periodic history repeats; 0 for others, shape (rows,).
+    per_period : ndarray
+        Impacts per period of the ground motion, shape (rows,).
+    """
+    states = result.states / np.array([alpha, alpha * p])
+    kept = states.shape[1]
+    kind = np.full(len(states), IRREGULAR)
+    period = np.zeros(len(states), dtype=np.int64)
+    for number in range(min(longest, kept // 2), 0, -1):
+        repeats = np.nanmax(np.abs(states[:, number:] - states[:, :-number]), axis=(1, 2), initial=0.0) < CLOSURE
+        kind[repeats], period[repeats] = PERIODIC, number
+    kind[(result.rests > 0) & (result.ending == NONE)] = STICKING
+    kind[(result.impacts == 0) & (result.peak == 0.0)] = REST
+    kind[result.ending == OVERTURNED] = LOST
+    kind[(result.ending != NONE) & (result.ending != OVERTURNED)] = FAILURE
+    period[(kind != PERIODIC) & (kind != STICKING)] = 0
+    return kind, period, result.impacts / kept
+
+
+def bifurcation(
+    systems: HarmonicRocking | dict[str, HarmonicRocking],
+    values: Sequence[float] | FloatArray,
+    *,
+    parameter: Parameter = "amplitude",
+    starts: FloatArray | None = None,
+    memory: Literal["none", "up", "down"] = "none",
+    cycles: tuple[int, int] = (300, 200),
+    exponents: bool = False,
+    numerics: Numerics = DEFAULTS,
+) -> "xr.Dataset":
+    """Compute a bifurcation diagram: the attractors over one parameter.
+
+    Parameters
+    ----------
+    systems : HarmonicRocking or dict
+        System, or several by name, such as one per restitution model.
+    values : array_like
+        Values of the parameter, as for `HarmonicRocking.changed`, shape (values,).
+    parameter : {"amplitude", "frequency", "restitution", "slenderness"}, optional
+        The parameter.
+    starts : ndarray, optional
+        Time [s], rotation [rad] and angular velocity [rad/s] of the histories at each value, shape (starts, 3); at rest
+        by default.
+    memory : {"none", "up", "down"}, optional
+        With a sweep up or down, each history starts in the last state at the previous value.
+    cycles : tuple of int, optional
+        Periods before states are kept, and periods with states.
+    exponents : bool, optional
+        True also computes the largest Lyapunov exponent.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over system, value, start and cycle: `rotation` over alpha and `velocity` over alpha p at the ends of periods;
+        `kind` (index in the attribute `kinds`), `period` in periods of the ground motion, `impacts` per period, `peak`
+        over alpha, and `exponent` [1/s], minus infinity where the body comes to rest.
+
+    Raises
+    ------
+    InvalidValueError
+        If the values do not increase, or a number is outside its range.
+
+    References
+    ----------
+    Hogan (1989), Proc. R. Soc. Lond. A 425:441-476; Gaibor and Lopez (2026), arXiv:2606.14288.
+    """
+    import xarray as xr
+
+    named = systems if isinstance(systems, dict) else {"": systems}
+    values = checks.finite("values", values, "-", least=1)
+    checks.increasing("values", values)
+    checks.one_of("memory", memory, ("none", "up", "down"))
+    settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
+    starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(np.asarray(starts, dtype=float))
+    if starts.ndim != 2 or starts.shape[1] != 3:
+        raise InvalidValueError("starts must have 3 columns, time, rotation and angular velocity, got shape {shape}",
+                                shape=starts.shape)  # fmt: skip
+    options = {"settled": settled, "kept": kept, "vectors": int(exponents), "numerics": numerics}
+    tables = []
+    for system in named.values():
+        results = _swept(system, values, parameter, starts, memory, options)
+        tables.append(
+            [_columns(system.changed(parameter, float(v)), r, exponents) for v, r in zip(values, results, strict=True)]
+        )
+    shape = (len(named), len(values), len(starts))
+    data = {}
+    for name in tables[0][0]:
+        column = np.array([[row[name] for row in table] for table in tables])
+        dimensions = ("system", parameter, "start", "cycle")[: column.ndim]
+        data[name] = (dimensions, column.reshape(shape + column.shape[3:]), _ATTRIBUTES[name])
+    coordinates = {"system": list(named), parameter: values, "cycle": np.arange(settled, settled + kept)}
+    return xr.Dataset(data, coordinates, {"kinds": list(KINDS), "memory": memory, "settled": settled})
+
+
+_ATTRIBUTES = {
+    "rotation": {"units": "-", "long_name": "rotation / slenderness angle"},
+    "velocity": {"units": "-", "long_name": "angular velocity / (slenderness angle x p)"},
+    "kind": {"long_name": "kind of history"},
+    "period": {"units": "-", "long_name": "periods of the ground motion"},
+    "impacts": {"units": "-", "long_name": "impacts per period"},
+    "peak": {"units": "-", "long_name": "largest rotation / slenderness angle"},
+    "exponent": {"units": "1/s", "long_name": "largest Lyapunov exponent"},
+}
+
+
+def _swept(
+    system: HarmonicRocking, values: FloatArray, parameter: Parameter, starts: FloatArray, memory: str,
+    options: dict[str, Any],
+) -> list[Periods]:  # fmt: skip
+    number = len(starts)
+    if memory == "none":
+        rows = [system.changed(parameter, float(value)) for value in values]
+        everything = over_periods(
+            [row for row in rows for _ in range(number)], np.tile(starts, (len(rows), 1)), **options
+        )
+        return [_cut(everything, slice(k * number, (k + 1) * number)) for k in range(len(values))]
+    results: list[Periods] = []
+    states = starts.copy()
+    for value in values if memory == "up" else values[::-1]:
+        result = over_periods(system.changed(parameter, float(value)), states, **options)
+        alive = result.ending == NONE
+        states[alive, 1:] = result.states[alive, -1]
+        states[~alive] = starts[~alive]  # a body that has overturned starts again
+        results.append(result)
+    return results if memory == "up" else results[::-1]
+
+
+def _cut(result: Periods, rows: slice) -> Periods:
+    return Periods(*(getattr(result, name)[rows] for name in Periods.__dataclass_fields__))
+
+
+def _columns(system: HarmonicRocking, result: Periods, exponents: bool) -> dict[str, Any]:
+    kind, period, impacts = classified(result, system.alpha, system.p)
+    columns = {
+        "rotation": result.states[..., 0] / system.alpha, "velocity": result.states[..., 1] / (system.alpha * system.p),
+        "kind": kind, "period": period, "impacts": impacts, "peak": result.peak,
+    }  # fmt: skip
+    if exponents:
+        growth = result.growth[:, 0] / (result.states.shape[1] * system.excitation.period)
+        columns["exponent"] = np.where(kind == STICKING, -np.inf, np.where(kind == LOST, np.nan, growth))
+    return columns

@@ -1,0 +1,258 @@
+"""Basins of harmonic rocking: which starts overturn, come to rest or keep rocking; stability, erosion and dimension."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.studies.longrun.system import DEFAULTS, FAILED, OVERTURNED, REST, HarmonicRocking, Numerics, over_impacts
+
+LOST, SMALL, SETTLED, FAILURE = range(4)
+KINDS = ("overturned", "small", "settled", "failed")
+"""Ends of the histories of a basin: a history is small once its speed after an impact is below a limit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Basin:
+    """Ends of histories over a grid of states after an impact.
+
+    Attributes
+    ----------
+    phase : ndarray
+        Phases of the ground motion at the first impact [rad], shape (phases,).
+    speed : ndarray
+        Speeds after the first impact over alpha p [-], shape (speeds,).
+    kind : ndarray of int
+        Index in `KINDS`, shape (phases, speeds).
+    is_uncertain : ndarray of bool
+        True where the kind changes with the step error of the integration, shape (phases, speeds).
+    """
+
+    phase: FloatArray
+    speed: FloatArray
+    kind: Any
+    is_uncertain: Any
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of cells of each kind."""
+        return {name: int((self.kind == number).sum()) for number, name in enumerate(KINDS)}
+
+    def stability(self, level: float = 0.95) -> tuple[float, float, float]:
+        """Return the fraction of starts that do not overturn, with its interval for random starts.
+
+        Parameters
+        ----------
+        level : float, optional
+            Level of the interval (Clopper and Pearson) [-].
+
+        Returns
+        -------
+        fraction, low, high : float
+            Fraction and interval [-].
+        """
+        number, safe = self.kind.size, int((self.kind != LOST).sum())
+        interval = stats.binomtest(safe, number).proportion_ci(level, method="exact")
+        return safe / number, float(interval.low), float(interval.high)
+
+    def box_dimension(self) -> float:
+        """Return the box-counting dimension of the boundary between starts that overturn and others.
+
+        Returns
+        -------
+        float
+            Slope of the number of boxes that contain both over their size, between 1 and 2; NaN without a boundary.
+        """
+        lost = self.kind == LOST
+        sizes, numbers = [], []
+        size = 1
+        while size <= min(lost.shape) // 8:
+            rows, columns = (n // size * size for n in lost.shape)
+            blocks = lost[:rows, :columns].reshape(rows // size, size, columns // size, size)
+            mixed = blocks.any(axis=(1, 3)) & ~blocks.all(axis=(1, 3))
+            if size == 1:  # a cell contains a boundary if a neighbour differs
+                mixed = np.zeros_like(lost)
+                mixed[:-1] |= lost[:-1] != lost[1:]
+                mixed[:, :-1] |= lost[:, :-1] != lost[:, 1:]
+            sizes.append(size)
+            numbers.append(mixed.sum())
+            size *= 2
+        if len(sizes) < 2 or min(numbers) == 0:
+            return math.nan
+        return float(-np.polyfit(np.log(sizes), np.log(numbers), 1)[0])
+
+
+def ends_of(
+    system: HarmonicRocking,
+    phase: Any,
+    speed: Any,
+    *,
+    impacts: int = 120,
+    small: float = 0.02,
+    numerics: Numerics = DEFAULTS,
+) -> Any:
+    """Return the kinds of histories that start after an impact onto the right foot.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phase, speed : array_like
+        Phase of the ground motion [rad] and speed over alpha p [-] at the start, shape (rows,).
+    impacts : int, optional
+        Number of impacts that are followed.
+    small : float, optional
+        Speed over alpha p after an impact below which a history ends as small.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    ndarray of int
+        Index in `KINDS`, shape (rows,).
+    """
+    numerics = replace(numerics, rest_speed=small)
+    flight = over_impacts(system, phase, speed, impacts, parameter="none", numerics=numerics)
+    kind = np.where(flight.event == REST, SMALL, SETTLED)
+    kind[flight.event == OVERTURNED] = LOST
+    kind[flight.event == FAILED] = FAILURE
+    return kind
+
+
+def basin(
+    system: HarmonicRocking,
+    *,
+    phases: int = 100,
+    speeds: int = 100,
+    highest: float = 2.0,
+    impacts: int = 120,
+    small: float = 0.02,
+    check: bool = True,
+    numerics: Numerics = DEFAULTS,
+) -> Basin:
+    """Compute the basin of overturning over phase and speed after an impact.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    phases, speeds : int, optional
+        Number of cells; states are at their centres.
+    highest : float, optional
+        Upper end of the speeds over alpha p [-].
+    impacts : int, optional
+        Number of impacts that are followed.
+    small : float, optional
+        Speed over alpha p after an impact below which a history ends as small.
+    check : bool, optional
+        True repeats the computation with another step error and marks the cells that differ.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    Basin
+        The kinds of all cells.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range.
+
+    References
+    ----------
+    Soliman and Thompson (1989), J. Sound Vib. 135:453-475 (erosion of basins).
+    """
+    phase = (np.arange(checks.whole("phases", phases, 1)) + 0.5) * 2.0 * math.pi / phases
+    speed = (np.arange(checks.whole("speeds", speeds, 1)) + 0.5) * checks.positive("highest", highest) / speeds
+    grid = [axis.ravel() for axis in np.meshgrid(phase, speed, indexing="ij")]
+    checks.whole("impacts", impacts, 1)
+
+    def kinds(numerics: Numerics) -> Any:
+        return ends_of(system, *grid, impacts=impacts, small=small, numerics=numerics).reshape(phases, speeds)
+
+    kind = kinds(numerics)
+    other = kinds(replace(numerics, step_error=30.0 * numerics.step_error)) if check else kind
+    return Basin(phase, speed, kind, kind != other)
+
+
+@dataclass(frozen=True)
+class UncertaintyExponent:
+    """Uncertainty exponent of the boundary of overturning.
+
+    Attributes
+    ----------
+    value, standard_error : float
+        The exponent; the dimension of the boundary is 2 less the exponent. The error neglects that all distances use
+        the same starts: it is a lower bound.
+    distance : ndarray
+        Distances in phase [rad], shape (distances,).
+    fraction : ndarray
+        Fraction of starts for which a neighbour at this distance ends otherwise, shape (distances,).
+    """
+
+    value: float
+    standard_error: float
+    distance: FloatArray
+    fraction: FloatArray
+
+
+def uncertainty_exponent(
+    system: HarmonicRocking,
+    *,
+    samples: int = 30000,
+    distances: Any = None,
+    highest: float = 2.0,
+    impacts: int = 120,
+    seed: int = 0,
+    numerics: Numerics = DEFAULTS,
+) -> UncertaintyExponent:
+    """Return the uncertainty exponent of the boundary between starts that overturn and others.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    samples : int, optional
+        Number of random starts, uniform in phase and speed.
+    distances : array_like, optional
+        Distances of the neighbours in phase [rad]; 10^-4 to 10^-1.5 by default.
+    highest : float, optional
+        Upper end of the speeds over alpha p [-].
+    impacts : int, optional
+        Number of impacts that are followed.
+    seed : int, optional
+        Random seed of the starts.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    UncertaintyExponent
+        The exponent and the fractions from which it was fitted, weighted with their counts.
+
+    References
+    ----------
+    Grebogi, McDonald, Ott and Yorke (1983), Phys. Lett. A 99:415-418.
+    """
+    distance = np.logspace(-4.0, -1.5, 6) if distances is None else checks.positive_array("distances", distances, "rad")
+    draws = np.random.default_rng(seed).random((2, checks.whole("samples", samples, 2)))
+    phase, speed = draws[0] * 2.0 * math.pi, draws[1] * highest
+
+    def are_lost(phase: FloatArray) -> Any:
+        return ends_of(system, phase, speed, impacts=impacts, numerics=numerics) == LOST
+
+    is_lost = are_lost(phase)
+    uncertain = [(are_lost(phase - step) != is_lost) | (are_lost(phase + step) != is_lost) for step in distance]
+    counts = np.array([row.sum() for row in uncertain])
+    fraction = counts / samples
+    weights = counts / (1.0 - fraction)  # inverse variance of the logarithm of a binomial fraction
+    x = np.log(distance) - np.average(np.log(distance), weights=weights)
+    with np.errstate(divide="ignore"):
+        y = np.log(fraction)
+    total = float((weights * x * x).sum())
+    return UncertaintyExponent(float((weights * x * y).sum() / total), 1.0 / math.sqrt(total), distance, fraction)

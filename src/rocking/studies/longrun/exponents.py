@@ -1,0 +1,126 @@
+"""Lyapunov exponents of harmonic rocking, with standard errors."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.studies.longrun.system import DEFAULTS, NONE, OVERTURNED, HarmonicRocking, Numerics, over_periods
+
+ALIGNED = 60  # periods in which tangent vectors align before growth is counted
+
+
+@dataclass(frozen=True, eq=False)
+class LyapunovExponents:
+    """Lyapunov exponents of one system from several orbits.
+
+    Attributes
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    each : ndarray
+        Both exponents of each orbit [1/s], shape (orbits, 2); minus infinity for an orbit that comes to rest again and
+        again, NaN for one that overturns.
+    impact_rate : ndarray
+        Impacts per second of each orbit, shape (orbits,).
+    duration : float
+        Time over which growth was counted [s].
+    """
+
+    system: HarmonicRocking
+    each: FloatArray
+    impact_rate: FloatArray
+    duration: float
+
+    @property
+    def overturned(self) -> int:
+        """Number of orbits that overturn."""
+        return int(np.isnan(self.each[:, 0]).sum())
+
+    @property
+    def sticking(self) -> int:
+        """Number of orbits that come to rest: a rest erases all differences, the exponents are minus infinity."""
+        return int(np.isneginf(self.each[:, 0]).sum())
+
+    @property
+    def finite(self) -> FloatArray:
+        """Exponents of the other orbits [1/s], shape (orbits, 2)."""
+        return self.each[np.isfinite(self.each).all(axis=1)]
+
+    @property
+    def values(self) -> FloatArray:
+        """Mean exponents [1/s], the largest first, shape (2,); NaN if no orbit has finite ones."""
+        return self.finite.mean(axis=0) if len(self.finite) else np.full(2, np.nan)
+
+    @property
+    def standard_errors(self) -> FloatArray:
+        """Standard errors of the means [1/s], shape (2,); NaN for fewer than two orbits."""
+        number = len(self.finite)
+        return self.finite.std(axis=0, ddof=1) / math.sqrt(number) if number > 1 else np.full(2, np.nan)
+
+    @property
+    def sum_rule(self) -> FloatArray:
+        """Sum of the exponents less 2 ln r times the impact rate [1/s]: zero for a symmetric body with a constant r."""
+        r = np.log(self.system.sides[2]) + np.log(self.system.sides[5])
+        return np.asarray(self.each.sum(axis=1) - r * self.impact_rate)
+
+
+def lyapunov_exponents(
+    system: HarmonicRocking,
+    *,
+    starts: FloatArray | None = None,
+    orbits: int = 64,
+    settled: int = 1500,
+    kept: int = 1500,
+    seed: int = 0,
+    numerics: Numerics = DEFAULTS,
+) -> LyapunovExponents:
+    """Return the Lyapunov exponents of the attractors of a system.
+
+    Parameters
+    ----------
+    system : HarmonicRocking
+        Body and ground motion.
+    starts : ndarray, optional
+        Time [s], rotation [rad] and angular velocity [rad/s] at the start of each orbit, shape (orbits, 3).
+    orbits : int, optional
+        Number of orbits with random phase and speed after an impact, 0 to 1 alpha p, if `starts` is missing.
+    settled, kept : int, optional
+        Periods before growth is counted, and in which it is counted. Tangent vectors align in the first ones.
+    seed : int, optional
+        Random seed of the starts.
+    numerics : Numerics, optional
+        Numerical settings.
+
+    Returns
+    -------
+    LyapunovExponents
+        Exponents of each orbit, their means and standard errors.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range; `settled` is at least 60.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 1.2, 2.0, restitution="housner")
+    >>> result = lyapunov_exponents(system, orbits=4)
+    >>> bool(abs(result.values[0] / system.p + 0.2270663216) < 1e-9)  # (W / pi) ln r, W the frequency ratio
+    True
+    """
+    settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
+    if starts is None:
+        draws = np.random.default_rng(seed).random((checks.whole("orbits", orbits, 1), 2))
+        times = draws[:, 0] * system.excitation.period
+        starts = np.column_stack([times, np.full(len(draws), 1e-12), draws[:, 1] * system.alpha * system.p])
+    result = over_periods(system, starts, settled=settled, kept=kept, vectors=2, numerics=numerics)
+    duration = kept * system.excitation.period
+    each = result.growth / duration
+    each[result.rests > 0] = -np.inf
+    each[result.ending == OVERTURNED] = np.nan
+    each[(result.ending != OVERTURNED) & (result.ending != NONE)] = np.nan
+    return LyapunovExponents(system, each, result.impacts / duration, duration)

@@ -1,0 +1,89 @@
+"""Thresholds of harmonic rocking in closed form, for slender bodies."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+
+
+@dataclass(frozen=True)
+class SlenderThresholds:
+    """Amplitude ratios a / (g alpha) of a slender body under harmonic ground motion.
+
+    Attributes
+    ----------
+    uplift : float
+        Smallest amplitude that lifts a body at rest: 1.
+    fold : float
+        Smallest amplitude with a symmetric orbit of one impact per half period.
+    melnikov : float
+        First-order threshold of heteroclinic tangency, for a coefficient of restitution near 1.
+    heteroclinic : float
+        Exact threshold of the tangency of the saddles' manifolds through one impact.
+    no_impact : float
+        Smallest amplitude that overturns a body from rest at the phase of uplift, without impact, within one half sine.
+    """
+
+    uplift: float
+    fold: float
+    melnikov: float
+    heteroclinic: float
+    no_impact: float
+
+
+def slender_thresholds(frequency: float, restitution: float) -> SlenderThresholds:
+    """Return the thresholds of a slender body.
+
+    Parameters
+    ----------
+    frequency : float
+        Circular frequency over p [-].
+    restitution : float
+        Coefficient of restitution, in (0, 1) [-].
+
+    Returns
+    -------
+    SlenderThresholds
+        Amplitude ratios [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    References
+    ----------
+    Lenci and Rega (2006), Int. J. Bifurcation Chaos 16 (heteroclinic tangency); Spanos and Koh (1984), J. Eng. Mech.
+    110:1627-1642 (symmetric orbit); Shi, Anooshehpoor, Zeng and Brune (1996), Bull. Seismol. Soc. Am. 86:1364-1371
+    (half sine).
+
+    Examples
+    --------
+    >>> round(slender_thresholds(2.0, 0.5).heteroclinic, 12)
+    1.386750490563
+    """
+    w = checks.positive("frequency", frequency)
+    r = checks.within("restitution", restitution, 0.0, 1.0)
+    half = math.pi / w
+    c, s = math.cosh(half), math.sinh(half)
+    matrix = np.array([[1.0 + c, s], [s, 1.0 + c]])
+    free, by_speed = (np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / r)]))
+    free, by_speed = free * [1.0, 1.0 / w], by_speed * [1.0, 1.0 / w]
+    least_squared = free @ free - (free @ by_speed) ** 2 / (by_speed @ by_speed)
+    return SlenderThresholds(
+        uplift=1.0,
+        fold=(1.0 + w * w) * math.sqrt(least_squared),
+        melnikov=(1.0 + w * w) * (1.0 - r * r) / 4.0,
+        heteroclinic=(1.0 + w * w) * (1.0 - r) / math.sqrt((w * (1.0 - r)) ** 2 + (1.0 + r) ** 2),
+        no_impact=_half_sine(w),
+    )
+
+
+def _half_sine(w: float) -> float:
+    """Return the amplitude at which a half sine overturns without impact: cos x + exp(-(pi - x) / w) = w sin x."""
+    from scipy.optimize import brentq
+
+    x = brentq(lambda x: math.cos(x) + math.exp(-(math.pi - x) / w) - w * math.sin(x), 1e-12, math.pi / 2.0, xtol=1e-15)
+    return 1.0 / math.sin(x)

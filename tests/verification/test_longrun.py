@@ -1,0 +1,434 @@
+"""Long-run dynamics against independent programs: Taylor series of 80 bits and DOP853, without common code.
+
+Amplitudes are a / (g tan alpha) of a rectangle, or a / (g alpha) of a slender body; frequencies over p; H Housner,
+K KED.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rocking import Block, MassPoints
+from rocking.dynamics.impact_laws import SpeedRestitution
+from rocking.studies.longrun.attractors import KINDS, bifurcation, poincare, start_states
+from rocking.studies.longrun.basins import basin, ends_of
+from rocking.studies.longrun.exponents import lyapunov_exponents
+from rocking.studies.longrun.orbits import (
+    OrbitNotFoundError,
+    branch_off,
+    continue_orbit,
+    find_orbit,
+    slender_orbit,
+    symmetric_orbit,
+)
+from rocking.studies.longrun.system import Harmonic, HarmonicRocking, over_impacts, over_periods
+from rocking.studies.longrun.thresholds import slender_thresholds
+
+pytest.importorskip("rocking.dynamics._longrun", reason="the compiled engine is missing")
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
+ANYTHING = (0.0, 100.0)
+
+# slenderness, model, frequency: fold, pitchfork, period doublings of the 2-cycle and the 4-cycle; rounded to 9 digits
+BRANCHES = {
+    (2, "H", 2): (0.365698905, 2.387388435, 2.926390467, 2.986533874),
+    (2, "K", 2): (0.195663199, 2.500336996, 3.030085334, 3.079036371),
+    (2, "H", 3): (0.392784733, 6.579864832, 7.877147613, 7.972296892),
+    (2, "K", 3): (0.211001362, 7.279194891, 8.371502516, 8.433038420),
+    (2, "H", 5): (0.409328696, 23.116019009, 23.972022488, 24.075931213),
+    (2, "K", 5): (0.220460592, 25.492878862, 25.144905812, 25.181879185),
+    (4, "H", 2): (0.098769111, 2.259646782, 2.778527103, 2.827840798),
+    (4, "K", 2): (0.057908574, 2.266370833, 2.784943247, 2.833227286),
+    (4, "H", 3): (0.106163531, 5.872490435, 7.573468438, 7.679362275),
+    (4, "K", 3): (0.062259720, 5.921191045, 7.613923359, 7.716456839),
+    (4, "H", 5): (0.110727090, 20.324938470, 23.980808150, 24.095017936),
+    (4, "K", 5): (0.064946846, 20.741156173, 24.111797427, 24.216619531),
+    (8, "H", 2): (0.025079195, 2.196396393, 2.704207681, 2.752481747),
+    (8, "K", 2): (0.015612403, 2.196776068, 2.704574309, 2.752785231),
+    (8, "H", 3): (0.026934546, 5.478896915, 7.249761135, 7.368512281),
+    (8, "K", 3): (0.016767655, 5.481517441, 7.252249199, 7.370791690),
+    (8, "H", 5): (0.028080254, 16.759462433, 23.085940847, 23.257323535),
+    (8, "K", 5): (0.017481069, 16.782177349, 23.096955272, 23.267511856),
+    (1, "H", 2): (0.99422105088, 1.87532905957, 2.41041716024, 2.47835096824),
+    (1, "K", 2): (0.51766354818, 2.85787691869, 3.28506700548, 3.33238266407),
+}
+MODELS = {"H": "housner", "K": "ked"}
+
+
+def system_of(slenderness, amplitude, frequency, restitution, **options):
+    """Return a rectangle under harmonic ground motion."""
+    body = Block(width=1.0, height=float(slenderness))
+    return HarmonicRocking.of_ratios(body, amplitude, frequency, restitution=restitution, **options)
+
+
+def is_kind(kind):
+    """Return a test of the kind of a bifurcation."""
+    return lambda item: item.kind == kind
+
+
+def cascade(system, doublings):
+    """Return fold, pitchfork and period doublings of the symmetric orbit."""
+    orbit = symmetric_orbit(system)
+    fold = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
+    pitchfork = continue_orbit(orbit, ANYTHING, step=0.05, stop=is_kind("pitchfork")).first("pitchfork")
+    bifurcations = [fold, pitchfork]
+    for step in (0.03, 0.01, 0.003, 0.001)[:doublings]:
+        branch = branch_off(bifurcations[-1], ANYTHING, step=step, stop=is_kind("period doubling"))
+        bifurcations.append(branch.first("period doubling"))
+    return bifurcations
+
+
+@pytest.mark.parametrize("case", BRANCHES)
+def test_bifurcations_of_the_symmetric_branch(case):
+    """Fold, pitchfork and two period doublings to the digits of the table, also where the pitchfork is subcritical."""
+    slenderness, model, frequency = case
+    amplitude = {1: 1.6}.get(slenderness, 1.2 if frequency < 3 else 3.0)
+    values = [item.value for item in cascade(system_of(slenderness, amplitude, frequency, MODELS[model]), 2)]
+    assert values == pytest.approx(BRANCHES[case], abs=6e-10)
+
+
+def test_the_other_model_is_another_branch():
+    """Negative control: with KED's coefficient the table of Housner is rejected by every column."""
+    values = np.array([item.value for item in cascade(system_of(2, 1.2, 2, "ked"), 2)])
+    assert np.abs(values / BRANCHES[2, "H", 2] - 1.0).min() > 0.02
+
+
+def test_doubling_cascade_of_a_slender_body():
+    """Period doublings of 2-, 4-, 8- and 16-cycles; their ratios approach Feigenbaum's 4.6692."""
+    values = [item.value for item in cascade(system_of(4, 1.5, 2.0, 0.5, linear=True), 4)][1:]
+    expected = (
+        1.827271179103310924,
+        2.312850976204278652,
+        2.394371332179993847,
+        2.411422145578383563,
+        2.415057078385863019,
+    )
+    assert values == pytest.approx(expected, abs=1e-9)
+    gaps = np.diff(values[1:])
+    assert gaps[:-1] / gaps[1:] == pytest.approx([4.781, 4.691], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "frequency", "restitution"),
+    [
+        (2.160498200830855325, 2, 0.9),
+        (3.351522505087346245, 3, 0.5),
+        (5.254401379660497995, 3, 0.9),
+        (9.523233868447443737, 4, 0.9),
+    ],
+)
+def test_pitchforks_of_slender_bodies(amplitude, frequency, restitution):
+    """Loss of symmetry of slender bodies, by 40-digit code."""
+    orbit = symmetric_orbit(system_of(4, 1.5, frequency, restitution, linear=True))
+    branch = continue_orbit(orbit, ANYTHING, step=0.05, stop=is_kind("pitchfork"))
+    assert branch.first("pitchfork").value == pytest.approx(amplitude, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "restitution", "fold"),
+    [(2, 0.9, 0.1129065769837577850), (3, 0.9, 0.1211540103402213183917), (5, 0.85, 0.1936330474438083581761)],
+)
+def test_folds_of_slender_bodies(frequency, restitution, fold):
+    """The fold by continuation and in closed form; below it there is no orbit."""
+    assert slender_thresholds(frequency, restitution).fold == pytest.approx(fold, rel=1e-13)
+    orbit = symmetric_orbit(system_of(4, 1.0, frequency, restitution, linear=True))
+    branch = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold"))
+    assert branch.first("fold").value == pytest.approx(fold, abs=1e-10)
+    with pytest.raises(OrbitNotFoundError):
+        slender_orbit(0.999 * fold, frequency, restitution)
+
+
+TWO_PARAMETERS = {
+    1.5: (0.053255755, 1.107309895, 1.304441608),
+    2.5: (0.060606598, 3.852251312, 4.886860316),
+    3.5: (0.063330110, 8.552220161, 10.933215880),
+    4.5: (0.064571133, 15.878966324, 19.204841262),
+    6.0: (0.065446675, 33.001589682, 35.418046653),
+}
+
+
+@pytest.mark.parametrize("frequency", TWO_PARAMETERS)
+def test_bifurcations_over_frequency(frequency):
+    """Slenderness 4 with KED at other frequencies; the branch is reached by continuation in frequency from 2."""
+    start = symmetric_orbit(system_of(4, 1.0, 2.0, "ked"))
+    limits = (1.4, frequency) if frequency > 2.0 else (frequency, 7.0)
+    orbit = continue_orbit(start, limits, parameter="frequency", increasing=frequency > 2.0).orbits[-2]
+    near = find_orbit(orbit.system.changed("frequency", frequency), orbit.phase, orbit.speed)
+    fold = continue_orbit(near, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
+    pitchfork = continue_orbit(near, ANYTHING, step=0.05, stop=is_kind("pitchfork")).first("pitchfork")
+    doubling = branch_off(pitchfork, ANYTHING, step=0.03, stop=is_kind("period doubling")).first("period doubling")
+    assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(TWO_PARAMETERS[frequency], abs=6e-10)
+
+
+def test_orbits_in_closed_form():
+    """Speed of the symmetric orbit of slender bodies; determinant r^2; modulus r of the multipliers of a focus."""
+    for (amplitude, frequency, r), speed in {
+        (1.2, 3, 0.9): 0.790917702767388788, (2, 4, 0.9): 0.795424033581792961, (2, 5, 0.85): 0.624486486704868229,
+    }.items():  # fmt: skip
+        orbit = symmetric_orbit(system_of(4, amplitude, frequency, r, linear=True))
+        assert orbit.speed == pytest.approx(speed, rel=1e-13)
+        assert orbit.determinant == pytest.approx(r * r, rel=1e-12)
+        assert np.abs(orbit.multipliers) == pytest.approx([r, r], rel=1e-11)
+        assert orbit.exponents / orbit.system.p == pytest.approx(
+            np.full(2, frequency / math.pi * math.log(r)), rel=1e-10
+        )
+
+
+def test_speed_dependent_restitution():
+    """r = .95 - .2 |rate| / p: determinant r R' with R' = d(r v) / dv; with r in place of R' it would be .8144."""
+    plain = system_of(4, 1.5, 3.0, 0.95)
+    p = plain.p
+    law = SpeedRestitution(at=[0.0, p], factors=[1.0, 1.0 - 0.2 / 0.95])
+    system = system_of(4, 1.5, 3.0, 0.95, law=law)
+    orbit = find_orbit(system, 2.98898147324233 + math.pi, 0.21455748727069 / plain.alpha)
+    assert orbit.speed * plain.alpha == pytest.approx(0.21455748727069, abs=1e-13)
+    assert orbit.trace == pytest.approx(-0.444098450749, abs=1e-11)
+    assert orbit.determinant == pytest.approx(0.77150450514269, abs=1e-12)
+    fold = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
+    pitchfork = continue_orbit(orbit, ANYTHING, step=0.05, stop=is_kind("pitchfork")).first("pitchfork")
+    doubling = branch_off(pitchfork, ANYTHING, step=0.03, stop=is_kind("period doubling")).first("period doubling")
+    expected = (0.08864716571, 5.42197311344, 7.32008415997)
+    assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(expected, abs=1e-9)
+
+
+PARAMETERS = ("amplitude", "frequency", "restitution", "slenderness")
+CASES = st.tuples(
+    st.floats(0.2, 1.5), st.floats(-0.3, 0.3), st.floats(0.5, 2.0), st.floats(1.5, 5.0), st.floats(0.0, 6.2),
+    st.floats(0.3, 1.2), st.booleans(),
+)  # fmt: skip
+
+
+@settings(max_examples=40, deadline=None)
+@given(CASES)
+def test_derivatives_are_those_of_differences(case):
+    """Jacobian and derivatives by all parameters, over three impacts of a body that is not symmetric."""
+    height, shift, amplitude, frequency, phase, speed, linear = case
+    body = MassPoints(
+        [[-0.4, 0.0], [0.6, 0.0], [0.1 + shift, 1.0 + height], [shift, 2.0]], [1.0, 1.0, 2.0, 1.0], feet=(-0.4, 0.6)
+    )
+    system = HarmonicRocking.of_ratios(
+        body, amplitude, frequency, restitution={"left": 0.8, "right": 0.9}, linear=linear
+    )
+    flight = over_impacts(system, phase, speed, 3)
+    if flight.event[0] != 1 or np.abs(flight.jacobian).max() > 100.0:
+        return  # overturns or at rest, or nearly grazes: differences say little
+    step = 1e-6
+    columns = [
+        [over_impacts(system, phase + sign * step * a, speed + sign * step * b, 3) for sign in (1, -1)]
+        for a, b in ((1, 0), (0, 1))
+    ]
+    for k, (above, below) in enumerate(columns):
+        difference = np.array([above.phase[0] - below.phase[0], above.speed[0] - below.speed[0]]) / (2.0 * step)
+        assert flight.jacobian[0][:, k] == pytest.approx(difference, rel=1e-5, abs=1e-6)
+    for name in ("amplitude", "frequency"):
+        value = system.value(name)
+        ends = [
+            over_impacts(system.changed(name, value * (1.0 + sign * step)), phase, speed, 3) for sign in (1.0, -1.0)
+        ]
+        difference = np.array([ends[0].phase[0] - ends[1].phase[0], ends[0].speed[0] - ends[1].speed[0]]) / (
+            2.0 * step * value
+        )
+        assert over_impacts(system, phase, speed, 3, parameter=name).by_parameter[0] == pytest.approx(
+            difference, rel=1e-5, abs=1e-6
+        )
+
+
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_derivatives_by_parameters_of_a_rectangle(name, linear):
+    """Also by the coefficient of both feet, and by the slenderness angle with constant p."""
+    system = system_of(3, 1.4, 2.7, 0.9, linear=linear)
+    value, step = system.value(name), 1e-6
+    ends = [over_impacts(system.changed(name, value + sign * step), 5.7, 0.8, 4) for sign in (1.0, -1.0)]
+    difference = np.array([ends[0].phase[0] - ends[1].phase[0], ends[0].speed[0] - ends[1].speed[0]]) / (2.0 * step)
+    assert over_impacts(system, 5.7, 0.8, 4, parameter=name).by_parameter[0] == pytest.approx(difference, rel=1e-6)
+
+
+EXPONENTS = {
+    # slenderness, model, frequency, amplitude: largest exponent over p, standard error; 64 orbits
+    (2, "H", 2, 3.007): (0.07301, 0.00024),
+    (2, "H", 2, 3.0166): (0.11552, 0.00040),
+    (2, "H", 3, 8.0189): (0.17498, 0.00053),
+    (1, "H", 2, 2.54): (0.11888, 0.00040),
+    (1, "H", 2, 2.60): (0.25176, 0.00027),
+    (1, "K", 2, 3.36): (0.1078, 0.0006),
+}
+
+
+@pytest.mark.parametrize("case", EXPONENTS)
+def test_exponents_of_chaos(case):
+    """Within three standard errors of both programs; the sum rule to 1e-10 in each run."""
+    slenderness, model, frequency, amplitude = case
+    system = system_of(slenderness, amplitude, frequency, MODELS[model])
+    orbit = symmetric_orbit(
+        system_of(slenderness, 1.6 if slenderness == 1 else 2.0 if frequency == 2 else 5.0, frequency, MODELS[model])
+    )
+    near = continue_orbit(orbit, (0.0, amplitude), step=0.05).orbits[-2]
+    draws = np.random.default_rng(1).normal(scale=0.01, size=(64, 2))
+    states = [
+        ((near.phase + a) / system.excitation.frequency, near.speed * (1 + b) * system.alpha * system.p)
+        for a, b in draws
+    ]
+    starts = np.array([(time, 1e-12, velocity) for time, velocity in states])
+    result = lyapunov_exponents(system, starts=starts, settled=1500, kept=2000)
+    value, error = EXPONENTS[case]
+    assert len(result.finite) > 4
+    assert result.sticking == 0
+    own = result.standard_errors[0] / system.p
+    assert abs(result.values[0] / system.p - value) < 3.0 * math.hypot(own, error)
+    assert np.abs(result.sum_rule[np.isfinite(result.sum_rule)]).max() < 1e-10 * system.p
+
+
+REGULAR = {
+    # slenderness, model, frequency, amplitude: exact largest exponent over p, doublings
+    (2, "H", 2, 1.2): (-0.2270663216, 0), (2, "H", 2, 2.383): (-0.0028727025, 0),
+    (2, "H", 2, 2.923): (-0.0095412630, 1), (2, "H", 2, 2.986): (-0.0034538155, 2),
+    (4, "H", 3, 5.868): (-0.0035272186, 0), (4, "K", 5, 24.109): (-0.0601666878, 1), (8, "K", 3, 7.37): (-0.0138778503, 2),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REGULAR)
+def test_exponents_of_periodic_orbits(case):
+    """From the multipliers of the symmetric orbit, the 2-cycle and the 4-cycle: ten digits."""
+    slenderness, model, frequency, amplitude = case
+    value, doublings = REGULAR[case]
+    orbit = symmetric_orbit(system_of(slenderness, 1.2 if frequency < 3 else 3.0, frequency, MODELS[model]))
+    if doublings:
+        kinds = ["pitchfork", "period doubling"][:doublings]
+        branch = continue_orbit(orbit, ANYTHING, step=0.05, stop=is_kind("pitchfork"))
+        for kind, step in zip(kinds, (0.03, 0.01)[:doublings], strict=True):
+            branch = branch_off(branch.first(kind), ANYTHING, step=step, stop=is_kind("period doubling"))
+        orbit = min(branch.orbits, key=lambda item: abs(item.system.amplitude_ratio - amplitude))
+        exact = find_orbit(orbit.system.changed("amplitude", amplitude), orbit.phase, orbit.speed, impacts=2**doublings)
+    else:
+        branch = continue_orbit(orbit, (0.0, amplitude + 0.01), step=0.02)
+        orbit = min(branch.orbits, key=lambda item: abs(item.system.amplitude_ratio - amplitude))
+        exact = find_orbit(orbit.system.changed("amplitude", amplitude), orbit.phase, orbit.speed)
+    assert exact.exponents[0] / exact.system.p == pytest.approx(value, abs=2e-10)
+
+
+def test_a_rest_erases_memory():
+    """An orbit that comes to rest in each period has exponents of minus infinity: it is never called chaotic."""
+    system = system_of(2, 1.1, 2.0, "housner")
+    result = lyapunov_exponents(system, starts=np.zeros((1, 3)), settled=100, kept=200)
+    assert result.sticking == 1
+    assert np.isneginf(result.each).all()
+    diagram = bifurcation(system, [1.1], cycles=(100, 200), exponents=True)
+    assert KINDS[int(diagram.kind[0, 0, 0])] == "sticking"
+    assert np.isneginf(diagram.exponent.item())
+
+
+BASINS = {
+    "slender": ((4, 0.9, 3, 0.9, True), (5173, 625, 4202)),
+    "slender, above uplift": ((4, 2.0, 4, 0.85, True), (5187, 81, 4732)),
+    "rectangle, Housner": ((4, 1.5, 3, "housner", False), (6334, 106, 3560)),
+    "rectangle, KED": ((4, 1.5, 3, "ked", False), (7132, 92, 2776)),
+}
+
+
+@pytest.mark.parametrize("case", BASINS)
+def test_basins_cell_for_cell(case):
+    """Counts of 10,000 cells over 120 impacts as by two programs; no cell changes with the step error."""
+    (slenderness, amplitude, frequency, restitution, linear), counts = BASINS[case]
+    result = basin(system_of(slenderness, amplitude, frequency, restitution, linear=linear))
+    assert tuple(result.counts.values()) == (*counts, 0)
+    assert not result.is_uncertain.any()
+    fraction, low, high = result.stability()
+    assert fraction == pytest.approx(1.0 - counts[0] / 1e4)
+    assert low < fraction < high
+
+
+def test_the_orbit_to_hit_by_simulation():
+    """A stable 4-cycle of slenderness 2 is kept for 2,000 periods to 1e-9."""
+    system = system_of(2, 2.986, 2, "housner")
+    cycle = [
+        (3.890097635432, 0.471444330597), (1.928517618213, 0.354409890312), (3.538382056983, 0.609643603441),
+        (2.119220994315, 0.494099572035),
+    ]  # fmt: skip
+    orbit = find_orbit(system, cycle[0][0] + math.pi, cycle[0][1] / system.alpha, impacts=4)
+    flights = [over_impacts(system, orbit.phase, orbit.speed, n) for n in (1, 2, 3, 4)]
+    for n, flight in enumerate(flights, 1):
+        phase, speed = cycle[n % 4]
+        assert flight.speed[0] * system.alpha == pytest.approx(speed, abs=1e-11)
+        assert math.remainder(flight.phase[0] + (n + 1) * math.pi - phase, 2.0 * math.pi) == pytest.approx(
+            0.0, abs=1e-11
+        )
+    section = poincare(system, start_states(system, [orbit.phase], [orbit.speed]), cycles=2000, settled=0, at="impact")
+    speeds = np.abs(section.second[0, :3999]) * system.alpha
+    assert np.abs(np.sort(speeds[-4:]) - np.sort([speed for _, speed in cycle])).max() < 1e-9
+
+
+def test_engines_of_all_processors_agree():
+    """Every instruction set gives the same verdicts, and the same bits on two that fuse multiplications."""
+    from rocking.dynamics import _longrun
+
+    system = system_of(3, 1.7, 2.5, "housner")
+    starts = start_states(system, np.linspace(0.1, 6.0, 6), [0.2, 0.7])
+    tables = {}
+    for isa in ("plain", "avx2", "avx512"):
+        results = np.full((len(starts), 9), np.nan)
+        states, hits = np.full((len(starts), 20, 2), np.nan), np.empty((len(starts), 0, 3))
+        sides, sines = np.tile(system.sides, (len(starts), 1)), np.tile(system.sine, (len(starts), 1, 1))
+        try:
+            _longrun.many(
+                sides, sines, starts, results, states, hits, np.empty((2, 0)), 30, 2, False, 1.5, 1e-7, 1e-16, 2, isa
+            )
+        except ValueError:
+            continue  # this processor has none
+        tables[isa] = (results, states)
+    for results, states in tables.values():
+        assert results[:, 0].tolist() == tables["plain"][0][:, 0].tolist()
+        assert states == pytest.approx(tables["plain"][1], abs=1e-9, nan_ok=True)
+    if "avx512" in tables:
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(tables["avx2"], tables["avx512"], strict=True))
+
+
+def test_thresholds_in_closed_form():
+    """Lenci and Rega (2006) and the half sine; Melnikov's is the limit of the exact one for r near 1."""
+    assert slender_thresholds(2, 0.5).heteroclinic == pytest.approx(1.386750490563072805, rel=1e-14)
+    assert slender_thresholds(3, 0.9).heteroclinic == pytest.approx(0.5198752449100363446, rel=1e-14)
+    assert slender_thresholds(2, 0.9).no_impact == pytest.approx(1.8007239305607457817, rel=1e-13)
+    near = slender_thresholds(3, 1.0 - 1e-6)
+    assert near.melnikov == pytest.approx(near.heteroclinic, rel=1e-5)
+
+
+def test_basins_and_rest_in_other_units():
+    """A body ten times as large, in slow motion, ends as the small one: only ratios count."""
+    small, large = (
+        HarmonicRocking.of_ratios(Block(width=w, height=4.0 * w), 1.5, 3.0, restitution="ked") for w in (0.1, 10.0)
+    )
+    draws = np.random.default_rng(0).random((2, 200))
+    kinds = [ends_of(system, draws[0] * 6.28, draws[1] * 2.0).tolist() for system in (small, large)]
+    assert kinds[0] == kinds[1]
+
+
+def test_bad_input_is_refused():
+    """Values out of range name their parameter; a body that is not symmetric has orbits of an even number of impacts."""
+    with pytest.raises(ValueError, match="period"):
+        Harmonic(amplitude=1.0, period=0.0)
+    with pytest.raises(ValueError, match="amplitude"):
+        Harmonic(amplitude=math.nan, period=1.0)
+    lean = MassPoints([[-0.4, 0.0], [0.6, 0.0], [0.3, 2.0]], [1.0, 1.0, 2.0], feet=(-0.4, 0.6))
+    system = HarmonicRocking.of_ratios(lean, 1.5, 2.0, restitution="ked")
+    with pytest.raises(ValueError, match="both"):
+        find_orbit(system, 1.0, 1.0)
+    with pytest.raises(ValueError, match="settled"):
+        lyapunov_exponents(system, settled=5)
+    with pytest.raises(ValueError, match="starts"):
+        bifurcation(system, [1.0, 2.0], starts=np.zeros((2, 2)))
+
+
+def test_sweeps_with_memory_show_hysteresis():
+    """Below uplift a body at rest stays at rest, while a sweep down keeps the large orbit to its fold."""
+    system = system_of(4, 1.0, 3.0, "ked")
+    values = np.linspace(0.04, 1.2, 30)
+    orbit = symmetric_orbit(system.changed("amplitude", 1.2))
+    starts = start_states(orbit.system, [orbit.phase], [orbit.speed])
+    down = bifurcation(system, values, starts=starts, memory="down", cycles=(200, 130))
+    rocking = values[down.impacts[0, :, 0].values > 1.9]
+    assert rocking.min() == pytest.approx(0.0622597, abs=values[1] - values[0])
+    rest = bifurcation(system, values[values < 1.0], cycles=(10, 130))
+    assert set(rest.kind.values.ravel()) == {KINDS.index("rest")}
+    assert over_periods(system, np.zeros((1, 3))).peak[0] == 0.0
