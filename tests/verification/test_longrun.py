@@ -285,7 +285,8 @@ REGULAR = {
     # slenderness, model, frequency, amplitude: exact largest exponent over p, doublings
     (2, "H", 2, 1.2): (-0.2270663216, 0), (2, "H", 2, 2.383): (-0.0028727025, 0),
     (2, "H", 2, 2.923): (-0.0095412630, 1), (2, "H", 2, 2.986): (-0.0034538155, 2),
-    (4, "H", 3, 5.868): (-0.0035272186, 0), (4, "K", 5, 24.109): (-0.0601666878, 1), (8, "K", 3, 7.37): (-0.0138778503, 2),
+    (4, "H", 3, 5.868): (-0.0035272186, 0), (4, "K", 5, 24.109): (-0.0601666878, 1),
+    (8, "K", 3, 7.37): (-0.0138778503, 2),
 }  # fmt: skip
 
 
@@ -405,7 +406,7 @@ def test_basins_and_rest_in_other_units():
 
 
 def test_bad_input_is_refused():
-    """Values out of range name their parameter; a body that is not symmetric has orbits of an even number of impacts."""
+    """Values out of range name their parameter; orbits of asymmetric bodies have an even number of impacts."""
     with pytest.raises(ValueError, match="period"):
         Harmonic(amplitude=1.0, period=0.0)
     with pytest.raises(ValueError, match="amplitude"):

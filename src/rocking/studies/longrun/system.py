@@ -347,7 +347,7 @@ def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tu
 
 
 @dataclass(frozen=True)
-class Flights:
+class ImpactFlights:
     """Ends of flights from one impact over several.
 
     Attributes
@@ -384,7 +384,7 @@ def over_impacts(
     parameter: Parameter | Literal["", "none"] = "",
     side: Any = 1.0,
     numerics: Numerics = DEFAULTS,
-) -> Flights:
+) -> ImpactFlights:
     """Follow flights from the state after one impact over several impacts, with derivatives.
 
     Parameters
@@ -406,7 +406,7 @@ def over_impacts(
 
     Returns
     -------
-    Flights
+    ImpactFlights
         Ends and derivatives.
     """
     phase, speed, side = np.broadcast_arrays(*map(np.atleast_1d, (phase, speed, side)))
@@ -435,7 +435,7 @@ def over_impacts(
         by[:, 0] += jacobian[:, 0, 1] * speed / system.alpha
         by[:, 1] += (jacobian[:, 1, 1] * speed - ends[:, 1] / rate) / system.alpha
     ends_phase = ends[:, 0] * omega + sine[2]
-    return Flights(
+    return ImpactFlights(
         ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10],
         np.abs(ends[:, 11]) / rate,
     )  # fmt: skip
