@@ -56,7 +56,7 @@ def start_states(system: HarmonicRocking, phases: Any, speeds: Any) -> FloatArra
 class PoincareSection:
     """States of long histories at a phase of the ground motion, or right after impacts.
 
-    Attributes
+    Parameters
     ----------
     at : {"period", "impact"}
         Where the states are taken.

@@ -20,7 +20,7 @@ KINDS = ("overturned", "small", "settled", "failed")
 class Basin:
     """Ends of histories over a grid of states after an impact.
 
-    Attributes
+    Parameters
     ----------
     phase : ndarray
         Phases of the ground motion at the first impact [rad], shape (phases,).
@@ -184,7 +184,7 @@ def basin(
 class UncertaintyExponent:
     """Uncertainty exponent of the boundary of overturning.
 
-    Attributes
+    Parameters
     ----------
     value, standard_error : float
         The exponent; the dimension of the boundary is 2 less the exponent. The error neglects that all distances use

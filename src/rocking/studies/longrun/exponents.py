@@ -16,7 +16,7 @@ ALIGNED = 60  # periods in which tangent vectors align before growth is counted
 class LyapunovExponents:
     """Lyapunov exponents of one system from several orbits.
 
-    Attributes
+    Parameters
     ----------
     system : HarmonicRocking
         Body and ground motion.

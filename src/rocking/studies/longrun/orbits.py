@@ -27,7 +27,7 @@ class PeriodicOrbit:
     For a symmetric body the state after an impact on one foot is equivalent to the mirrored state half a period later.
     The orbit closes after `impacts` impacts and `halves` half periods of the ground motion, up to this symmetry.
 
-    Attributes
+    Parameters
     ----------
     system : HarmonicRocking
         Body and ground motion.
@@ -243,7 +243,7 @@ def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tup
 class Bifurcation:
     """A bifurcation on a branch of periodic orbits.
 
-    Attributes
+    Parameters
     ----------
     kind : {"fold", "pitchfork", "period doubling"}
         A pitchfork breaks the symmetry of an orbit; a period doubling doubles its period.
@@ -262,7 +262,7 @@ class Bifurcation:
 class Branch:
     """A branch of periodic orbits over one parameter.
 
-    Attributes
+    Parameters
     ----------
     parameter : str
         Parameter, as for `HarmonicRocking.changed`.
@@ -282,8 +282,27 @@ class Branch:
         return np.array([orbit.system.value(self.parameter) for orbit in self.orbits])
 
     def first(self, kind: str) -> Bifurcation:
-        """Return the first bifurcation of a kind; LookupError if there is none."""
-        return next(iter([item for item in self.bifurcations if item.kind == kind]))
+        """Return the first bifurcation of a kind.
+
+        Parameters
+        ----------
+        kind : {"fold", "pitchfork", "period doubling"}
+            The kind.
+
+        Returns
+        -------
+        Bifurcation
+            The bifurcation.
+
+        Raises
+        ------
+        OrbitNotFoundError
+            If the branch has none.
+        """
+        for bifurcation in self.bifurcations:
+            if bifurcation.kind == kind:
+                return bifurcation
+        raise OrbitNotFoundError("the branch has no {kind}", kind=kind)
 
 
 class _Curve:

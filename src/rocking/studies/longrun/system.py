@@ -204,7 +204,18 @@ class HarmonicRocking:
         return system
 
     def value(self, parameter: Parameter) -> float:
-        """Return the value of a parameter, as for `changed`."""
+        """Return the value of a parameter, as for `changed`.
+
+        Parameters
+        ----------
+        parameter : {"amplitude", "frequency", "restitution", "slenderness"}
+            The parameter.
+
+        Returns
+        -------
+        float
+            Its value.
+        """
         if parameter == "amplitude":
             return self.amplitude_ratio
         if parameter == "frequency":
@@ -251,7 +262,7 @@ DEFAULTS = Numerics()
 class Periods:
     """States of histories at the ends of periods.
 
-    Attributes
+    Parameters
     ----------
     ending : ndarray of int
         Event that ended each history; 0 if it was followed to its end, shape (rows,).
@@ -316,10 +327,8 @@ def over_periods(
         Number of tangent vectors.
     most_impacts : int, optional
         Number of impacts that are kept.
-    step_error : float, optional
-        Error of one Taylor step over alpha [-].
-    threads : int, optional
-        Number of threads.
+    numerics : Numerics, optional
+        Numerical settings.
 
     Returns
     -------
@@ -350,7 +359,7 @@ def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tu
 class ImpactFlights:
     """Ends of flights from one impact over several.
 
-    Attributes
+    Parameters
     ----------
     phase, speed : ndarray
         Phase of the ground motion [rad] and speed after the last impact over alpha p [-], shape (rows,).

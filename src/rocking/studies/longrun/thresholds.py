@@ -12,7 +12,7 @@ from rocking import checks
 class SlenderThresholds:
     """Amplitude ratios a / (g alpha) of a slender body under harmonic ground motion.
 
-    Attributes
+    Parameters
     ----------
     uplift : float
         Smallest amplitude that lifts a body at rest: 1.
