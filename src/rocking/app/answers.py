@@ -1,4 +1,4 @@
-"""Answers in JSON, every digit kept and never a NaN; files that a browser saves; and what the schema says of them.
+"""JSON answers without NaN or loss of digits, downloads, and their schema.
 
 The shapes describe; nothing is checked against them when a request is answered, which would cost more than the answer
 itself where the series are long. The tests check every one of them.
@@ -35,7 +35,7 @@ class MessageData(BaseModel):
 
 
 Point = tuple[float, float]  # x and y [m]
-Foot = Literal["left", "right"]  # where a body stands or lands
+Foot = Literal["left", "right"]  # foot of support or of impact
 
 Kind = Literal[
     "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "conflict",

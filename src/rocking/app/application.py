@@ -176,7 +176,7 @@ def _add_pages(app: FastAPI) -> None:
         ("text/css", ".css"),
         ("image/svg+xml", ".svg"),
     ):
-        mimetypes.add_type(kind, suffix)  # the registry of some systems says text/plain, which browsers then refuse
+        mimetypes.add_type(kind, suffix)  # some systems register text/plain, which browsers reject
 
     @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)
     def api_docs() -> FileResponse:

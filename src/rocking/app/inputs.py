@@ -142,7 +142,7 @@ def check_file(content: bytes, name: str) -> None:
         way_out = "save the outline alone in a separate drawing"
         refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
         refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
-    # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
+    # a drawing may contain other entities; in text a comma or a bracket precedes each point
     points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
     refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
 
@@ -150,7 +150,7 @@ def check_file(content: bytes, name: str) -> None:
 def check_record(content: bytes) -> None:
     """Refuse a record file with too many numbers, before it is read."""
     if _MINISEED.match(content):
-        # what the headers announce, and not one sample fewer than are decoded
+        # samples according to the headers; no sample beyond the decoded ones
         check_samples(
             sum(_announced(content[head.start() : head.start() + 48]) for head in _MINISEED.finditer(content))
         )
@@ -183,7 +183,7 @@ def _polygons(table: BodyFile) -> tuple[int, int, int]:
     regions = holes = vertices = 0
     for region in table.section.region if table.section else ():
         words = region.wkt or ""
-        # every polygon of a text begins with two brackets, and commas stand between its points
+        # each polygon of a text begins with two brackets; commas separate its points
         polygons = 1 if region.outline is not None else max(1, words.count("(("))
         regions += polygons
         holes += len(region.holes or ()) + max(0, words.count(",(") + words.count(", (") - polygons + 1)
@@ -249,7 +249,7 @@ class Inputs(ResponseTables):
 
     model_config = _shown(_INPUTS)
 
-    # said once more: the schema tells defaults, which it does not know of a factory
+    # repeated, since the schema omits defaults of factories
     restitution: RestitutionTable = RestitutionTable(models=_MODELS)
     response: ResponseTable = ResponseTable()
     settings: SettingsTable = SettingsTable()

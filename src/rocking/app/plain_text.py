@@ -16,7 +16,7 @@ _LONGEST_FILE_NAME = 80
 _LONGEST_TITLE = 120
 _HIDDEN = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-_ONE_LINE = 80  # longest list that stands in one line [characters]
+_ONE_LINE = 80  # longest list on one line [characters]
 
 
 def plain_line(text: str, longest: int = 160) -> str:
@@ -136,7 +136,7 @@ def _key(key: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    # what cannot be seen is spelled out: a reader of the file shall see all that stands in it
+    # invisible characters are escaped, so that all characters of the file are visible
     marks = json.dumps(text, ensure_ascii=False)
     return "".join(mark if mark == " " or mark.isprintable() else _code(ord(mark)) for mark in marks)
 

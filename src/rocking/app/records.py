@@ -103,7 +103,7 @@ class RecordStore:
     def get(self, sha: str) -> StoredRecord:
         record = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
         path = self._place(record) if record else None
-        # what was written here is no link, nor is its folder
+        # neither the file nor its folder is a link
         if record is None or path is None or path.is_symlink() or path.parent.is_symlink() or not path.is_file():
             raise NotFound("record {record}... is not stored here; upload the file again", record=str(sha)[:12])
         return record
@@ -148,7 +148,7 @@ class RecordStore:
 
         def read() -> GroundMotion:
             motion = read_motion(path, *how[:-1], skip=skip)
-            if sha not in motion.provenance[0]:  # read_motion notes the hash of what it read
+            if sha not in motion.provenance[0]:  # read_motion notes the hash of the record
                 raise RecordError("{file}: changed since the upload; upload the file again", file=path.name)
             return motion
 

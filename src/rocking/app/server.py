@@ -240,7 +240,7 @@ def _run(
 
     sys.setswitchinterval(_TURN)
     server = _Server(_config(app), tell)
-    with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
+    with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # end on request
         server.run(sockets=[door])
     queue: ComputationQueue = app.state.rocking.heavy
     return queue

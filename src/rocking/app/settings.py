@@ -52,8 +52,8 @@ class ServerSettings:
     port: int = DEFAULT_PORT  # port to listen on
     folder: Path = field(default_factory=data_folder)  # data folder: records, studies, the key for scripts
     allow_remote: bool = False  # whether an address that other machines reach is allowed
-    workers: int | None = None  # processes for a study; by default what the campaign chooses
-    limits: Limits = Limits()  # how much it accepts
+    workers: int | None = None  # processes per study; default: of the campaign
+    limits: Limits = Limits()  # size limits
 
     @property
     def origin(self) -> str:
@@ -66,11 +66,11 @@ class ServerSettings:
 class AppState:
     """Shared state of the endpoints."""
 
-    settings: ServerSettings  # what the server was told
+    settings: ServerSettings  # settings of the server
     records: "RecordStore"  # uploaded records
     files: "RecordStore"  # other uploaded files: scans, sounds, lists
-    projects: "ProjectStore"  # what is worked on
-    questions: "QuestionDesk"  # what takes longer than a page waits
+    projects: "ProjectStore"  # saved projects
+    questions: "QuestionDesk"  # long computations
     studies: "StudyManager"  # campaigns that run, wait or are done
     sessions: "Sessions"  # who is signed in
     heavy: ComputationQueue  # threads for long computations

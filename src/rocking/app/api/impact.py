@@ -109,7 +109,7 @@ def answer(inputs: ImpactRequest) -> JsonAnswer:
 
 def _facts(inputs: ImpactRequest) -> Answer:
     body = body_from(inputs.body)
-    # a homogeneous block is the same on both sides; what is the same is told once
+    # a homogeneous block is symmetric; equal values are given once
     same = isinstance(body, Block) and body.known is None and body.stands_on_corners
     foot = "right" if inputs.foot == "both" and same else inputs.foot
     coefficients = ImpactAnswer.of(body, None, foot=foot, gravity=inputs.settings.gravity or g, identities=False)

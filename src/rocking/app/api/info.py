@@ -30,7 +30,7 @@ PARAMETERS = {
 """Unit and words of the parameters of pulses."""
 
 _DASHES = {"-": [], "--": [6.0, 4.0], "-.": [8.0, 3.0, 2.0, 3.0], ":": [2.0, 3.0]}
-UNLIMITED = "unlimited"  # what stands for an infinite default, which JSON has no number for
+UNLIMITED = "unlimited"  # JSON text for an infinite default
 EngineFacts: Any = shape("EngineFacts", "Engine of the simulations.", name=str, instruction_set=str | None)
 ParameterFacts: Any = shape(
     "ParameterFacts",

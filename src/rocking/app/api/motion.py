@@ -81,7 +81,7 @@ async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
 
 def _answer(inputs: MotionRequest, records: RecordStore) -> JsonAnswer:
     if inputs.motion.record is not None:
-        records.get(inputs.motion.record)  # what was deleted is gone, even if its answer is still held
+        records.get(inputs.motion.record)  # a deleted record is not found, even if its answer is cached
     return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs, records)))
 
 

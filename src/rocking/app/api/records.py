@@ -24,7 +24,7 @@ from rocking.motions.formats.miniseed import STATIONS
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.motion import GroundMotion
 
-_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # what stands for an answer that is missing, to find out what else is
+_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # placeholders for missing values, to find all missing values at once
 _QUIETEST = 1e-100  # smaller accelerations have no energy: their squares vanish in floating point, whatever the unit
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
@@ -214,7 +214,7 @@ def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
         raise RecordError("{name}: the acceleration is zero throughout", name=name)
     for part in record.components:
         factor = ACCELERATION_UNITS[part.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
-        with np.errstate(over="ignore"):  # what overflows is infinite, and refused
+        with np.errstate(over="ignore"):  # overflow gives infinity, which is rejected
             values = part.acceleration * factor
         try:
             GroundMotion(values, part.time_step)

@@ -172,7 +172,7 @@ class Archive:
 
 def _check_entry(entry: ZipInfo) -> None:
     name = plain_line(entry.filename, 60)
-    # orig_filename is what stands in the archive: a NUL cuts the other one off
+    # orig_filename is the name in the archive; the other name is cut at a NUL
     if (
         entry.orig_filename != entry.filename
         or set(entry.filename) & set("/\\:\0")

@@ -24,7 +24,7 @@ from rocking.version import SOFTWARE
 class Evaluation:
     """Inputs, and results computed once on demand."""
 
-    inputs: Inputs  # what the user chose
+    inputs: Inputs  # inputs of the user
     records: RecordStore  # uploaded records
     foot: str = "both"  # foot on which the body lands, for coefficients
 

@@ -19,7 +19,7 @@ from rocking.conventions import DEFAULT_RESTITUTION, Assumed
 from rocking.spec.schema import migrated
 from rocking.version import SOFTWARE
 
-FILE_NAME = "response.toml"  # what such a file is called
+FILE_NAME = "response.toml"  # name of the input file
 _TABLES = ("response", "body", "motion", "restitution", "settings")
 _SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points", "units"}
 _RECORD = re.compile(r"^# record: ([0-9a-f]{64}) (\".*\")$", re.MULTILINE)

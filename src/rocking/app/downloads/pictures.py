@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ENOUGH = 2700  # runs of a curve whose extremes are drawn: one for each dot of the widest picture
+_ENOUGH = 2700  # drawn points of a curve: one per pixel of the widest figure
 ONE_AT_A_TIME = RLock()  # held by whoever draws
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
-_BEYOND = 2.2  # how far a falling body is followed, in slenderness angles
-_SMALL = 0.2  # below this share of the slenderness angle the rotations fill their panel and +-1 is left out
+_BEYOND = 2.2  # drawn range of an overturning body, in slenderness angles
+_SMALL = 0.2  # fraction of the slenderness angle below which rotations fill the panel, without +-1
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 

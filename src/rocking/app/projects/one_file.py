@@ -57,7 +57,7 @@ def project_file(state: "AppState", project: Project) -> bytes:
     contents, records, files = dict[str, bytes](), dict[str, str](), dict[str, str]()
     for sha in _hashes([document, studies]):
         for store, names in ((state.records, records), (state.files, files)):
-            with suppress(NotFound):  # it was deleted, and the project says so where it is used
+            with suppress(NotFound):  # deleted; the project reports it at its use
                 names[sha], contents[sha] = store.get(sha).file_name, store.content(sha)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:

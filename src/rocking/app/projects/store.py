@@ -21,7 +21,7 @@ from rocking.spec.schema import migrated_document
 
 MOST_PROJECTS = 1_000
 MOST_STATES = 2_000  # of a project; beyond them the oldest go
-LARGEST = 1 << 20  # of what a project holds, as JSON [bytes]
+LARGEST = 1 << 20  # largest project as JSON [bytes]
 KEPT_DAYS = 90  # so long a deleted project can be brought back [d]
 _FORMAT = 1
 _TABLES = """
@@ -42,7 +42,7 @@ class Project:
     name: Annotated[str, "display name"]
     created: Annotated[str, "time in UTC"]
     changed: Annotated[str, "time of the last change in UTC"]
-    version: Annotated[int, "number of changes"]  # of whatever kind: what a change must know that it follows
+    version: Annotated[int, "number of changes"]  # a change states the version on which it is based
     state: Annotated[int, "number of the current state"]
     can_undo: bool
     can_redo: bool

@@ -57,7 +57,7 @@ def main() -> None:
         nonlocal question
         while not question.endswith(b"\n"):
             if not (part := os.read(0, 1)):
-                os._exit(0)  # the server has ended, and nothing was asked
+                os._exit(0)  # the server has ended without a command
             question += part
         told.set()
         end_with_the_server()

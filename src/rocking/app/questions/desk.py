@@ -54,7 +54,7 @@ MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
 _SECONDS = 1800.0  # longest time of a question [s]
 _IDLE = 900.0  # so long a process waits for the next question [s]
 _ROOM = 32 << 20  # that a question may need on the disk [bytes]
-_MOST_STARTS = 3  # so often it is begun anew where the server ended beneath it
+_MOST_STARTS = 3  # restarts of a run after an end of the server
 QUESTION, _NOTE, _ANSWER, _LOG = "question.toml", "state.json", "answer.json", "log.txt"
 _OWN = {"matplotlibrc", _NOTE, _ANSWER, _LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
 State = Literal["waiting", "running", "done", "refused", "stopped"]
@@ -74,7 +74,7 @@ class HostedQuestion:
     refusal: Annotated[dict[str, Any] | None, "reason as an error with text and facts"] = None
     seconds: Annotated[float, "computing time [s]"] = 0.0
     files: Annotated[list[str], "files for export"] = field(default_factory=list)
-    starts: int = 0  # how often it was begun
+    starts: int = 0  # number of starts
     format: Annotated[str, "additional output format of convert, or empty"] = ""
 
 
@@ -226,7 +226,7 @@ class QuestionDesk:
                 if not place.is_symlink():
                     shutil.rmtree(place, ignore_errors=True)
                 continue
-            except (OSError, ValueError):  # of a later version perhaps: it is left as it is
+            except (OSError, ValueError):  # possibly of a later version: kept unchanged
                 continue
             if question.id == place.name:
                 if question.state == "running" and question.starts >= _MOST_STARTS:
@@ -260,7 +260,7 @@ class QuestionDesk:
     def _become(self, question: HostedQuestion) -> None:
         with self._changed:
             self._questions[question.id] = question
-        with suppress(OSError):  # a full disk: a restart asks once more
+        with suppress(OSError):  # full disk: computed again after a restart
             write_new(self.folder / question.id / _NOTE, json.dumps({"schema": SCHEMA, **asdict(question)}).encode())
 
     def _work(self) -> None:
@@ -298,7 +298,7 @@ class QuestionDesk:
             self._ahead = None
 
     def _start(self) -> subprocess.Popen[bytes]:
-        cache = self.folder.with_name("cache")  # for what libraries write
+        cache = self.folder.with_name("cache")  # cache of libraries
         cache.mkdir(mode=0o700, exist_ok=True)
         nothing = subprocess.DEVNULL
         return subprocess.Popen(
@@ -325,7 +325,7 @@ class QuestionDesk:
             if self._closed or self._state(question.id) == "stopped":
                 kill(process)
         try:
-            with suppress(OSError):  # it has ended: its code says so
+            with suppress(OSError):  # ended: see its exit code
                 process.stdin.write(json.dumps(told).encode() + b"\n")  # type: ignore[union-attr]
                 process.stdin.flush()  # type: ignore[union-attr]
             code = process.wait(_SECONDS)

@@ -47,8 +47,8 @@ class RequestHead:
     """The head of a request or of a websocket handshake."""
 
     method: str  # in capitals; "WEBSOCKET" for a handshake
-    target: str  # path as it stands in the request line, nothing decoded
-    query: str  # what follows the question mark
+    target: str  # path of the request line, not decoded
+    query: str  # query after the question mark
     scheme: str  # "http" or "https"
     headers: Mapping[str, str]  # lower-case name -> value
 
@@ -194,7 +194,7 @@ CHECKS: dict[str, Check] = {
 
 _PAGE = (Path(__file__).parents[1] / "static" / "index.html").read_text(encoding="utf-8")
 _IMPORTS = re.findall(r'<script type="importmap">(.*?)</script>', _PAGE, re.DOTALL)
-# the one script that stands in the page: where modules of libraries find each other
+# the only inline script of the page: the import map
 _KNOWN = [f"'sha256-{b64encode(sha256(words.encode()).digest()).decode()}'" for words in _IMPORTS]
 CONTENT_POLICY = "; ".join((
     "default-src 'none'",
@@ -207,7 +207,7 @@ CONTENT_POLICY = "; ".join((
     "form-action 'none'",
     "frame-ancestors 'none'",
 ))  # fmt: skip
-# The manual is pages of ours without input: they bring styles of their own, and a form that asks for a page of theirs.
+# Pages of the manual have no input; they contain styles and a form for a page of the manual.
 MANUAL_POLICY = CONTENT_POLICY.replace("form-action 'none'", "form-action 'self'").replace(
     "style-src 'self'", "style-src 'self' 'unsafe-inline'"
 )

@@ -87,10 +87,10 @@ class Variation:
     """Inputs of one simulation."""
 
     body: Body
-    table: dict[str, Any]  # the same, as inputs tell it
+    table: dict[str, Any]  # the same, as inputs
     label: str  # the restitution in words
     restitution: Any  # the same, as `simulate` takes it
-    choice: dict[str, Any] | None  # the same, as inputs tell it; None where they cannot
+    choice: dict[str, Any] | None  # the same, as inputs; None if not possible
     scale: float  # factor on the motion as the study has it [-]
     stretch: float = 1.0  # factor on its time [-]
     rotation: float = 0.0  # theta [rad] and theta' [rad/s] at the start

@@ -52,7 +52,7 @@ class StudyManager:
         self.answers: Remembered[bytes] = Remembered(_ANSWERS, len)
         self.queue = StudyQueue(there, workers or processors(), at_once, limits.studies_waiting)
         if any(study.meta.state == WAITING for study in there.values()):
-            self.queue.changed()  # what an earlier server left goes on by itself
+            self.queue.changed()  # continue the studies of an earlier server
 
     def create(self, name: str | None, job: object, project: str = "", *, brought: bool = False) -> str:
         """Put a new study in the queue; imported studies ignore its length."""

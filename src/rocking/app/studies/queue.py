@@ -9,7 +9,7 @@ from rocking.app.errors import Busy, NotFound
 from rocking.app.studies.study import HostedStudy, StudyProcess
 from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
 
-LOOK = 0.2  # time between looks at what runs [s]
+LOOK = 0.2  # interval between checks of running studies [s]
 SAVE_AGAIN = 2.0  # time after which a state is written again that the disk did not take [s]
 _LOG = logging.getLogger(__name__)
 GONE = "study not found; it may have been deleted"
@@ -124,7 +124,7 @@ class StudyQueue:
                 for each in self._running():
                     self._tend(each)
                 self._begin_next()
-                with self.lock:  # what the disk did not take is written again
+                with self.lock:  # write again after a full disk
                     for each in self._studies.values():
                         each.save()
                     unsaved = not all(each.saved for each in self._studies.values())

@@ -22,9 +22,9 @@ from rocking.studies.fragility.curves import Crossing, shown_curves
 from rocking.studies.islands import safe_islands
 from rocking.version import __version__
 
-NAME = f"result-{__version__}-{SCHEMA}.json"  # another version may tell other things
+NAME = f"result-{__version__}-{SCHEMA}.json"  # other versions may contain other keys
 _LARGEST = 20_000
-_PACKED = 100_000  # values from which on a table of a map is told as bytes
+_PACKED = 100_000  # least number of values of a map table that is sent as bytes
 _WHOLE = ("uint8", "int8", "uint16", "int16", "int32")
 _FINE = 120
 
@@ -140,7 +140,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
         for place, angle in enumerate(job.study.coordinates["slenderness_angle"].values):
             low, middle, high = fractiles(spectra, place)
             mode = modes[k][:, place]
-            with np.errstate(invalid="ignore"):  # where nothing could be computed there is no share
+            with np.errstate(invalid="ignore"):  # NaN without a computed value
                 share = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
             curves.append({
                 "restitution": label, "angle": angle, "low": low, "median": middle, "high": high, "overturned": share,

@@ -32,8 +32,8 @@ The tables of a job file (`rocking.examples`) as JSON. Records are named by the 
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
 _ONE = answered(StudyFacts, "State and progress.")
-SHORTEST = 0.2  # time between two messages, at least [s]
-MOST = 64  # browsers that are told at the same time
+SHORTEST = 0.2  # least interval between two messages [s]
+MOST = 64  # browsers informed at the same time
 _TRY_LATER = 1013
 
 
@@ -236,7 +236,7 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
             tasks.remove(woken)
             woken.cancel()
             await asyncio.wait({gone}, timeout=SHORTEST)
-    except (WebSocketDisconnect, RuntimeError):  # it went while it was told
+    except (WebSocketDisconnect, RuntimeError):  # closed during the message
         pass
     finally:
         leave()

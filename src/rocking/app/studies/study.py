@@ -44,7 +44,7 @@ class StudyPace:
         # returns histories a second over the last seconds [1/s], and the work done in a second since the first were
         # finished [-]; 0 while nothing is known
         instant = time.monotonic() if now is None else now
-        # a study finishes in jumps, a piece at a time: only looks that found more say anything
+        # a study finishes in blocks: only checks with new histories count
         if not self._looks or done > self._looks[-1][1]:
             if self._looks:
                 self._pace = self._speed.look(work, instant)
@@ -111,7 +111,7 @@ class HostedStudy:
     """A study."""
 
     folder: StudyFolder  # where it is
-    meta: Meta  # what is known of it
+    meta: Meta  # state on disk
     process: StudyProcess | None = None  # who computes it now
     begun: int = 0  # begun, done: histories of the rounds that have begun, and finished ones, at the last look [-]
     done: int = 0
@@ -119,8 +119,8 @@ class HostedStudy:
     estimate: Estimate | None = None  # time that is left, at the last look; None while that is not known
     cancelled: bool = False  # cancelled, left: whether a user wants it to stop, and whether it is being deleted
     left: bool = False
-    unreadable: bool = False  # whether what is on disk is not understood: it is shown, and left as it is
-    saved: bool = True  # whether the disk knows its state
+    unreadable: bool = False  # whether the files are unreadable: shown, and left unchanged
+    saved: bool = True  # whether the state is saved
     _pace: StudyPace = field(default_factory=StudyPace)
 
     def begin(self, workers: int) -> None:
@@ -151,7 +151,7 @@ class HostedStudy:
         """Update the progress; return True if complete."""
         try:
             status, complete = self.folder.status()
-        except (RockingError, OSError):  # the ledger is being made, or is damaged or gone: its process will say so
+        except (RockingError, OSError):  # the ledger is incomplete, damaged or missing: its process reports it
             return False
         if status is not None:
             self.begun, self.done = status.histories, status.histories_done
@@ -181,7 +181,7 @@ class HostedStudy:
     def facts(self) -> dict[str, Any]:
         """State and progress for answers."""
         running = self.meta.state == RUNNING
-        total = max(self.meta.histories, self.begun)  # an adaptive study finds out on the way how many there are
+        total = max(self.meta.histories, self.begun)  # total of an adaptive study: not known in advance
         left = self.estimate if running else None
         return {
             "id": self.folder.id,

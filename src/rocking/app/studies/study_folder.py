@@ -31,7 +31,7 @@ META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "record
 
 WAITING, RUNNING, CANCELLED = "waiting", "running", "cancelled"
 INTERRUPTED, FAILED, DONE = "interrupted", "failed", "done"
-STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)  # what a study may be doing
+STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)  # states of a study
 
 
 def new_id() -> str:
@@ -48,12 +48,12 @@ def is_id(text: str) -> bool:
 class Meta:
     """Data of a study outside its campaign."""
 
-    name: str  # name, kind: what it is called, fit to be shown, and what it computes
+    name: str  # name, kind: printable name and type of computation
     kind: str
     created: str  # when it was made, as of ISO 8601
-    histories: int  # how many it has
+    histories: int  # number of histories
     state: str = WAITING  # one of `STATES`
-    message: str = ""  # A sentence about how it ended; empty while there is none
+    message: str = ""  # result message; empty if there is none
     project: str = ""  # to which it belongs, by its name in addresses; empty if to none
 
 
@@ -85,7 +85,7 @@ class StudyFolder:
             kept = {sha256: self._keep(sha256, records.path(sha256)) for sha256 in job.records}
             disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
             if not job.needs_long:
-                with np.errstate(all="ignore"):  # what overflows is infinite, and refused by its name
+                with np.errstate(all="ignore"):  # overflow gives infinity, which is rejected by its key
                     count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
                 if count != meta.histories:
                     raise InvalidValueError(

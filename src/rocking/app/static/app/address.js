@@ -2,7 +2,7 @@
 
 const OURS = ["token", "in", "view"];
 
-/** What the fragment says, as a plain object. @returns {{ [key: string]: string | undefined }} */
+/** Content of the fragment as an object. @returns {{ [key: string]: string | undefined }} */
 export const read = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
 
 /** Whether a fragment is for the application: empty, or with one of its words.

@@ -53,7 +53,7 @@ export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   });
 };
 
-/** What an answer may look like: [{words, rows}], one entry for each form that it has.
+/** Forms of an answer: [{words, rows}], one entry per form.
  * @param {any} schema @param {Shape} shape */
 export const formsOf = (schema, shape) => {
   const variants = shape?.oneOf ?? shape?.anyOf?.flatMap((/** @type {any} */ variant) => variant.oneOf ?? [variant]) ?? [];
@@ -66,7 +66,7 @@ export const formsOf = (schema, shape) => {
   return [{ words: list ? "a list with the entries" : "", rows }];
 };
 
-/** Statuses of errors and what they mean: [[status, words]]. @param {any} schema */
+/** Statuses of errors and their meanings: [[status, words]]. @param {any} schema */
 export const errorsOf = (schema) =>
   Object.entries(schema.components?.responses ?? {})
     .map(([name, { description }]) => [name.replace(/\D/g, ""), description]);

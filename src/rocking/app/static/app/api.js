@@ -37,7 +37,7 @@ export const latest = (key, path, json) =>
     if (!line.busy) follow(line);
   });
 
-/** Whether an error only says that a newer call took its place. @param {any} error */
+/** Whether an error is the abort by a newer call. @param {any} error */
 export const superseded = (error) => error?.name === "AbortError";
 
 /** Save the answer as a file; the server's file name wins over the fallback.

@@ -3,7 +3,7 @@
 import { say } from "/app/say.js";
 import { t } from "/app/words.js";
 
-/** Copy columns and rows as text; says so, or says why not.
+/** Copy columns and rows as text, with a message of success or of the error.
  * @param {(string | Column)[]} columns @param {unknown[][]} rows */
 export const copyTable = async (columns, rows) => {
   const text = asText(columns, rows);

@@ -1,6 +1,6 @@
 /** Extremes of data: a call that takes all values as its arguments ends at some 100,000 of them. */
 
-/** The largest of some values, not below `most`; what is no number is passed over.
+/** Largest of some values, at least `most`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [most] */
 export const highest = (values, most = -Infinity) => {
   for (const value of values) if (value !== null && value > most) most = value;

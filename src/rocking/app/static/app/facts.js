@@ -1,4 +1,4 @@
-/** The body's facts, asked for once whenever the body changes, and shared by every view. */
+/** Properties of the body, requested once per change of the body, for all views. */
 
 import { superseded } from "/app/api.js";
 

@@ -1,9 +1,9 @@
-/** What could not be shown: why in words, and the way to try again. */
+/** Error message with its cause and a button to retry. */
 
 import { html, render } from "/parts/preact.js";
 import { Button, Note, sentence } from "/parts/fields.js";
 
-/** Put components in a place of their own instead of all that stands in a node.
+/** Mount components in a new element in place of the content of a node.
  * @param {Element} node @param {VNode} content */
 export const inPlaceOf = (node, content) => {
   const holder = document.createElement("div");
@@ -11,7 +11,7 @@ export const inPlaceOf = (node, content) => {
   render(content, holder);
 };
 
-/** Say why the page could not start; what the address holds is kept for the next try. @param {string} message */
+/** Show the reason of a failed start; the fragment of the address is kept for the retry. @param {string} message */
 export const showFailure = (message) => {
   inPlaceOf(document.getElementById("main"), html`
     <div class="card door" data-testid="failure">

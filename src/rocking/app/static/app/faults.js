@@ -1,4 +1,4 @@
-/** The fields that hold what is no valid value: the inputs do not have what such a field shows. */
+/** Fields with invalid values; the inputs do not contain these values. */
 
 import { t } from "/app/words.js";
 
@@ -9,7 +9,7 @@ const faultsByInput = new Map();
 /** @type {Set<(faults: Fault[]) => unknown>} */
 const watchers = new Set();
 
-/** Note what is wrong with a field; no text take it off the list.
+/** Add the error of a field; an empty text removes it.
  * @param {Element} input @param {string} label @param {string} text */
 const mark = (input, label, text) => {
   if (text ? faultsByInput.get(input)?.text === text : !faultsByInput.has(input)) return;
@@ -35,7 +35,7 @@ const list = ({ inputs = false, view } = {}) =>
 /** @param {Which} [which] */
 const any = (which) => list(which).length > 0;
 
-/** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere.
+/** Errors of all fields as one text; empty if there are none. `but` excludes some.
  * @param {Which & { but?: string }} [which] */
 const sentence = ({ but, ...which } = {}) =>
   list(which).filter(({ text }) => text !== but).map(({ label, text }) => `${t(label)}: ${t(text)}`).join(" ");
@@ -44,7 +44,7 @@ const tell = () => {
   for (const watcher of [...watchers]) watcher(list());
 };
 
-/** Be told whenever a field goes wrong or right; returns how to stop. @param {(faults: Fault[]) => unknown} watcher */
+/** Call `watcher` at each change of an error; returns a function to end it. @param {(faults: Fault[]) => unknown} watcher */
 const subscribe = (watcher) => {
   watchers.add(watcher);
   return () => watchers.delete(watcher);

@@ -1,8 +1,8 @@
-/** What a file holds. */
+/** Content of a file. */
 
 import { t } from "/app/words.js";
 
-/** The bytes of a file as it is now; they are kept, whatever becomes of it on the disk. @param {File} file */
+/** Bytes of a file at present, independent of later changes on the disk. @param {File} file */
 export const contentOf = (file) => file.arrayBuffer().catch(() => {
   throw new Error(t("{name} is no longer readable. Choose the file again.", { name: file.name }));
 });

@@ -37,15 +37,15 @@ export const quantity = (value, unit, digits = 4) => {
   return unit === "%" || unit === "\u00b0" ? `${text}${THIN}${unit}` : `${text}\u00a0${pretty(unit)}`;
 };
 
-/** Share of one as a percentage. @param {number} share @param {number} [digits] */
+/** Fraction of 1 as a percentage. @param {number} share @param {number} [digits] */
 export const percent = (share, digits = 3) => quantity(share * 100, "%", digits);
 
-/** A unit as it is printed: m/s2 becomes m/s with a raised 2. @param {string} unit */
+/** Printed unit: m/s2 becomes m/s with a superscript 2. @param {string} unit */
 export const pretty = (unit) => unit.replace(
   /([a-z])(-?[0-9])\b/gi, (_, letter, power) => letter + raised(power),
 );
 
-/** What a person typed as a number, decimal comma allowed; null if it is none. @param {string | number} text */
+/** Typed number, decimal comma allowed; null if it is not a number. @param {string | number} text */
 export const parseNumber = (text) => {
   const clean = String(text).trim().replace(
     /[\s\u202f\u00a0]/g, "",
@@ -55,11 +55,11 @@ export const parseNumber = (text) => {
   return Number.isFinite(value) ? value : null;
 };
 
-/** A number as it stands in an input box: every digit, nothing else.
+/** Number for an input box, with all digits.
  * @param {number | string | null | undefined} value */
 export const editable = (value) => (value === null || value === undefined ? "" : String(value));
 
-/** Round away what only binary arithmetic left behind. @param {number} value @param {number} [digits] */
+/** Round off the errors of binary arithmetic. @param {number} value @param {number} [digits] */
 export const tidy = (value, digits = 12) => Number(Number(value).toPrecision(digits));
 
 /** @param {number} size @param {number} digits */

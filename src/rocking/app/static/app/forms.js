@@ -1,4 +1,4 @@
-/** What is typed in the views of questions: it belongs to the project, as the inputs do. */
+/** Form values of the views; part of the project, as the inputs. */
 
 import { batch, signal } from "/parts/preact.js";
 import { changedAt, keep, stored } from "/app/inputs.js";
@@ -10,7 +10,7 @@ const KEPT = "rocking.forms";
 export const createForms = () => {
   let all = formsOf(stored(KEPT));
   /** @type {Map<string, Signal<Forms[string] | undefined>>} */
-  const byView = new Map(); // what is typed in one view draws no other anew
+  const byView = new Map(); // a change in one view does not redraw others
   /** @type {Set<(view: string) => unknown>} */
   const watchers = new Set();
   /** @param {Forms} next */
@@ -21,11 +21,11 @@ export const createForms = () => {
   };
   return {
     get: () => all,
-    /** Show what a project holds. @param {unknown} forms */
+    /** Load the form values of a project. @param {unknown} forms */
     take: (forms) => become(formsOf(forms)),
     /** @param {(view: string) => unknown} watcher */
     subscribe: (watcher) => watchers.add(watcher),
-    /** The form of a view; `first` is what it holds before anything was typed, `at(...path)` is a signal of one field.
+    /** Form of a view; `first`: initial values, `at(...path)`: signal of one field.
      * @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
     of: (view, first) => {
       const here = byView.get(view) ?? signal(all[view]);
@@ -51,7 +51,7 @@ export const createForms = () => {
   };
 };
 
-// A file from elsewhere may hold anything: what is of another kind was not typed here.
+// Files from other sources may contain anything: values of another type are ignored.
 /** @param {unknown} value @param {unknown} first */
 const alike = (value, first) => first === undefined || first === null
   || (typeof value === typeof first && Array.isArray(value) === Array.isArray(first));

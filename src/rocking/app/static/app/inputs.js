@@ -8,7 +8,7 @@ const ASIDE = "rocking.aside";
 /** The default restitution model, and the models that it is compared with. */
 export const DEFAULT_MODELS = ["calibrated", "ked", "housner"];
 
-/** What a new project holds. */
+/** Initial content of a new project. */
 /** @type {Server.Inputs} */
 export const FIRST = {
   body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
@@ -42,7 +42,7 @@ export const createInputs = (start) => {
     get: () => current,
     /** Whether this tab held inputs before it was loaded. */
     wereKept,
-    /** Show what a project holds; nothing stays aside. @param {Server.Inputs} document */
+    /** Load the inputs of a project; nothing is set aside. @param {Server.Inputs} document */
     take: (document) => {
       put(null);
       replace(document);
@@ -62,7 +62,7 @@ export const createInputs = (start) => {
       replace(document);
     },
     aside: () => aside,
-    /** Change what is on the screen and what is aside over. */
+    /** Exchange the shown inputs and the inputs set aside. */
     swap: () => {
       if (!aside) return;
       const next = aside.inputs;
@@ -73,7 +73,7 @@ export const createInputs = (start) => {
       put(null);
       become(current, new Set());
     },
-    /** Let every watcher ask again for what it shows. */
+    /** Make all watchers request their data again. */
     touch: () => become(current, new Set(Object.keys(current))),
     /** @param {(inputs: Server.Inputs, changed: Set<string>) => unknown} watcher */
     subscribe: (watcher) => {
@@ -100,7 +100,7 @@ export const decode = (text) => {
   }
 };
 
-/** What this browser tab held before it was reloaded. */
+/** Inputs of this browser tab before a reload. */
 export const kept = () => inputsOf(stored(KEPT));
 
 const keptAside = () => {
@@ -109,7 +109,7 @@ const keptAside = () => {
   return inputs && { inputs, words: String(entry.words), mine: Boolean(entry.mine) };
 };
 
-/** What was kept in this tab; null if nothing. @param {string} key */
+/** Stored value of this tab; null if there is none. @param {string} key */
 export const stored = (key) => {
   try {
     return JSON.parse(sessionStorage.getItem(key) ?? "null");

@@ -6,7 +6,7 @@ export const KEY = "rocking.language";
 
 export const choose = /** @type {HTMLSelectElement | null} */ (document.getElementById("language"));
 
-/** The language of the page: the one that was chosen in this browser, or the first that it asks for. */
+/** Language of the page: the choice in this browser, else its first preferred language. */
 const chosen = () => {
   if (!choose) return "en"; // a page in English alone
   try {

@@ -1,10 +1,10 @@
-/** Inputs from elsewhere stand in place of the user's own, which are kept beside them and brought back by a button. */
+/** Inputs of a link replace the inputs of the user, which are set aside and restored by a button. */
 
 import { html, render, signal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 import { t } from "/app/words.js";
 
-/** Keep a line over the views up to date that says whose inputs are on the screen, and changes them over.
+/** Show above the views whose inputs are loaded, with a button to exchange them.
  * @param {Element} views @param {App["inputs"]} inputs */
 export const mountLent = (views, inputs) => {
   const aside = signal(inputs.aside());

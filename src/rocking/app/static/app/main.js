@@ -1,6 +1,6 @@
 /** The start: sign in, read the link, build the app object, show the first view. */
 
-import { t } from "/app/words.js"; // first: what the others draw is said in its words
+import { t } from "/app/words.js"; // first: other modules translate their texts with it
 import { language } from "/app/language.js";
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
@@ -91,7 +91,7 @@ const run = (app, view) => {
   signingIn(app, views, tabs);
 };
 
-// A session that ended is noticed by the first call that is refused; after it all is asked again.
+// An expired session is detected by the first rejected call; afterwards all data are requested again.
 /** @param {App} app @param {ReturnType<typeof createViews>} views @param {ReturnType<typeof createTabs>} tabs */
 const signingIn = (app, views, tabs) => {
   document.addEventListener("rocking:signed-out", () => showDoor(""));

@@ -1,4 +1,4 @@
-/** What the address says, followed once: a token, the inputs of a link, a view; nothing else is ours. */
+/** The fragment of the address, processed once: a token, the inputs of a link, or a view. */
 
 import * as address from "/app/address.js";
 import { decode } from "/app/inputs.js";
@@ -12,7 +12,7 @@ export const followAddress = (app, tabs) => {
     const parts = address.read();
     if (!address.isOurs(parts)) return;
     const { token, in: shared, view } = parts;
-    // What is used is dropped at once: a reload must not undo the edits that follow.
+    // Removed after use: a reload must not revert later edits.
     if (token || shared) address.write({ view: view ?? tabs.current() });
     if (shared) take(app, shared);
     tabs.show(view ?? (token || shared ? tabs.current() : "body"), { quiet: true });

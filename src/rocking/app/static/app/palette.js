@@ -6,7 +6,7 @@ import { t } from "/app/words.js";
 /** @type {Map<string, Server.ModelFacts>} */
 const models = new Map();
 
-/** Learn the models that the server has; done once, before anything is drawn. @param {Server.ModelFacts[]} facts */
+/** Register the models of the server; once, before the first drawing. @param {Server.ModelFacts[]} facts */
 export const learnModels = (facts) => {
   models.clear();
   for (const model of facts) models.set(model.name, model);
@@ -39,7 +39,7 @@ export const modelWords = (label) => {
   return name ? `${factor}${t(name)}${parameter}` : text;
 };
 
-/** A short line, or dots where a curve is drawn as such, in a colour and its true dash.
+/** Legend symbol: a short line with color and dash, or dots for a dotted curve.
  * @param {{ colour: string, dash?: number[], dots?: boolean }} given */
 export const dashKey = ({ colour, dash = [], dots = false }) => {
   const stroke = colour.startsWith("--") ? `var(${colour})` : colour;

@@ -21,7 +21,7 @@ export const inPlainWords = (error, body) => {
   error.message = sentenceOf(error, units);
 };
 
-/** What the page has in place of an option that a message tells its reader to state.
+/** Controls of the page that replace the options named in a message.
  * @type {{ [path: string]: string | undefined }} */
 const WAYS = {
   "motion.units": "enter it in the form", "motion.time_step": "enter it in the form", "motion.format": "enter it in the form",
@@ -29,7 +29,7 @@ const WAYS = {
   "identify.trend": "choose \u201cwith a trend\u201d under \u201cCoefficient of restitution\u201d",
 };
 
-/** Why a file was left out, with what there is to do about it. @param {{ why: string, hint?: string, to_state?: string }} reason */
+/** Reason and remedy for a file that was excluded. @param {{ why: string, hint?: string, to_state?: string }} reason */
 export const whyLeftOut = ({ why: reason, hint, to_state: path }) => {
   const way = WAYS[path ?? ""];
   if (way) return t("{place}: {fault}", { place: reason, fault: way });
@@ -49,7 +49,7 @@ export const spelt = (message, units = "m") => {
 const outerPlaces = ({ places }) => places.filter(({ kind }) => kind === "file" || kind === "step")
   .map(({ name, kind, number: line }) => (kind === "file" && line ? `${name}, ${t("line {number}", { number: line })}` : name));
 
-/** A refusal of a question in words; what it tells to state stands in the form. @param {Required<Server.Refusal>} refusal */
+/** Rejection of a run as text; the missing values are fields of the form. @param {Required<Server.Refusal>} refusal */
 export const refusalWords = (refusal) => {
   const places = outerPlaces(refusal);
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
@@ -82,7 +82,7 @@ const sentenceOf = (error, units) => {
 /** @param {string[]} places @param {string} fault */
 const within = (places, fault) => places.reduceRight((text, location) => t("{place}: {fault}", { place: location, fault: text }), fault);
 
-// A number that is out of its range stands in the field: it is repeated in the unit of its range.
+// The field shows the rejected number: it is repeated in the unit of its range.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];
 /** @param {Required<Server.Refusal>} refusal @returns {Required<Server.Refusal>} */
 const inForm = (refusal) => {
@@ -107,7 +107,7 @@ const spelling = (fact, units) => {
   }
 };
 
-/** A number with its unit; lengths and areas in metres are told in the unit of the body.
+/** Number with unit; lengths and areas in metres are converted to the unit of the body.
  * @param {number} value @param {string} unit @param {Server.BodyInput["units"]} units */
 const amount = (value, unit, units) => {
   const power = { m: 1, m2: 2 }[unit];

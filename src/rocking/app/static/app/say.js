@@ -1,4 +1,4 @@
-/** The status line: what happened, in words, for eyes and for screen readers. */
+/** Status line with the last event, also for screen readers. */
 
 import { el, fill } from "/app/dom.js";
 
@@ -10,7 +10,7 @@ let shownText = "";
 let kept = null; // it may have gone with the dialog that it was in
 const statusLine = () => (kept ??= document.getElementById("status"));
 
-/** Say something in the status line. @param {string} text @param {string} [kind] */
+/** Show a text in the status line. @param {string} text @param {string} [kind] */
 export const say = (text, kind = "info") => {
   const line = statusLine();
   inSight(line);
@@ -22,7 +22,7 @@ export const say = (text, kind = "info") => {
   timer = setTimeout(() => hush(), kind === "error" ? 12_000 : 5_000);
 };
 
-// A dialog is over all else, and what is outside of it is not read out: while one is open the line is in it.
+// Content outside an open dialog is not read by screen readers: the line is moved into the dialog.
 /** @param {HTMLElement} line */
 const inSight = (line) => {
   const dialog = [...document.querySelectorAll("dialog[open]")].at(-1);
@@ -31,7 +31,7 @@ const inSight = (line) => {
   dialog?.addEventListener("close", () => dialog.contains(line) && inSight(line), { once: true });
 };
 
-/** Take the status line away, or some words alone if it still says them. */
+/** Clear the status line; with a text, only if it shows this text. */
 export const hush = (text = shownText) => {
   if (text !== shownText) return;
   shownText = "";

@@ -5,9 +5,9 @@ import { call } from "/app/api.js";
 import { inPlaceOf } from "/app/failure.js";
 import { Button, Field, Note, toWrong } from "/parts/fields.js";
 
-const doorMessage = signal(null); // what the door says; nothing while there is none
+const doorMessage = signal(null); // message of the sign-in page; null if there is none
 
-/** Exchange the token of a link for the cookie; says why not if it did not work. @param {string} token */
+/** Exchange the token of a link for the cookie; shows the error if this fails. @param {string} token */
 export const exchange = async (token) => {
   try {
     await call("session", { json: { token } });
@@ -21,7 +21,7 @@ const signedIn = () => document.dispatchEvent(new CustomEvent("rocking:signed-in
 /** @param {() => unknown} done */
 const onSignedIn = (done) => document.addEventListener("rocking:signed-in", done, { once: true });
 
-/** A page that says how to get in, before the application; what the address holds is kept for after.
+/** Sign-in page before the application; the fragment of the address is kept.
  * @param {string} message */
 export const showDoor = (message) => {
   const before = doorMessage.value;
@@ -33,7 +33,7 @@ export const showDoor = (message) => {
   onSignedIn(() => location.reload());
 };
 
-// Over the running application: nothing that was typed or drawn is lost.
+// Over the running application: typed and drawn inputs are kept.
 const openOver = () => {
   const close = over("Sign in again", html`<${Door} running />`, { stays: true });
   const look = async () => {

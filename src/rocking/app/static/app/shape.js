@@ -16,7 +16,7 @@ export const inputsOf = (document) => {
   return /** @type {any} */ (motion ? { ...inputs, motion: withoutNulls(motion) } : inputs);
 };
 
-/** What is typed in views, of a document from outside; what cannot be that is left out.
+/** Form values of a document from another source; invalid values are removed.
  * @param {any} forms @returns {Forms} */
 export const formsOf = (forms) => (!isTable(forms) ? {} : Object.fromEntries(Object.entries(forms).filter(([, form]) => isTable(form)
   && maybe(isList((file) => isTable(file) && eachOf(file, ["name", "sha"], isText)))(form.files))));

@@ -2,7 +2,7 @@
 
 const SIDES = { unit: "", min: 3, max: 10000, step: 1, integer: true };
 
-/** Shapes with the fields of each; a field is a length unless it says otherwise. */
+/** Shapes with their fields; a field is a length by default. */
 /** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
 export const SHAPES = {
   block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },

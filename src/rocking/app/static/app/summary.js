@@ -1,4 +1,4 @@
-/** The body column beside every other view: what stands there, at a glance. */
+/** Summary of the body in the column beside all other views. */
 
 import { html, render, signal, useMemo } from "/parts/preact.js";
 import { number, quantity } from "/app/format.js";
@@ -8,7 +8,7 @@ import { Made } from "/parts/made.js";
 
 /** Keep the column up to date. @param {HTMLElement} aside @param {App} app */
 export const mountSummary = (aside, app) => {
-  const [facts, wrong] = [signal(app.body.get()), signal("")]; // what is wrong, a line each
+  const [facts, wrong] = [signal(app.body.get()), signal("")]; // errors, one per line
   const look = () => {
     const refused = app.body.error()?.message;
     wrong.value = [app.faults.sentence({ inputs: true, but: refused }), refused].filter(Boolean).join("\n");

@@ -5,7 +5,7 @@ import { Button, Note } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
 import { t } from "/app/words.js";
 
-/** A keeper of views: show(name, before) mounts and tells them. @param {App} app */
+/** Keeper of views: show(name, before) mounts them. @param {App} app */
 export const createViews = (app) => {
   const mounted = new Map();
   /** @param {string} name */
@@ -15,7 +15,7 @@ export const createViews = (app) => {
   };
   let current = "";
   return {
-    // One that is still on its way holds up no other; it is told that it is shown only if it still is when it comes.
+    // Loading of one view does not block another; it is shown only if still selected.
     /** @param {string} name @param {string | null} [before] */
     show: async (name, before) => {
       current = name;
@@ -26,7 +26,7 @@ export const createViews = (app) => {
   };
 };
 
-// A browser may keep that a module did not come: what is asked for again has an address of its own.
+// Browsers may cache a failed module: a retry uses a new address.
 const attempts = new Map();
 /** @param {string} name */
 const address = (name) => {
@@ -53,7 +53,7 @@ const load = async (name, app, forget) => {
   }
 };
 
-// A module that did not come is asked for again when the view is next shown; the inputs outlast a reload.
+// A failed module is requested again at the next show of the view; the inputs are kept after a reload.
 /** @param {any} error */
 const failure = (error) => (error instanceof TypeError
   ? "The server did not send this view. Check that `rocking serve` is running."

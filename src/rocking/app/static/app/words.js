@@ -1,10 +1,10 @@
-/** The page in another language: scripts say English, and one catalogue has every text of theirs, looked up exactly. */
+/** Translation of the page: scripts contain English texts; one catalogue contains all translations. */
 
 import { fixed, number } from "/app/format.js";
 import { KEY, NAMES, choose, language } from "/app/language.js";
 
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
-const UNTOUCHED = ["pre", "code", "textarea", "script", "style"]; // elements whose text stays as it is
+const UNTOUCHED = ["pre", "code", "textarea", "script", "style"]; // elements with unchanged text
 const PLACE = /\{(\w+)(!r)?(?::\.?(\d*)(\w?))?\}/g; // {name}, {name:.3g} of a number, {name!r:.40} of a name in quotes
 
 /** @type {Map<string, string | string[]>} */
@@ -42,7 +42,7 @@ const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (match, 
 /** @param {any} fact @returns {string} */
 const spelled = (fact) => (typeof fact === "string" ? words(fact) : String(fact));
 
-/** A name from a user for a place of a text: t() leaves it as it is. @param {string} name */
+/** Name of a user in a text: t() does not translate it. @param {string} name */
 export const userText = (name) => new String(name);
 
 /** Learn the messages of an answer, so that their sentences are found.
@@ -67,7 +67,7 @@ const words = (text) => {
   return typeof translated === "string" ? text.replace(bare, () => translated) : text;
 };
 
-/** What an element contains, in the language of the page: all texts but those of users.
+/** Translate all texts of an element except those of users.
  * @type {<Of>(tag: unknown, attributes: any, children: readonly Of[]) => readonly Of[]} */
 export const childrenInWords = (tag, attributes, children) => (!catalogue.size || stays(tag, attributes) ? children : children.map(inWords));
 

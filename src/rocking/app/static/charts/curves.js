@@ -1,4 +1,4 @@
-/** What a line chart shows, drawn by a pen: on the screen by that of uPlot's canvas, in a file by one that writes SVG. */
+/** Content of a line chart, drawn with a pen: the canvas of uPlot or an SVG writer. */
 
 import { svg } from "/app/dom.js";
 import { t } from "/app/words.js";
@@ -11,7 +11,7 @@ import { colour } from "/charts/style.js";
 const [ROW, BELOW, EDGE] = [20, 50, 2]; // of a legend, below the frame, and of curves that lie on its edge [px]
 const TICK = 6; // height of a row of ticks on the axis [px]
 
-/** What a chart shows, with its legend. @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
+/** Chart content with its legend. @param {uPlot} plot @param {ChartOptions} options @param {Columns} data @param {Marks} marks */
 export const chartStill = (plot, options, data, marks) => {
   const pen = new SvgPen();
   drawChart(/** @type {any} */ (pen), plot, options, data, marks);
@@ -45,7 +45,7 @@ export const drawChart = (pen, plot, { series, bands = [] }, all, marks) => {
   series.forEach((curve, k) => curve.points && drawDots(pen, frame, curve, data[0], data[k + 1] ?? []));
 };
 
-/** Columns of what lies in sight, to a value of each on either side. @param {{ min: number, max: number }} scale @param {Columns} data */
+/** Columns of the visible range, with one value on either side. @param {{ min: number, max: number }} scale @param {Columns} data */
 const inSight = ({ min, max }, data) => {
   const end = data[0].length - 1;
   const gap = (/** @type {number} */ k) => k > 0 && k < end && data.some((column) => (column[k] ?? null) === null);

@@ -3,7 +3,7 @@
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { lineChart } from "/charts/line.js";
 
-/** One time of several charts: a pointer on one is told to `onInstant` and shown on all, `onZoom` when one is looked into.
+/** Time shared by several charts: `onInstant` receives the pointer position, `onZoom` the interval.
  * @param {(instant: number) => unknown} [onInstant] @param {ChartOptions["onZoom"]} [onZoom] */
 export const createTime = (onInstant, onZoom) => {
   /** @type {Set<Chart>} */
@@ -34,7 +34,7 @@ const UNMARKED = {};
 /** @type {Time} */
 const ALONE = { add: () => () => {} };
 
-/** A chart of some columns: drawn anew where `shape`, what `lineChart` takes, is another, else fed; `interval` is in sight.
+/** Chart of some columns: recreated after a change of `shape`, else updated; `interval` is the visible range.
  * @param {{ shape: ChartOptions, data: Columns, interval?: Point | null, marks?: Marks, time?: Time, testid?: string }} props */
 export const Figure = ({ shape, data, interval, marks = UNMARKED, time = ALONE, testid }) => {
   const holder = useRef(null);

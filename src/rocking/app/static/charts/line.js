@@ -11,7 +11,7 @@ import { number, pretty, quantity } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
 import { t } from "/app/words.js";
 
-/** Draw curves over one abscissa; see the returned object for what it can do.
+/** Draw curves over one abscissa; methods: see the returned object.
  * @param {HTMLElement} container @param {ChartOptions} options */
 export const lineChart = (container, options) => {
   const { title, x, y, height = 220 } = options;
@@ -83,7 +83,7 @@ export const lineChart = (container, options) => {
   return {
     plot,
     element: figure,
-    /** Takes columns; with a interval of the abscissa [from, to] the chart goes on looking into that.
+    /** Set columns; with an interval [from, to] the chart remains zoomed.
      * @param {Columns} next @param {Point | null} [interval] */
     setData: (next, interval = null) => {
       data = next;
@@ -103,7 +103,7 @@ export const lineChart = (container, options) => {
       marks = next;
       plot.redraw(false, true);
     },
-    /** Puts the cursor at an instant that is shown elsewhere; nobody else is told. @param {number} instant */
+    /** Set the cursor to an instant, without a call of the listeners. @param {number} instant */
     point: (instant) => {
       const left = plot.valToPos(instant, "x");
       plot.setCursor({ left: left * devicePixelRatio <= plot.bbox.width ? left : -10, top: -10 }, false, false);
@@ -144,14 +144,14 @@ const scaleOf = (y) => {
   return { range: y.range ?? around };
 };
 
-// What is zero all along has an axis of ones: by itself it would reach to 100.
+// A constant zero would give an axis from 0 to 100; the axis is set to 1.
 /** @param {uPlot} _ @param {number | null} low @param {number | null} high */
 const around = (_, low, high) => {
   if (low === null || high === null) return [null, null];
   return low === 0 && high === 0 ? [-1, 1] : uPlot.rangeNum(low, high, 0.1, true);
 };
 
-// uPlot has the scales, the cursor and the zoom; what is seen is drawn by drawChart.
+// uPlot provides the scales, the cursor and the zoom; drawChart draws the curves.
 /** @param {ChartSeries} series */
 const seriesOf = ({ label, colour: paint }) => ({ label, stroke: () => colour(paint), paths: () => null, points: { show: false } });
 

@@ -1,4 +1,4 @@
-/** A pen of a canvas that writes SVG: what draws on the screen draws the file too. */
+/** Pen with the interface of a canvas that writes SVG, for figures on the screen and in files. */
 
 import { freshId, svg } from "/app/dom.js";
 
@@ -21,7 +21,7 @@ const BELOW = { top: 0.8, middle: 0.35 }; // of the size of the letters
 /** @param {...number} values */
 const at = (...values) => values.map((value) => Number(value.toPrecision(7))).join(" ");
 
-/** Draws into `node`; it has what the page's drawings use of a canvas. */
+/** Draw into `node`, with the subset of the canvas interface used by the page. */
 export class SvgPen {
   node = svg("g", { fill: "none" });
   place = this.node;
@@ -59,7 +59,7 @@ export class SvgPen {
   /** A whole circle. @param {number} x @param {number} y @param {number} r */
   arc(x, y, r) { this.d += `M${at(x - r, y)}A${at(r, r)} 0 1 0 ${at(x + r, y)}A${at(r, r)} 0 1 0 ${at(x - r, y)}Z`; }
 
-  /** What is drawn from now on is cut at the path. */
+  /** Clip further drawing at the path. */
   clip() {
     const id = freshId("cut");
     const within = svg("g", { "clip-path": `url(#${id})` });

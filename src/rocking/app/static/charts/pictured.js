@@ -6,7 +6,7 @@ import { chartFiles, menuOf, saveFile, savePngOf } from "/charts/save.js";
 import { stillOf } from "/charts/still.js";
 import { Made } from "/parts/made.js";
 
-/** What is in it is one figure; its file says more than its `title`, and `canvasOf` draws again what is on a canvas.
+/** Figure of the page; the file contains more than its `title`, and `canvasOf` redraws a canvas.
  * @param {{ title: string, more?: string, about?: string, canvasOf?: (canvas: HTMLCanvasElement) => SVGElement, children?: any }} props */
 export const Pictured = ({ title, more = "", about = "", canvasOf, children }) => {
   const holder = useRef(null);
@@ -21,7 +21,7 @@ export const Pictured = ({ title, more = "", about = "", canvasOf, children }) =
   return html`<div ref=${holder} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
 };
 
-/** A figure that the server draws: its file is what is shown. @param {{ title: string, path: string, [more: string]: any }} props */
+/** Figure drawn by the server; its file is the shown image. @param {{ title: string, path: string, [more: string]: any }} props */
 export const Fetched = ({ title, path, ...more }) => {
   const files = useMemo(() => {
     /** @param {(file: Blob, title: string) => unknown} save */

@@ -1,4 +1,4 @@
-/** A figure as a file: what the page shows of it, in light colours, under its title and what it is of. */
+/** Figure as a file: shown content in light colors, with title and description. */
 
 import { saveBlob } from "/app/api.js";
 import { el, set, svg } from "/app/dom.js";
@@ -42,8 +42,8 @@ export const savePngOf = async (drawing, title) => {
   }
 };
 
-/** The menu of a figure: `draw` gives what the page shows of it now, `csv` its numbers. What it is of stands in `data-own`,
- * as users name it, and `data-about`, a line each, of what is around it.
+/** Menu of a figure: `draw` gives its shown content, `csv` its numbers. `data-own` is the description
+ * with names of the user, `data-about` a description, one line per element, of the elements around it.
  * @param {string} title @param {() => Still} draw @param {string} [what] @param {(() => string) | null} [csv] */
 export const chartFiles = (title, draw, what = "chart", csv = null) => {
   const sheet = () => inLight(() => sheetOf(title, draw(), menu));
@@ -54,7 +54,7 @@ export const chartFiles = (title, draw, what = "chart", csv = null) => {
   return menu;
 };
 
-/** A menu of the kinds in which a figure is saved. @param {string} title @param {string} what @param {[string, () => unknown][]} kinds */
+/** Menu of the file formats of a figure. @param {string} title @param {string} what @param {[string, () => unknown][]} kinds */
 export const menuOf = (title, what, kinds) => {
   const items = kinds.map(([kind, save]) => el("button", {
     type: "button", class: "button quiet", "aria-label": t(OF[what], { kind, title }),
@@ -78,7 +78,7 @@ export const menuOf = (title, what, kinds) => {
   return menu;
 };
 
-/** A figure on a ground of its own, under its title and what it is of. @param {string} name @param {Still} still @param {HTMLElement} menu */
+/** Figure on its own background, with title and description. @param {string} name @param {Still} still @param {HTMLElement} menu */
 const sheetOf = (name, { node, title = name, about: more = "", alt, note = "" }, menu) => {
   const [width, height] = ["width", "height"].map((side) => Number(node.getAttribute(side)));
   const wide = Math.ceil(Math.max(LEAST, width)) + 2 * MARGIN;

@@ -1,4 +1,4 @@
-/** What a part of the page shows, as an SVG of its own: its drawings and its words where they stand, with the look that classes give. */
+/** Part of the page as an SVG with drawings, positioned text and computed styles. */
 
 import { set, svg } from "/app/dom.js";
 import { fontOf, measured } from "/charts/letters.js";
@@ -12,7 +12,7 @@ const ABOVE = { overflow: "visible" }; // words may reach over the edge of a dra
 
 /** @typedef {(rect: DOMRect) => { x: number, y: number, width: number, height: number }} Placing */
 
-/** A copy of what an element shows; `canvasOf` draws again what stands on a canvas in it.
+/** Copy of an element; `canvasOf` redraws the canvases in it.
  * @param {Element} root @param {(canvas: HTMLCanvasElement) => SVGElement} [canvasOf] */
 export const stillOf = (root, canvasOf) => {
   const { left, top, width, height } = root.getBoundingClientRect();

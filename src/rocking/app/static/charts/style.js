@@ -27,7 +27,7 @@ export const onTheme = (listener) => {
   return () => listeners.delete(listener);
 };
 
-/** What `make` gives while the page is light, which no one sees: files are in light colours. @type {<Of>(make: () => Of) => Of} */
+/** Result of `make` with the light theme, not visible to the user: files use light colors. @type {<Of>(make: () => Of) => Of} */
 export const inLight = (make) => {
   const { dataset } = document.documentElement;
   const { theme } = dataset;
@@ -38,7 +38,7 @@ export const inLight = (make) => {
     return make();
   } finally {
     dataset.theme = theme;
-    document.dispatchEvent(new CustomEvent("rocking:theme")); // what was painted light for it is painted again
+    document.dispatchEvent(new CustomEvent("rocking:theme")); // figures drawn with the light theme are redrawn
   }
 };
 

@@ -1,8 +1,8 @@
-/** A chart that is looked into is asked for again: what is in sight has every sample, or the extremes of every dot. */
+/** Data of a zoomed chart are requested again: all samples of the range, or the extremes per pixel. */
 
 const MOST = 2000;
 
-/** Over how many dots of the screen the charts in a place are drawn. @param {Element} element */
+/** Width in pixels of the charts in an element. @param {Element} element */
 export const dotsOf = (element) => Math.min(MOST, Math.ceil((element.clientWidth || 800) * (window.devicePixelRatio || 1)));
 
 /** Curves ({time, ...}) with the visible interval replaced by its detailed curves.

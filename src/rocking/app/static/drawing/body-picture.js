@@ -28,7 +28,7 @@ export const bodyPicture = (body, { width = 208, height = 360, plain = false } =
     plain ? null : scaleBar(view, width, height));
 };
 
-/** The height on which the feet stand [m]. @param {Drawn} body */
+/** Height of the feet [m]. @param {Drawn} body */
 export const groundOf = (body) => body.ground ?? 0;
 
 /** @param {Drawn} body */

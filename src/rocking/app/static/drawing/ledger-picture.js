@@ -1,4 +1,4 @@
-/** The energy ledger: from all of it to what is left, one bar a stage, losses hatched. */
+/** Energy ledger: from the initial to the remaining energy, one bar per stage, losses hatched. */
 
 import { svg } from "/app/dom.js";
 import { percent } from "/app/format.js";
@@ -7,7 +7,7 @@ import { t } from "/app/words.js";
 
 const ROW = 52;
 
-/** Draw shares {stage: share} as bars. @param {{ [stage: string]: number }} shares @param {{ width: number }} size */
+/** Draw fractions {stage: fraction} as bars. @param {{ [stage: string]: number }} shares @param {{ width: number }} size */
 export const ledgerPicture = (shares, { width }) => {
   const stages = Object.entries(shares);
   const height = stages.length * ROW + 4;

@@ -1,4 +1,4 @@
-/** The published measurements over slenderness, the models' curves, and where this body stands. */
+/** Published measurements over slenderness, curves of the models, and this body. */
 
 import { svg } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";

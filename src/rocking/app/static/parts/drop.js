@@ -4,7 +4,7 @@ import { html, useRef } from "/parts/preact.js";
 import { freshId } from "/app/dom.js";
 import { Button } from "/parts/fields.js";
 
-/** A place for files; `error` is what is wrong with it; `on` gets a list of them, one of them unless there may be many; `testid` is that of its box.
+/** Drop area for files; `error`: its error; `on` receives a list of files, of length 1 without `many`; `testid`: of the box.
  * @param {{ label: string, name?: string, accept?: string, many?: boolean, folders?: boolean, error?: string, on: (files: File[]) => unknown, testid?: string, children?: any, [more: string]: any }} props */
 export const Drop = ({ label, name = label, accept, many = false, folders = many, error = "", on, testid, children, ...more }) => {
   const [fileInput, folder] = [useRef(null), useRef(null)];
@@ -44,7 +44,7 @@ export const Drop = ({ label, name = label, accept, many = false, folders = many
     </div>`;
 };
 
-// All files of what was dropped, of folders those in them, which browsers give in pieces.
+// All dropped files, including those in folders, which browsers return in parts.
 /** @param {any[]} entries @returns {Promise<File[]>} */
 const inFolders = async (entries) => (await Promise.all(entries.map(async (entry) => {
   if (entry.isFile) return new Promise((resolve, reject) => entry.file(resolve, reject));

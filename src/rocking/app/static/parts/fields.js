@@ -1,5 +1,5 @@
-/** What forms are made of: fields with a label, a unit and a place for what is wrong with them; buttons, cards, notes.
- * `value` is a signal, or a plain value beside an `on` that hears of each change. */
+/** Elements of forms: fields with a label, a unit and an error text; buttons, cards, notes.
+ * `value` is a signal, or a plain value with a callback `on` for changes. */
 
 import { createContext, html, useContext, useLayoutEffect, useRef, useState } from "/parts/preact.js";
 import { freshId } from "/app/dom.js";
@@ -15,7 +15,7 @@ const useId = (stem) => useRef(freshId(stem)).current;
 const bound = (value, on) => (value !== null && typeof value === "object"
   ? [value.value, (next) => (value.value = next)] : [value, (next) => on?.(next)]);
 
-// What stands in a box: what was typed there, until `now` becomes something else.
+// Text of a box as typed, until `now` changes.
 /** @param {any} now @param {(value: any) => string} written @param {(text: string, now: any) => boolean} says @returns {[{ text: string, fault: string, now: any }, (text: string, fault?: string) => void]} */
 const useTyped = (now, written, says) => {
   const [, draw] = useState();
@@ -29,10 +29,10 @@ const useTyped = (now, written, says) => {
   return [held, type];
 };
 
-/** What was refused of a form: the `key` of the field that it is about, and its `text`; it is `past` once that was changed. */
+/** Rejection of a form: `key` of the field and `text`; `past` after a change of the field. */
 export const Refused = createContext({});
 
-/** What was refused of a field, until it is changed. @param {string} [name] @returns {[string, () => void]} */
+/** Rejection of a field, until it changes. @param {string} [name] @returns {[string, () => void]} */
 export const useRefused = (name) => {
   const refused = useContext(Refused);
   const stands = name && refused.key === name;
@@ -48,15 +48,15 @@ export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden,
     <p id=${`${id}-about`} class=${`field-help ${error ? "field-error" : ""}`}>${error || help}</p>
   </div>`;
 
-// What every box says of itself: its name, its words, and whether it is wrong.
+// Attributes of every box: name, description, validity.
 /** @param {string} id @param {string} [error] */
 const saidOf = (id, error) => ({ id, "aria-describedby": `${id}-about`, "aria-invalid": error ? "true" : null });
 
 /** @type {{ [key: string]: number | undefined }} */
 const TURNS = { ArrowUp: 1, ArrowDown: -1 };
 
-/** A number with its unit; decimal commas and arrow keys work. `on` hears of numbers within the limits alone, of an
- * optional one that was emptied null; one that `moves` is not 0; what is wrong with one that is `aside` is no fault of the inputs.
+/** Number with its unit; decimal commas and arrow keys are allowed. `on` receives numbers within the limits only, and
+ * null for an empty optional field; `moves`: not 0; errors of a field with `aside` are not errors of the inputs.
  * @param {NumberProps} props */
 export const NumberField = ({
   label, unit = "", value, on, help, error = "", kind, hidden, min, above, max, step, integer, moves, optional, aside = false,
@@ -87,7 +87,7 @@ export const NumberField = ({
       value=${held.text} onInput=${({ target }) => take(target.value)} onKeyDown=${turn} ...${more} /><//>`;
 };
 
-/** A line of text, or as `tag` says a "textarea"; `type` is that of its box.
+/** Line of text, or a "textarea" according to `tag`; `type`: of the box.
  * @param {FieldProps<any> & { id?: string, tag?: string, type?: string }} props */
 export const Field = ({
   label, id: givenId, name, unit, value, on, help, error: message = "", kind, hidden, tag = "input", type = "text", ...more
@@ -108,7 +108,7 @@ export const Field = ({
     <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
-/** A choice of one from a list of [value, words]; chosen: what it is while nothing was chosen; own: users name the options.
+/** Choice from a list of [value, words]; chosen: initial value; own: options named by users.
  * @param {FieldProps<any> & { chosen?: unknown, own?: boolean, options: [any, string][] }} props */
 export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: message = "", hidden, ...more }) => {
   const id = useId("choice");
@@ -120,7 +120,7 @@ export const Choice = ({ label, name, value, on, chosen, options, own = false, h
   const take = ({ target }) => {
     changed();
     put(options[target.selectedIndex][0]);
-    target.value = shown; // until what it belongs to has taken it
+    target.value = shown; // until its owner has accepted it
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
     <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
@@ -148,7 +148,7 @@ export const Switch = ({ label, value, on, help, hidden }) => {
     <p id=${`${id}-about`} class="field-help">${help}</p></div>`;
 };
 
-/** A slider that says its value beside its label; logarithmic on request.
+/** Slider with its value beside the label; logarithmic on request.
  * @param {FieldProps<number> & { min: number, max: number, step?: number, log?: boolean }} props */
 export const Slider = ({ label, unit = "", value, on, min, max, step, log = false, help, hidden }) => {
   const id = useId("slider");
@@ -187,13 +187,13 @@ export const stopped = (text) => {
   return `${t(text)}${/[.!?\u3002\uff1f]$/.test(t(text)) ? "" : language === "zh" ? "\u3002" : "."}`;
 };
 
-/** A text as a sentence; a file that it begins with is called as it is. @param {string} text */
+/** Text as a sentence; a file name at its beginning is unchanged. @param {string} text */
 export const sentence = (text) => (/^\S*\.\w/.test(text) ? stopped(text) : capital(stopped(text)));
 
 /** The first field of a form that someone sees and that is wrong. @param {Element} form */
 export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);
 
-/** Put the keyboard on the first field that is wrong, once it is drawn so. @param {Element} form */
+/** Focus the first invalid field after drawing. @param {Element} form */
 export const toWrong = (form) => setTimeout(() => {
   for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // else nobody sees it
   wrongIn(form)?.focus();
@@ -237,7 +237,7 @@ const checked = (text, { min, above, max, integer, moves, optional, unit }) => {
   return integer && !Number.isInteger(given) ? { fault: "Enter a whole number." } : { given };
 };
 
-// "1,000" is one to us and a thousand to others: say how it was read.
+// "1,000" is 1 here and 1000 elsewhere: show the interpreted value.
 /** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
   && t("Read as {number}: the comma is the decimal sign. Enter thousands without a comma.", { number: number(parseNumber(text), 6) });

@@ -1,4 +1,4 @@
-/** What is made by the page's own functions, as components: a node, a picture. */
+/** Components around functions of the page: a node, a picture. */
 
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { fill } from "/app/dom.js";
@@ -10,7 +10,7 @@ export const Made = ({ node, ...more }) => {
   return html`<div ref=${element} ...${more}></div>`;
 };
 
-/** A picture in the width that it has, drawn by `draw(...of, width)`.
+/** Picture in the available width, drawn by `draw(...of, width)`.
  * @param {{ draw: (...given: any[]) => Child, of: any[] }} props */
 export const Drawn = ({ draw, of }) => {
   const element = useRef(null);

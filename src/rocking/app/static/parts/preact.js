@@ -1,4 +1,4 @@
-/** What components of the page are made of: Preact, signals, and templates that need no compiler. */
+/** Preact, signals, and templates without a compiler. */
 
 import htm from "/vendor/htm/htm.mjs";
 import { createContext, h, render } from "/vendor/preact/preact.mjs";

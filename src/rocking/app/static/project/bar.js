@@ -61,7 +61,7 @@ const Step = ({ sign, label, on, go }) => html`
 const Clash = ({ projects }) => {
   const dialog = useRef(null);
   useEffect(() => dialog.current.showModal(), []);
-  // A browser closes it at a second Escape whatever is said: it comes back until something is chosen.
+  // Browsers close it at a second Escape in any case: it is opened again until a choice is made.
   const stay = () => projects.clash.value && dialog.current?.showModal();
   /** @param {boolean} mine */
   const settle = (mine) => () => projects.settle(mine);

@@ -7,7 +7,7 @@ import { PARTS } from "/project/saving.js";
 
 const FEW = 12;
 
-// What a state was made by: the parts that were changed, or words.
+// Origin of a state: the changed parts, or a text.
 /** @param {string} text */
 const changed = (text) => {
   const parts = text.split(", ").map((key) => PARTS[key]);
@@ -28,7 +28,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     ]);
     lists.value = { ...there, ...past };
   };
-  // What goes wrong is said, and the lists are what the server has in any case.
+  // Errors are shown; the lists contain the state of the server in any case.
   /** @param {() => unknown} work @param {boolean} [close] */
   const act = (work, close = false) => async () => {
     try {

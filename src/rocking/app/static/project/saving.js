@@ -9,13 +9,13 @@ const OPEN = "rocking.project";
 const PAUSE = 400; // after the last change, before it is saved [ms]
 /** @typedef {{ inputs: Server.Inputs }} Own */
 
-/** What a project consists of, in words. @type {{ [key: string]: string | undefined }} */
+/** Names of the parts of a project. @type {{ [key: string]: string | undefined }} */
 export const PARTS = {
   body: "body", motion: "motion", restitution: "restitution", response: "initial conditions", settings: "gravity", decide: "Assessment",
   inventory: "Inventory", measure: "Identification", records: "Records", space: "3D", bed: "contact bed",
 };
 
-/** The keeper of the open project; `first` is what a new one holds. @param {App} app @param {Server.Inputs} first */
+/** Keeper of the open project; `first`: content of a new project. @param {App} app @param {Server.Inputs} first */
 export const createProjects = (app, first) => {
   /** @type {Signal<Server.ProjectFacts>} */
   const here = signal(null); // until `start`
@@ -28,16 +28,16 @@ export const createProjects = (app, first) => {
   let timer = 0;
   let taking = false;
   /** @type {Own | null} */
-  let last = null; // what was saved last
+  let last = null; // last saved content
   /** @type {Own[]} */
-  let sent = []; // what is on its way, or went on one from which no answer came
-  let refused = false; // what was sent last was not taken, and never will be as it is
-  let complaint = ""; // said of what was not saved, until it is
+  let sent = []; // content being sent, or sent without an answer
+  let refused = false; // the last sent content was rejected permanently
+  let complaint = ""; // message about unsaved content, until it is saved
   /** @type {Promise<any>} */
   let line = Promise.resolve();
   saving.subscribe((state) => state === "saved" && hush(complaint));
 
-  // What is lent from elsewhere is on the screen, and not in the project.
+  // Inputs of a link are shown but not part of the project.
   const own = () => {
     const aside = app.inputs.aside();
     const forms = app.forms.get();
@@ -50,7 +50,7 @@ export const createProjects = (app, first) => {
     note();
     return document;
   };
-  // For a reload: which version this tab has, what it held, and whether more than that was typed.
+  // For a reload: version and content of this tab, and whether it has unsaved changes.
   const note = () =>
     remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent, last });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });
@@ -65,13 +65,13 @@ export const createProjects = (app, first) => {
     saving.value = "saved";
     note();
   };
-  // What was typed while an answer was on its way is a state of its own, not lost; what was refused before gives way.
+  // Changes during a request form a separate state; a rejected state is replaced.
   /** @param {any} document */
   const showUnlessTyped = (document) => {
     if (changed.size && !refused) save();
     else show(document);
   };
-  let leaving = false; // what is sent then outlives the page
+  let leaving = false; // requests after this outlive the page
   /** @param {string} suffix @param {unknown} [json] @returns {Promise<any>} */
   const ask = (suffix, json) => app.call(`projects/${here.value.id}${suffix}`, { json, keepalive: leaving });
   // One after the other: every change names the version that it follows.
@@ -115,7 +115,7 @@ export const createProjects = (app, first) => {
       app.say("The project was deleted elsewhere. It is restored with your changes.");
       if (alone) {
         adopt(theirs);
-        save(); // after this one, which waits for what is returned here
+        save(); // after the present one, which awaits the result
         return;
       }
     }
@@ -133,7 +133,7 @@ export const createProjects = (app, first) => {
     if (!all) save(); // as above
   };
 
-  // Shows what others changed beside what is changed here; false, and nothing is done, where both changed a part.
+  // Shows remote changes of other parts; false without effect if both changed the same part.
   /** @param {any} document */
   const join = (document) => {
     const [before, mine, theirs] = [last, own(), document].map(partsOf);
@@ -159,7 +159,7 @@ export const createProjects = (app, first) => {
     return inLine(async () => {
       try {
         if (refused && direction === "redo") return;
-        // What cannot be saved is the last state: to undo it is to show the one before, which is there.
+        // The last state could not be saved: undo shows the state before, which is saved.
         showUnlessTyped(adopt(await (refused ? ask("") : ask(`/${direction}`, { version: here.value.version }))));
         tell();
       } catch (error) {
@@ -186,7 +186,7 @@ export const createProjects = (app, first) => {
   /** @param {Iterable<string>} keys */
   const touched = (keys) => {
     if (taking || !here.value) return;
-    // To ask again for what is shown changes nothing.
+    // Repeated display changes nothing.
     if (!changed.size && same(own(), last)) return;
     for (const key of keys) changed.add(key);
     if (!changed.size) return;
@@ -201,7 +201,7 @@ export const createProjects = (app, first) => {
     if (changed.size) await save();
     else await inLine(async () => {
       const theirs = await ask("");
-      // What was typed meanwhile follows the version before: saving it joins both, or asks.
+      // Changes in the meantime are based on the previous version: saving merges them, or asks.
       if (changed.size) save();
       else show(adopt(theirs));
     }).catch(() => {}); // it is looked at again with the next change
@@ -215,7 +215,7 @@ export const createProjects = (app, first) => {
 
   return {
     here, saving, clash, open, save,
-    /** Wait for what belongs to the open project; where another one is opened meanwhile, it is in neither.
+    /** Wait for data of the open project; after a change of project they are in neither.
      * @type {<Of>(work: Promise<Of>) => Promise<Of>} */
     within: async (work) => {
       const { id } = here.value;
@@ -225,9 +225,9 @@ export const createProjects = (app, first) => {
     },
     undo: step("undo"),
     redo: step("redo"),
-    /** Try again to save what could not be saved. */
+    /** Retry saving. */
     again: () => save(),
-    /** Begin another project: with the usual start, or with what is on the screen.
+    /** Start a new project: with the default content, or with the shown content.
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
     /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
@@ -250,7 +250,7 @@ export const createProjects = (app, first) => {
         tell();
       });
     },
-    /** Of a project that was changed elsewhere too: show what is there, or keep what is on the screen as a copy.
+    /** After a change elsewhere: show the saved version, or keep the shown one as a copy.
      * @param {boolean} keepMine */
     settle: (keepMine) => inLine(async () => {
       if (!clash.value) return;
@@ -278,7 +278,7 @@ export const createProjects = (app, first) => {
       }
       const mine = own();
       const project = await app.call(`projects/${id}`);
-      // After a reload the tab may hold what was not saved yet; what a link holds is lent over the project's own.
+      // After a reload the tab may contain unsaved changes; inputs of a link cover those of the project.
       if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, project.document)) {
         const ours = project.version === kept.version || isOwn(project, kept.version, kept.sent);
         last = ours ? /** @type {Own} */ (project.document) : kept.last ?? null;
@@ -301,7 +301,7 @@ export const createProjects = (app, first) => {
   };
 };
 
-// What was saved without this tab having heard of it is nobody else's.
+// A version saved without knowledge of this tab is its own.
 /** @param {Server.WholeProject} theirs @param {number} version @param {Own[]} [sent] */
 const isOwn = (theirs, version, sent = []) =>
   theirs.version === version + 1 && sent.some((document) => same(document, theirs.document));
@@ -313,7 +313,7 @@ const partsOf = (document) => Object.fromEntries(
     Object.entries(all ?? {}).map(([name, value]) => [`${kind}.${name}`, value])),
 );
 
-// The order of keys says nothing.
+// The order of keys has no meaning.
 /** @param {any} one @param {any} other */
 const same = (one, other) => {
   const [first, second] = [one, other].map((document) => JSON.stringify([inputsOf(document?.inputs), formsOf(document?.forms)]));
@@ -330,7 +330,7 @@ const remembered = () => {
 
 /** @param {{ id: string, version: number, more: boolean, sent: Own[], last: Own | null }} facts */
 const remember = (facts) => {
-  for (const more of [{}, { sent: [], last: null }]) { // a reload asks where too much was typed to be kept twice
+  for (const more of [{}, { sent: [], last: null }]) { // a reload asks if the changes are too large to be stored twice
     try {
       return sessionStorage.setItem(OPEN, JSON.stringify({ ...facts, ...more }));
     } catch {

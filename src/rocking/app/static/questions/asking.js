@@ -1,11 +1,11 @@
-/** Questions that take longer than a page waits: asked, watched, stopped, and looked at again. */
+/** Runs longer than a request: started, followed, stopped and reopened. */
 
 import { computed, signal } from "/parts/preact.js";
 
 const [SOON, EVERY] = [100, 500]; // between looks at a question that is being answered, the first and the last [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
-/** The questions of some commands in the open project; what is asked is of the first if nothing else is said.
+/** Runs of some commands in the open project; the default command is the first.
  * @param {App} app @param {...string} commands */
 export const createQuestions = (app, ...commands) => {
   /** @type {Signal<Server.WholeQuestion | null>} */
@@ -14,9 +14,9 @@ export const createQuestions = (app, ...commands) => {
   const all = signal([]);
   let timer = 0;
   let ticket = 0;
-  let mine = ""; // the question that was asked last, while it is the one that is shown
+  let mine = ""; // id of the last started run, while it is shown
   const here = () => app.project.here.value.id;
-  computed(here).subscribe(() => { // what was found stays in its project
+  computed(here).subscribe(() => { // results remain in their project
     ticket += 1;
     clearTimeout(timer);
     mine = "";
@@ -33,7 +33,7 @@ export const createQuestions = (app, ...commands) => {
     clearTimeout(timer);
     const question = await app.call(`questions/${id}`).catch((error) => {
       if (error.kind !== "offline") throw error;
-      return null; // the server is back in a moment, and goes on with it
+      return null; // the server restarts and continues the run
     });
     if (mine !== ticket) return; // another one is shown by now
     if (question) shown.value = question;
@@ -47,7 +47,7 @@ export const createQuestions = (app, ...commands) => {
 
   return {
     app, shown, all, busy,
-    /** Whether a question is of the form as it stands: not one that was asked before. @param {string} id */
+    /** Whether a run was started from the present form. @param {string} id */
     isOfForm: (id) => id === mine,
     look: safely(look),
     /** Look, and show the last one again after a reload. */
@@ -61,7 +61,7 @@ export const createQuestions = (app, ...commands) => {
       await app.project.save();
       const json = { command, tables, files, name, format, project };
       const question = await app.call("questions", { json });
-      if (projectId !== here()) return; // it stands in the project where it was asked
+      if (projectId !== here()) return; // the run belongs to the project in which it was started
       mine = question.id;
       shown.value = { ...question, answer: null, toml: "" };
       await follow(question.id);

@@ -1,4 +1,4 @@
-/** What every view of a question is made of: what is asked, its progress, its files, and earlier ones. */
+/** Parts of the views of runs: form, progress, files, previous runs. */
 
 import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { parseNumber } from "/app/format.js";
@@ -12,7 +12,7 @@ import { dateTime, t, userText } from "/app/words.js";
  * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
 export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).current;
 
-/** The keys that were filled in, as a table has them; what is no number is left for the server to refuse.
+/** Filled keys as a table; invalid numbers are left for the server to reject.
  * @param {{ [key: string]: string }} texts @param {{ [key: string]: Server.KeyFacts }} facts */
 export const filled = (texts, facts) => Object.fromEntries(
   Object.entries(texts).filter(([key, text]) => facts[key] && typeof text === "string" && text.trim())
@@ -38,13 +38,13 @@ const numbersOf = (text) => {
   return Array.isArray(numbers) && numbers.includes(null) ? null : numbers;
 };
 
-/** The endings of record files of every format, and of what they come in. @param {App} app */
+/** Suffixes of record files of all formats and of archives. @param {App} app */
 export const recordEndings = ({ info }) => [
   ...new Set([...info.formats.flatMap(({ suffixes }) => suffixes), ".txt", ".csv", ".dat", ".zip", ".bbp", ".xml"]),
 ].join(",");
 
-/** Files by dropping or choosing; `files` is a signal of what was sent: of one at a time the last, or all with `adds`; `name` is what
- * a refusal calls it.
+/** Files by dropping or choosing; `files`: signal of uploaded files, the last one, or all with `adds`; `name`: key in
+ * rejections.
  * @param {{ label: string, name?: string, help?: string, accept?: string, files: Signal<SentFile[]>, many?: boolean, adds?: boolean, questions: Questions, app: App }} props */
 export const FileDrop = ({ files, name = "files", many = false, adds = many, questions, app, help, ...more }) => {
   const [error, changed] = useRefused(name);
@@ -80,12 +80,12 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
       </ul>`}<//>`;
 };
 
-const AT_ONCE = 6; // files that are sent beside one another
+const AT_ONCE = 6; // parallel uploads
 
 /** Why a question is refused, in words of the page. @param {{ message: string, refusal?: any }} question */
 export const reasonOf = ({ message, refusal }) => sentence(refusal ? refusalWords(refusal) : message);
 
-// What stands of a question: being answered, refused, or its answer.
+// State of a run: computing, rejected, or its answer.
 /** @param {{ questions: Questions, answer: any }} props */
 const Outcome = ({ questions, answer: Answer }) => {
   const question = questions.shown.value;
@@ -162,12 +162,12 @@ const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
     </ul>
   </section>`;
 
-/** A refusal of the server as fields know it: the key that it names, and its words.
+/** Rejection of the server for fields: its key and its text.
  * @param {{ message: string, refusal?: any }} refused */
 export const refusedOf = (refused) => ({ key: refused.refusal ? keyOf(refused.refusal) : undefined, text: reasonOf(refused) });
 
-/** A view of a question: what is asked, what was asked before, and what was found, which `answer` shows; wrong: what hinders
- * asking, as words or as {key, words} of a field.
+/** View of a run: form, previous runs, and results shown by `answer`; wrong: error that prevents
+ * the run, as a text or as {key, text} of a field.
  * @param {{ title: string, lead: string, questions: Questions, wrong: Wrong, onSubmit: (event: any) => unknown, answer: any, children: any }} props */
 export const QuestionView = ({ title, lead, questions, wrong, onSubmit, answer, children }) => {
   const form = useRef(null);

@@ -1,4 +1,4 @@
-/** The time of the animation: runs at a speed, stops at the end, goes where it is told. */
+/** Time of the animation: with a speed, an end and a settable position. */
 
 const LONGEST_FRAME = 0.1;
 
@@ -12,7 +12,7 @@ export class Clock {
     this.before = -1;
   }
 
-  /** Starts, from the beginning if it stood at the end. */
+  /** Start; from the beginning if it is at the end. */
   start() {
     if (this.now >= this.end) this.now = 0;
     this.running = this.end > 0;
@@ -24,7 +24,7 @@ export class Clock {
     this.running = false;
   }
 
-  /** Goes on by the time between two frames [ms]; a page that was hidden does not jump. @param {number} stamp */
+  /** Advance by the time between two frames [ms]; without a jump after a hidden page. @param {number} stamp */
   tick(stamp) {
     if (this.before >= 0) this.now += Math.min((stamp - this.before) / 1000, LONGEST_FRAME) * this.speed;
     this.before = stamp;

@@ -1,4 +1,4 @@
-/** Play, speed, scrubbing and what the ground does: the controls under the stage. */
+/** Controls under the stage: play, speed, position and ground motion. */
 import { fixed } from "/app/format.js";
 import { el, svg } from "/app/dom.js";
 import { t } from "/app/words.js";
@@ -65,7 +65,7 @@ const scrubber = (onSeek) => {
   return range;
 };
 
-/** Returns the controls: their element, and how to tell them what is so.
+/** Controls: their element, and functions to update them.
  * @param {{ onToggle: () => unknown, onSeek: (share: number) => unknown, onSpeed: (speed: number) => unknown, onGround: (mode: string) => unknown }} acts */
 export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
   const [button, tellRunning] = playButton(onToggle);

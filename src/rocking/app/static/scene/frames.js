@@ -1,4 +1,4 @@
-/** Counts frames and what their script costs; tests and the curious read `window.rockingFrames`. */
+/** Number and script time of frames, for tests: `window.rockingFrames`. */
 
 const KEPT = 4096;
 const meter = { count: 0, lastMs: 0, meanMs: 0, worstMs: 0, times: new Float32Array(KEPT) };
@@ -13,7 +13,7 @@ export const noteFrame = (milliseconds) => {
   if (milliseconds > meter.worstMs) meter.worstMs = milliseconds;
 };
 
-/** Starts counting anew. */
+/** Reset the counters. */
 export const resetFrames = () => {
   meter.count = 0;
   meter.lastMs = 0;

@@ -1,6 +1,6 @@
 /** Where the points of a rocking body are: positive rotation is clockwise, about the right foot. */
 
-/** Returns where a point of the body is once the body has turned about the foot that it stands on.
+/** Position of a point of the body after a rotation about the foot of support.
  * @param {number} x @param {number} y @param {number} rotation @param {number[]} feet */
 export const turned = (x, y, rotation, feet) => {
   const pivot = rotation > 0 ? feet[1] : feet[0];

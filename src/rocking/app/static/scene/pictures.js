@@ -1,4 +1,4 @@
-/** What one frame of the scene is made of. Nothing here makes objects: a frame leaves no garbage behind. */
+/** Drawings of one frame of the scene. No allocation: frames leave no garbage. */
 import { fixed } from "/app/format.js";
 import { holdBody, pixelOf } from "/scene/camera.js";
 
@@ -30,7 +30,7 @@ export const tickText = (value, step) => {
 /** Sets a pen to CSS pixels. @param {CanvasRenderingContext2D} pen @param {Camera} camera */
 export const holdScreen = (pen, camera) => pen.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
 
-/** Draws the ground with hatches that move with it, and a ruler that stands still.
+/** Draw the ground with moving hatches and a fixed ruler.
  * @param {CanvasRenderingContext2D} pen @param {Camera} camera @param {Colours} colours @param {number} moved @param {number} ridden */
 export const drawGround = (pen, camera, colours, moved, ridden) => {
   holdScreen(pen, camera);

@@ -42,7 +42,7 @@ export class Player {
     onTheme(() => this.repaint());
   }
 
-  /** Takes a new answer; what was being played goes on at the same instant. @param {Play} play @param {number} lead */
+  /** Set a new answer; a running animation continues at the same instant. @param {Play} play @param {number} lead */
   show(play, lead) {
     this.play = play;
     this.lead = lead;
@@ -109,7 +109,7 @@ export class Player {
     this.draw();
   }
 
-  /** Draws one frame and asks for the next. @param {number} stamp */
+  /** Draw one frame and request the next. @param {number} stamp */
   frame(stamp) {
     if (!this.clock.running) return;
     const started = performance.now();

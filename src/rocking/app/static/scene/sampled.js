@@ -23,7 +23,7 @@ export const actorOf = (answer, style) => {
   };
 };
 
-/** Returns rotations over the slenderness angle of the side that the body leans to.
+/** Rotations over the slenderness angle of the side of the rotation.
  * @param {number[]} rotation @param {{ sides: Server.Sides }} body */
 export const sharesOf = (rotation, body) => {
   const right = body.sides.right.slenderness_angle;

@@ -22,7 +22,7 @@ const posesOf = (actors, ground, factor, end) => {
   return poses;
 };
 
-/** Returns how much larger than true the ground has to move so that one sees it: 1, 2, 5, 10, ...
+/** Magnification of the ground motion for visibility: 1, 2, 5, 10, ...
  * @param {number} travel @param {number} size */
 export const visibleFactor = (travel, size) => {
   if (!(travel > 0)) return 1;
@@ -48,7 +48,7 @@ export class Stage {
     this.wide = 0;
   }
 
-  /** Takes {shape, actors, ground, end}, which actor is solid, and how the ground is shown.
+  /** Set {shape, actors, ground, end}, the solid actor, and the ground display.
    * @param {Play} play @param {number} lead @param {string} groundMode */
   show(play, lead, groundMode) {
     this.play = play;
@@ -62,7 +62,7 @@ export class Stage {
     this.resize();
   }
 
-  /** Takes the size of the canvas as it is now. */
+  /** Set the present size of the canvas. */
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
     if (!this.play || !clientWidth) return;
@@ -94,7 +94,7 @@ export class Stage {
     if (!calm()) this.flash(play, now, Math.max(FLASH * speed, 0.005));
   }
 
-  /** How far the ground has moved on the screen at an instant [m]. @param {Play} play @param {number} now */
+  /** Ground displacement on the screen at an instant [m]. @param {Play} play @param {number} now */
   movedAt(play, now) {
     return this.factor * play.ground.at(now);
   }

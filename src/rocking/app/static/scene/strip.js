@@ -1,4 +1,4 @@
-/** The strip under the stage: every rotation over alpha, drawn once, with a line at the present instant. */
+/** Strip under the stage: all rotations over alpha, drawn once, with a line at the present instant. */
 import { fixed } from "/app/format.js";
 import { highest } from "/app/extremes.js";
 import { t } from "/app/words.js";
@@ -32,7 +32,7 @@ export class Strip {
     });
   }
 
-  /** Takes what is played, and which model is the solid one. @param {Play} play @param {number} lead */
+  /** Set the animation and the solid model. @param {Play} play @param {number} lead */
   show(play, lead) {
     this.play = play;
     this.lead = lead;
@@ -42,7 +42,7 @@ export class Strip {
     this.resize();
   }
 
-  /** Takes the size of the canvas as it is now, and draws what does not move. */
+  /** Set the present size of the canvas and draw the static part. */
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
     if (!this.play || !clientWidth) return;
@@ -74,7 +74,7 @@ export class Strip {
     return LEFT + ((this.width - LEFT - RIGHT) * time) / this.play.end;
   }
 
-  /** Returns the pixel of a rotation over alpha. @param {number} share */
+  /** Pixel of a rotation over alpha. @param {number} share */
   up(share) {
     const half = 0.5 * (this.height - TOP - BOTTOM);
     return TOP + half - (half * share) / this.span;

@@ -12,5 +12,5 @@ export const readColours = (element, into = {}) => {
 
 const reduced = window.matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Whether the user asked for less motion on the screen. */
+/** Whether the user prefers reduced motion. */
 export const calm = () => reduced.matches;

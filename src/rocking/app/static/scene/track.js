@@ -1,4 +1,4 @@
-/** A history in typed arrays that is asked for its value at any instant without making garbage.
+/** History in typed arrays with a value at any instant, without allocation.
  * @param {Float64Array} time */
 
 const increasing = (time) => {
@@ -24,7 +24,7 @@ export class Track {
     return this.time[this.time.length - 1];
   }
 
-  /** Returns the value at an instant; quick when the instants that are asked for follow each other.
+  /** Value at an instant; fast for consecutive instants.
    * @param {number} instant */
   at(instant) {
     const { time, values } = this;

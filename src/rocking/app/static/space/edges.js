@@ -1,4 +1,4 @@
-/** What an impact costs a body in space: every edge of its base, marked on the body, under every model. */
+/** Restitution of a 3D body: every edge of its base, marked on the body, with every model. */
 
 import { html } from "/parts/preact.js";
 import { number } from "/app/format.js";

@@ -1,6 +1,6 @@
 import { fixed } from "/app/format.js";
 import { t } from "/app/words.js";
-/** The motion of a body in space: where it is at an instant, what touches then, and that in words. */
+/** Motion of a 3D body: position and contact at an instant, and their description. */
 
 const DEGREES = 180 / Math.PI;
 
@@ -16,7 +16,7 @@ export const lastBefore = (count, at, instant) => {
   return low;
 };
 
-/** A motion as the server computed it, asked for its state at any instant between two poses of it. */
+/** Computed motion with its state at any instant, interpolated between poses. */
 export class Played {
   /** @param {any} three @param {import("/space/stage.js").Stage} stage @param {any} answer */
   constructor(three, stage, answer) {
@@ -57,7 +57,7 @@ export class Played {
     this.stage.touch(vertices.filter((/** @type {number} */ vertex) => !sliding.includes(vertex)), sliding);
   }
 
-  /** What is seen at an instant that was shown. @param {number} instant */
+  /** State at a shown instant. @param {number} instant */
   words(instant) {
     const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
     const facts = { time: fixed(instant, 2), tilt: fixed(this.tilt * DEGREES, 2), contact: contactWords(vertices.length, sliding.length) };

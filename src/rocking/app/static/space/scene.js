@@ -1,4 +1,4 @@
-/** A body in space on the page: the picture, how to turn it, and what it shows in words. */
+/** 3D body on the page: picture, rotation controls and description. */
 
 import { html, useEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
@@ -23,7 +23,7 @@ const VIEWS = [
 /** @param {{ kind: string }} props */
 const Key = ({ kind }) => html`<${Made} node=${useMemo(() => (kind === "rise" ? riseKey() : markKey(kind)), [kind])} />`;
 
-/** The picture of a question's body, with the `title` of its file; `onStage` is told of the stage once it stands, `onSpace` is what that key does.
+/** Picture of the body of a run, with the `title` of its file; `onStage` receives the stage, `onSpace` handles the space bar.
  * @param {{ question: Server.WholeQuestion, words: string, title: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
 export const Scene = ({ question, words: description, title, label, onStage, onSpace, legend }) => {
   const canvas = useRef(null);

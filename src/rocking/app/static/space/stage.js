@@ -1,4 +1,4 @@
-/** A body in space on its ground, drawn by three.js; what it shows and where it is comes from the server. */
+/** 3D body on its ground, drawn by three.js with poses of the server. */
 
 import { svg } from "/app/dom.js";
 import { colour } from "/charts/style.js";
@@ -9,7 +9,7 @@ const FIRST = { turned: -1.1, raised: 0.3 };
 const [LOWEST, HIGHEST] = [0.03, 1.5];
 const FINEST = 2; // pixels of a canvas for one of the page
 
-/** The picture of one body; draws when it is told to. */
+/** Picture of one body, drawn on request. */
 export class Stage {
   /** @param {any} three @param {HTMLCanvasElement} canvas @param {SpaceModel} model */
   constructor(three, canvas, model) {
@@ -71,7 +71,7 @@ export class Stage {
     body.add(new three.LineSegments(new three.WireframeGeometry(faces), this.painted(new three.LineBasicMaterial(), "--surface")));
   }
 
-  /** Where the picture looks: the middle of all places of the centre, and how far it must see. */
+  /** View target: mean of all positions of the center, and the visible distance. */
   frame() {
     const [low, high] = [[0, 0, this.model.height], [0, 0, this.model.height]];
     const places = this.model.motion?.place ?? [];
@@ -141,7 +141,7 @@ export class Stage {
     return points;
   }
 
-  /** Vertices of the hull of which some are shown; none at first. @param {string} paint */
+  /** Vertices of the hull, of which some are shown; initially none. @param {string} paint */
   contacts(paint) {
     if (!this.model.hull) return null;
     const { three } = this;
@@ -159,7 +159,7 @@ export class Stage {
     return points;
   }
 
-  /** What is seen, for a file, as fine as a screen can be. */
+  /** Image of the view for a file, at the resolution of a screen. */
   photograph() {
     this.fine = FINEST;
     this.repaint();
@@ -180,7 +180,7 @@ export class Stage {
     });
   }
 
-  /** Put the body into place: its attitude (x, y, z, s), null for as it is in the file, and its centre [m].
+  /** Place the body: attitude (x, y, z, s), null for that of the file, and center [m].
    * @param {ArrayLike<number> | null} turn @param {number[]} centre */
   place(turn, centre) {
     if (turn) this.body.quaternion.fromArray(turn);
@@ -216,7 +216,7 @@ export class Stage {
     }));
     label.position.fromArray(position);
     label.scale.setScalar(size);
-    if (into === this.scene) label.center.set(0.5, 0); // it stands on the ground
+    if (into === this.scene) label.center.set(0.5, 0); // on the ground
     label.renderOrder = 4;
     into.add(label);
   }
@@ -280,7 +280,7 @@ export class Stage {
     this.renderer.render(this.scene, camera);
   }
 
-  /** Give back what the graphics card holds. */
+  /** Release the memory of the graphics card. */
   dispose() {
     this.scene.traverse((/** @type {any} */ node) => {
       node.geometry?.dispose();

@@ -1,4 +1,4 @@
-/** In which ways a body can stand: the poses, what it takes to leave them, and the landscape between them. */
+/** Stable poses of a 3D body, the barriers between them, and the energy landscape. */
 
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
@@ -16,7 +16,7 @@ const SETTLES = 700; // a body that is set down in another pose is seen to turn 
 const FEW = 12; // poses that are listed
 const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
 const COLOURS = [["rise", "height of the centre of mass"], ["plain", "none"]];
-// what only rounding left is nothing
+// rounding errors are 0
 /** @param {number} value @param {number} most */
 const joules = (value, most) => number(Math.abs(value) < 1e-9 * most ? 0 : value, 3);
 /** @param {number | null | undefined} value */
@@ -25,7 +25,7 @@ const millimetres = (value) => (value === null || value === undefined ? "\u2013"
 const ROLLS = "The body rolls freely with its axis {tilt}\u00b0 from the vertical. Height of the centre of mass: {height} mm.";
 const BALANCES = "A ring of unstable equilibria: axis {tilt}\u00b0 from the vertical. Height of the centre of mass: {height} mm.";
 
-/** The poses of a question's body; `onPose` is told how it must lie in its file to stand in another.
+/** Poses of the body of a run; `onPose` receives the attitude in the file for another pose.
  * @param {{ question: Server.WholeQuestion, answer: any, onPose: (pose: number, up: number[]) => unknown, children: any }} props */
 export const Standing = ({ question, answer, onPose, children }) => {
   const pose = useSignal(String(answer.stands_in));

@@ -1,9 +1,9 @@
-/** What figures are of, as their files say it under the title. */
+/** Descriptions of figures, below the title in their files. */
 
 import { quantity } from "/app/format.js";
 import { plainWords } from "/views/studies-words.js";
 
-/** The body as it is called, or else its size, and the motion, for what stands around figures.
+/** Name of the body, or else its size, and the motion, for elements around figures.
  * @param {{ name?: string | null, sides?: Server.Sides }} body @param {any} [motion] @param {string[]} [more] */
 export const aboutOf = ({ name, sides }, motion = null, more = []) => {
   const size = name || !sides ? [] : [`h/b = ${quantity(sides.right.slenderness_ratio, "")}, R = ${quantity(sides.right.semi_diagonal, "m")}`];

@@ -4,7 +4,7 @@ import { batch, signal } from "/parts/preact.js";
 
 export const OLDER = "The results below belong to the last valid inputs.";
 
-/** What is wrong in the steps that a view asks about, in words. @param {App} app @param {...string} views */
+/** Errors in the views on which a view depends, as text. @param {App} app @param {...string} views */
 export const faultsOf = (app, ...views) => {
   const wrong = signal("");
   app.faults.subscribe(() => (wrong.value = views.map((view) => app.faults.sentence({ view })).filter(Boolean).join(" ")));
@@ -12,8 +12,8 @@ export const faultsOf = (app, ...views) => {
   return wrong;
 };
 
-/** Ask `path` of the API: `question()` says what, null where nothing moves; only what `keys` name matters.
- * A part of the time is asked with `detail` beside it; an answer that `keeps` outlasts a refusal.
+/** Request `path` of the API: `question()` gives the inputs, null without motion; only changes of `keys` matter.
+ * A time window is requested with `detail`; with `keeps`, the last answer remains after a rejection.
  * @param {App} app @param {string} name @param {string[]} keys @param {() => object | null} question
  * @param {{ path?: string, detail?: object, keeps?: boolean }} [how] @returns {Asked<any>} */
 export const createAnswer = (app, name, keys, question, { path = "response", detail = {}, keeps = false } = {}) => {
@@ -32,7 +32,7 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
       if (question()) become(value); // else nothing moves any more
     } catch (error) {
       if (app.superseded(error)) return undefined;
-      dirty = true; // what failed once is asked again when the view is next shown
+      dirty = true; // a failed request is repeated at the next show of the view
       become(keeps ? answer.value : null, error);
     }
     return undefined;

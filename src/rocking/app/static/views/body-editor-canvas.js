@@ -1,4 +1,4 @@
-/** The board on which regions are drawn: by pointer or by keys alike, seen from as near as one likes. */
+/** Canvas of the regions, with pointer, keyboard and zoom. */
 
 import { el, fill, svg } from "/app/dom.js";
 import { number, tidy } from "/app/format.js";
@@ -10,8 +10,8 @@ import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/view
 import { t } from "/app/words.js";
 
 const HEIGHT = 460;
-const NARROWEST = 80; // pixels: what is narrower is about to be hidden or shown
-const CELL = 12; // pixels that a cell of the grid has at least
+const NARROWEST = 80; // pixels: a narrower canvas is about to be hidden or shown
+const CELL = 12; // least width of a grid cell in pixels
 const REACH = 16; // pixels from a vertex within which it is picked
 const ZOOM = 1.25;
 const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body fills the board
@@ -210,8 +210,8 @@ const fitted = (regions, width, photo) => {
   return viewport(roomy, { width, height: HEIGHT, margin: { left: 44, right: 12, top: 10, bottom: 26 } });
 };
 
-// The step that is drawn is the step that is snapped to: the typed one, doubled and so on while its cells are too
-// small to see; without one, a round step whose cells are seen.
+// The drawn step is the snap step: the typed one, doubled until its cells are visible; without one, a round step
+// with visible cells.
 /** @param {Viewport} view @param {number | null | undefined} typed */
 const gridStep = (view, typed) => {
   if (!typed) return tidy(roundStep(CELL / view.scale, 1));
@@ -281,7 +281,7 @@ const edges = (regions, view) =>
       });
     }));
 
-// The edge after the chosen vertex, with its dimensions beside it.
+// Edge after the selected vertex, with its dimensions.
 /** @param {Editor} editor @param {Region[]} regions @param {Viewport} view */
 const picked = (editor, regions, view) => {
   const { from, to, length, angle } = model.edgeAt(regions, editor.state.place);
@@ -294,7 +294,7 @@ const picked = (editor, regions, view) => {
     }));
 };
 
-// Where the server says that it cannot be: a ring about the point, a line at its height, or the outlines it names.
+// Location of an error: a ring around the point, a line at its height, or the named outlines.
 /** @param {any} fault @param {Ring[]} rings @param {Viewport} view @param {number} width */
 const refused = (fault, rings, view, width) => {
   if (!fault) return null;
@@ -317,12 +317,12 @@ const refusedPoint = (fault, rings, view) => {
 const ringsNamed = (fault, regions) => (fault?.regions ?? []).map((/** @type {number} */ index) => regions[index]).filter(Boolean)
   .map((/** @type {Region} */ region) => region.holes?.[fault.hole] ?? region.outline);
 
-// The words of the refusal beside its mark; whoever does not see it hears them from the alert below.
+// Message of the error beside its mark; the alert below contains it for screen readers.
 /** @param {HTMLElement} note @param {Editor} editor @param {Viewport} view @param {number} width @param {number[] | null} point */
 const putWords = (note, editor, view, width, point) => {
   note.hidden = !point;
   if (!point) return;
-  // beside the body where there is room, so that they hide no vertex
+  // beside the body if possible, so that no vertex is hidden
   const box = boxOf(editor.regions().flatMap((region) => region.outline));
   const [left, right] = [view.x(box.left), width - view.x(box.right)].map((room) => Math.min(room, width - 20) - 20);
   const [side, other] = left >= right ? ["right", "left"] : ["left", "right"];

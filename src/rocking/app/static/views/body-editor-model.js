@@ -48,7 +48,7 @@ export const withHole = (regions, region, hole) =>
 export const withDensity = (regions, region, density) =>
   regions.with(region, tidied({ ...regions[region], density: density ?? undefined }));
 
-/** Shifted so that the lowest point stands on y = 0.
+/** Translated such that the lowest point is at y = 0.
  * @param {Region[]} regions @param {Exact} [exact] @returns {Region[]} */
 export const onTheGround = (regions, exact = (value) => value) => {
   const low = lowest(regions.flatMap((region) => region.outline).map((point) => point[1]));
@@ -88,7 +88,7 @@ export const withEdge = (regions, position, { length, angle }, exact = (value) =
   return moved(regions, { ...position, vertex: (position.vertex + 1) % ringAt(regions, position).length }, end);
 };
 
-/** An edge as an arc that rises by so much out of the ring: {regions, chords, error}, the error at most what is asked.
+/** Edge as an arc with the given outward rise: {regions, chords, error}, with at most the required error.
  * @param {Region[]} regions @param {Place} position @param {number} rise @param {number} most @param {Exact} [exact] */
 export const withArc = (regions, position, rise, most, exact = (value) => value) => {
   const { from, to, length } = edgeAt(regions, position);
@@ -191,7 +191,7 @@ export const createHistory = (most = 200) => {
   };
 };
 
-// What is left behind is kept as the value that takes its place was.
+// The previous value is kept in the same unit as its replacement.
 /** @param {any[]} from @param {any[]} to @param {(found: any) => any} nowLike */
 const travel = (from, to, nowLike) => {
   if (!from.length) return null;

@@ -1,4 +1,4 @@
-/** What stands around the board: undo, regions and holes, densities, the grid, the chosen vertex. */
+/** Controls around the canvas: undo, regions and holes, densities, grid, selected vertex. */
 
 import { highest, lowest } from "/app/extremes.js";
 import { editable, tidy } from "/app/format.js";
@@ -7,10 +7,10 @@ import { html } from "/parts/preact.js";
 import * as model from "/views/body-editor-model.js";
 import { t } from "/app/words.js";
 
-/** What is done with the whole drawing; `children` are the tools. @param {{ editor: Editor, children?: any }} props */
+/** Actions on the whole drawing; `children` are the tools. @param {{ editor: Editor, children?: any }} props */
 export const Tools = ({ editor, children }) => {
   const { history, state } = editor;
-  // a button that becomes disabled would drop the focus; one that says that it is keeps it
+  // a disabled button would lose the focus; aria-disabled keeps it
   /** @param {"undo" | "redo"} direction @param {string} text @param {boolean} can */
   const travel = (direction, text, can) => html`
     <${Button} aria-disabled=${can ? null : "true"} onClick=${() => editor.travel(direction)}>${text}<//>`;
@@ -54,7 +54,7 @@ export const Details = ({ editor }) => {
     </div>`;
 };
 
-// A new region stands on top of the others, as wide as they are and a quarter as high.
+// A new region is placed above the others, with their width and a quarter of their height.
 /** @param {Editor} editor */
 const newRegion = (editor) => {
   /** @type {Region[]} */

@@ -1,4 +1,4 @@
-/** What draws on the board beside the vertices: the pen, dimensions, arcs, mirrors, a photograph. */
+/** Drawing tools: pen, dimensions, arcs, mirror, photograph. */
 
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { number, tidy } from "/app/format.js";
@@ -16,7 +16,7 @@ const HOW = {
   scale: "Set two points with a known distance on the picture. Click, or use the arrow keys and Space.",
 };
 
-/** What a point and a key do while a tool is held: the arrow keys move a cursor, Space sets a point where it stands.
+/** Pointer and keys of a tool: the arrow keys move a cursor, Space sets a point at the cursor.
  * @param {Editor} editor */
 export const createTool = (editor) => {
   const held = () => /** @type {NonNullable<Editor["state"]["tool"]>} */ (editor.state.tool);
@@ -101,7 +101,7 @@ export const Pen = ({ editor }) => {
     <${Button} onClick=${mirror}>Mirror<//>`;
 };
 
-/** What becomes of the points of the pen. @param {{ editor: Editor }} props */
+/** Use of the points of the pen. @param {{ editor: Editor }} props */
 export const PenEnds = ({ editor: { state, tool } }) => html`
   <div class="toolbar" hidden=${state.tool?.kind !== "pen"}>
     <${Button} kind="primary" onClick=${() => tool.close()}>Close as body<//>
@@ -155,7 +155,7 @@ export const EdgePart = ({ editor }) => {
     </div></details>`;
 };
 
-/** A photograph to draw on. It stays in this browser: it is drawn from the file itself, and nothing of it is sent or kept.
+/** Photograph as background. It remains in this browser: drawn from the file, neither sent nor stored.
  * @param {{ editor: Editor }} props */
 export const PhotoPart = ({ editor }) => {
   const { state: { photo, tool }, tool: { say } } = editor;

@@ -1,4 +1,4 @@
-/** The polygon editor: vertices that pointer and keyboard move alike, holes, densities, undo. */
+/** Polygon editor: vertices by pointer and keyboard, holes, densities, undo. */
 
 import { html, signal, useLayoutEffect, useRef } from "/parts/preact.js";
 import { tidy } from "/app/format.js";
@@ -13,7 +13,7 @@ import { METRES, inUnits } from "/views/body-units.js";
 
 /** The editor of a polygon; of any other shape it is out of sight. @param {{ editor: Editor }} props */
 export const Editor = ({ editor }) => {
-  const drawn = editor.drawn.value; // every part is drawn anew with it
+  const drawn = editor.drawn.value; // redraws all parts
   const [shown, there] = [editor.shown(), editor.regions().length > 0];
   return html`
     <div class="editor-place" hidden=${!shown}>
@@ -55,7 +55,7 @@ const changeUnits = (state, factor) => {
   if (state.photo) for (const key of ["x", "y", "scale"]) state.photo[key] *= factor;
 };
 
-/** What is drawn and how it changes: `tell()` draws it anew; the tools and the board ask it for everything.
+/** Drawing and its changes: `tell()` redraws it; the tools and the canvas use it.
  * @param {App} app */
 export const createEditor = (app) => {
   const history = model.createHistory();
@@ -66,7 +66,7 @@ export const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
-  // Feet and depth are typed beside the board: a step takes them along only if it changed them itself.
+  // Feet and depth are typed beside the canvas: an undo step includes them only if it changed them.
   const now = ({ whole: withSection = false } = {}) => {
     const { section, units: of } = body();
     return { section, regions: regions(), units: of, whole: withSection };
@@ -135,7 +135,7 @@ export const createEditor = (app) => {
         ({ units } = body());
         const current = regions();
         if (current.length) state.place = withinReach(current, state.place);
-        editor.board?.follow(); // first: it knows the step of its grid
+        editor.board?.follow(); // first: the canvas has the grid step
       }
       drawn.value += 1;
     },

@@ -40,12 +40,12 @@ export const Facts = ({ app, facts: body }) => {
     csv=${() => app.download("table/body.csv", app.inputs.get(), "body.csv")} />`;
 };
 
-// What rounding left of a zero is a zero: smaller than the body by fifteen powers of ten.
+// Rounding errors are 0: smaller than the body by a factor of 1e15.
 /** @param {number} length @param {Server.DescribedBody} body */
 const settled = (length, { sides }) =>
   (Math.abs(length) < 1e-14 * sides.right.semi_diagonal ? 0 : length);
 
-/** Warnings in plain words, or what stands in their place. @param {{ facts: Server.DescribedBody }} props */
+/** Warnings as text, or a substitute. @param {{ facts: Server.DescribedBody }} props */
 export const Warnings = ({ facts: { warnings = [], assumed = [], ...body } }) => html`
   ${warnings.map((text) => html`<${Note} key=${text} kind="warning" text=${text} />`)}
   ${!warnings.length && html`<${Note} kind="good" text=${t("Uplift at a ground acceleration of {acceleration}.", { acceleration: upliftWords(body) })} />`}

@@ -9,7 +9,7 @@ import { t } from "/app/words.js";
 
 const UNITS = [["", "as in the file"], ...Object.keys(METRES).map((unit) => [unit, unit])];
 
-/** The place to drop a file, and its unit where the file does not say it. @param {{ app: App }} props */
+/** Drop area for a body file, with its unit if the file does not contain it. @param {{ app: App }} props */
 export const BodyFile = ({ app }) => {
   const box = useRef(null);
   const held = useRef({}); // the file, its content, and the body that it became
@@ -39,7 +39,7 @@ export const BodyFile = ({ app }) => {
     name.value = file.name;
     return read();
   };
-  // The file is kept: another unit reads it again, unless the body was changed since by hand.
+  // The file is kept: another unit imports it again, unless the body has been edited since.
   /** @param {string} unit */
   const inUnit = (unit) => {
     units.value = unit;

@@ -1,4 +1,4 @@
-/** The form of a body: unit, shape, sizes, what is known of its mass, and feet. */
+/** Form of a body: unit, shape, sizes, mass or density, and feet. */
 
 import { html, useRef, useState } from "/parts/preact.js";
 import { Choice, Field, Note, NumberField, Segmented } from "/parts/fields.js";
@@ -18,7 +18,7 @@ export const Form = ({ app, body, refusal }) => {
   const { units } = body;
   /** @param {string} next */
   const become = (next) => {
-    const now = app.inputs.get().body; // what was typed a moment ago is not drawn yet
+    const now = app.inputs.get().body; // the last edit is not drawn yet
     kept.set(shapeOf(now), now);
     const before = kept.get(next);
     const again = before ? renamed(inUnits(before, units), now.name) : asShape(now, next, app.body.get());
@@ -29,7 +29,7 @@ export const Form = ({ app, body, refusal }) => {
   const put = (key) => (/** @type {any} */ value) => app.inputs.set("body", withKey(app.inputs.get().body, key, value, replaced));
   /** @param {string} key */
   const error = (key) => (refusal?.field === key ? refusal.message : "");
-  const own = `${shape} ${units}`; // other fields, however alike
+  const own = `${shape} ${units}`; // other fields, even if equal
   return html`<div class="stack">
     <${Choice} label="Shape" value=${shape} on=${become}
       options=${[...Object.entries(SHAPES).map(([key, { words: text }]) => [key, text]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
@@ -44,7 +44,7 @@ export const Form = ({ app, body, refusal }) => {
 /** @param {Server.BodyInput} body @param {string | null} [name] */
 const renamed = ({ name: _, ...body }, name) => (name ? { ...body, name } : body);
 
-// What the solver takes, in metres; other sizes are slips of the keyboard or of the unit.
+// Range of the solver in metres; other sizes are typing or unit errors.
 const [LEAST, MOST] = [1e-9, 1e9];
 
 /** @param {Unit} unit */
@@ -78,7 +78,7 @@ const Sizes = ({ shape, units, table, put, error }) => {
     </div>`;
 };
 
-// Two numbers that stand together or not at all: what is typed of them, until both are there or both are gone.
+// Two numbers, both or none: typed values are kept until both are present or both are empty.
 /** @param {{ labels: string[], value?: number[] | null, on: (pair: any) => void, help: string, alone: string, error: string, unit: string }} props */
 const Pair = ({ labels, value, on, help, alone, error, ...more }) => {
   /** @type {{ current: (number | null)[] }} */

@@ -1,4 +1,4 @@
-/** Points from a table: paste two columns, see how many were read, use them. */
+/** Points from a table: paste two columns, check their number, use them. */
 
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { Button, Field, toWrong } from "/parts/fields.js";
@@ -41,7 +41,7 @@ export const PastePart = ({ editor }) => {
     </div></details>`;
 };
 
-/** Points as the whole body; what was done, in words. @param {Editor} editor @param {Ring} points */
+/** Points as the whole body; returns a message. @param {Editor} editor @param {Ring} points */
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
   editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
@@ -63,7 +63,7 @@ export const asHole = (editor, points) => {
   );
 };
 
-// What is typed of the material stays; what belonged to the former outline does not.
+// The material is kept; data of the previous outline are removed.
 /** @param {any} section @param {Region} region @param {Ring} outline */
 const replaced = ({ depth, mass }, { density }, outline) => ({
   region: [density === undefined ? { outline } : { outline, density }],
@@ -71,7 +71,7 @@ const replaced = ({ depth, mass }, { density }, outline) => ({
   ...(mass === undefined ? {} : { mass }),
 });
 
-/** What of the former body is gone, in words; nothing if it had no more than its outline.
+/** Removed data of the previous body as text; empty if it had only an outline.
  * @param {any} section @param {Region[]} regions */
 const lostWords = (section, regions) => {
   const holes = regions.flatMap((region) => region.holes ?? []).length;

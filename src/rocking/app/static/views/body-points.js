@@ -25,7 +25,7 @@ export const parsePoints = (text) => {
   } : { points: ring, fault: "" };
 };
 
-// What separates is asked from the surest sign to the least: a semicolon or tab, then space, then comma.
+// Separators are tried in order of certainty: semicolon or tab, then space, then comma.
 /** @param {string} line @returns {Point | null} */
 const pairOf = (line) => {
   for (const separator of [/\s*[;\t]\s*/, /,\s+|\s+/, /,/]) {

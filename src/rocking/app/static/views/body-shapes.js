@@ -13,13 +13,13 @@ export const shapeOf = (body) => Object.keys(SHAPES).find((shape) => body[shape]
 /** The table that holds the sizes: the body itself for a block in its short form. @param {any} body @returns {any} */
 export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
 
-/** The body with another number of its table; nothing takes it away. Mass and density say the same, and the one that was
- * typed last is meant: densities that a mass takes the place of go into `replaced`, and come back when it is gone.
+/** Body with a changed number of its table; an empty value removes it. Mass and density are alternatives:
+ * the last typed one is used. Densities replaced by a mass are stored in `replaced` and restored without the mass.
  * @param {any} body @param {string} key @param {any} value @param {{ [shape: string]: any }} replaced */
 export const withKey = (body, key, value, replaced) => {
   const shape = shapeOf(body);
   const newValue = value ?? undefined;
-  // feet of its own stand in a block's table; the short form has none
+  // a block with its own feet needs a table; the short form has none
   if (key === "feet" && newValue && !body[shape]) return withFeet(body, newValue);
   const at = body[shape] ? [shape] : [];
   const next = changedAt(body, [...at, key], newValue);

@@ -17,7 +17,7 @@ export const inUnits = (body, units) => {
 /** A length in metres in a unit. @param {number} length @param {Unit} units */
 export const fromMetres = (length, units) => exact(length, 1 / METRES[units]);
 
-// What binary arithmetic left behind is rounded away only where that is all that is rounded away.
+// Errors of binary arithmetic are rounded off only if nothing else is.
 /** @param {number} value @param {number} factor */
 const exact = (value, factor) => {
   const neat = tidy(value * factor);

@@ -1,4 +1,4 @@
-/** The Body view: choose, type, draw, paste or drop a body, and see at once what it is. */
+/** Body view: shape, typed sizes, drawing, table or file, with the properties of the body. */
 
 import { batch, html, render, signal, useLayoutEffect } from "/parts/preact.js";
 import { Pictured } from "/charts/pictured.js";
@@ -17,12 +17,12 @@ const OLDER = "The picture and the numbers belong to the last valid sizes.";
 /** Show the view. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
   const [body, facts, refusal, faulty] = [app.inputs.get().body, app.body.get(), app.body.error(), ""].map(signal);
-  const others = signal(0); // how often the whole document became another
+  const others = signal(0); // number of replacements of the whole document
   let was = JSON.stringify(app.inputs.get());
   const editor = createEditor(app);
   app.inputs.subscribe((inputs, changed) => changed.has("body") && batch(() => {
     body.value = inputs.body;
-    if (changed.size > 1 && JSON.stringify(inputs) !== was) others.value += 1; // all is asked again after signing in too
+    if (changed.size > 1 && JSON.stringify(inputs) !== was) others.value += 1; // all data are requested again, also after signing in
     was = JSON.stringify(inputs);
     editor.tell();
   }));

@@ -1,4 +1,4 @@
-/** What a model of the impact is: its source, assumptions, known defects, and what was measured. */
+/** Restitution model: source, assumptions, known defects and measurements. */
 
 import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
@@ -9,7 +9,7 @@ import { t } from "/app/words.js";
 /** @param {string} label */
 const familyOf = (label) => label.replace(/^.*\*/s, "").split(":")[0];
 
-/** What the catalogue of models and the published measurements say of one of them.
+/** Entry of one model in the catalogue of models and the published measurements.
  * @param {{ app: App, label: string, onClose: () => unknown }} props */
 export const About = ({ app, label, onClose }) => {
   const model = app.info.models.find(({ name }) => name === familyOf(label));

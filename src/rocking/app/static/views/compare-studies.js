@@ -1,4 +1,4 @@
-/** Studies that have several models: their fragility, maps and spectra, and what the choice changes. */
+/** Studies with several models: fragility, maps and spectra, and the effect of the choice. */
 
 import { html, useSignal } from "/parts/preact.js";
 import { Fetched } from "/charts/pictured.js";

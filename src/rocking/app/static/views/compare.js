@@ -1,4 +1,4 @@
-/** Compare: does it stand, and does the model matter? Every model of the impact, side by side. */
+/** Compare: outcome and effect of the restitution model, for all models. */
 
 import { computed, html, render, signal, useEffect, useMemo, useSignal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
@@ -48,7 +48,7 @@ export const mount = (section, app) => {
   };
 };
 
-/** Least factors on the motion that overturn the body, by model, as `rocking assess` finds them; of these inputs alone.
+/** Least scale factors of the motion that overturn the body, by model, as in `rocking assess`; for the present inputs.
  * @param {App} app */
 const createMargins = (app) => {
   const questions = createQuestions(app, "assess");
@@ -135,7 +135,7 @@ const VERDICTS = {
   },
 };
 
-/** The answer in plain words, from what was computed: what most models say first.
+/** Summary of the computed results: the outcome of most models first.
  * @param {Server.ResponseAnswered} responses @param {Server.ResponseFacts[]} there */
 const sentencesOf = (responses, there) => {
   /** @param {Server.ResponseFacts} answer */

@@ -1,4 +1,4 @@
-/** Decide: does the body stand, how sure is that, what to do; and all factors at which that changes. */
+/** Assessment: margin, overturning probability and retrofit measures; all scale factors at which the outcome changes. */
 
 import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
@@ -86,7 +86,7 @@ const Decide = ({ app, questions }) => {
     <//>`;
 };
 
-/** What shakes the body as a job has it, the files that it needs, and what is missing.
+/** Ground motions of the body as job tables, their files, and missing inputs.
  * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string, own: object }} said @returns {Shaking} */
 const motions = (inputs, shaken, files, { units, pga, own }) => {
   if (shaken === "records") {
@@ -103,7 +103,7 @@ const motions = (inputs, shaken, files, { units, pga, own }) => {
   return motionOf(inputs) ?? { files: {}, missing: "No motion is selected. Choose a motion first." };
 };
 
-/** Ask for all accelerations at which the verdict changes; what is missing.
+/** Request all accelerations at which the outcome changes; returns missing inputs.
  * @param {App} app @param {Questions} questions @param {any} range */
 const crossings = (app, questions, range) => {
   const { body, motion, restitution, settings } = app.inputs.get();
@@ -178,7 +178,7 @@ const WHAT = { uplift: "rocks", sliding: "slides", overturning: "overturns" };
 /** @param {number | null} low @param {number | null} high */
 const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", { low: percent(low), high: percent(high) }));
 
-/** Probabilities, under these motions and if others like them came; beside them those with another restitution.
+/** Probabilities, under these motions and under further motions of the same kind; beside them those with another restitution.
  * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}

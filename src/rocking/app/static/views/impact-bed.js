@@ -17,7 +17,7 @@ const RANGE = ["from", "to", "count", "spacing"];
 const NOTHING = {};
 const BED = { label: "contact bed", colour: "--accent", points: true };
 
-/** What is asked of the bed and what comes out of it; `body` has the slenderness and the width.
+/** Inputs and results of the contact bed; `body` has the slenderness and the width.
  * @param {{ app: App, body: { slenderness: number, width: number } }} props */
 export const Laboratory = ({ app, body }) => {
   const keys = app.info.keys.contact_bed;

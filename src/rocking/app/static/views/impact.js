@@ -1,4 +1,4 @@
-/** The Impact view: what an impact costs under every model, against what was measured. */
+/** Impact view: restitution of every model, with measurements. */
 
 import { html, render, useSignal } from "/parts/preact.js";
 import { Pictured } from "/charts/pictured.js";

@@ -25,7 +25,7 @@ const Inventory = ({ app, questions }) => {
   const [files, kind, level, family, count] = Object.keys(FIRST).map((name) => form.at(name));
   /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
-  const text = useSignal(null); // the lines of the list, and the question that was asked of them
+  const text = useSignal(null); // lines of the list, and its run
   const fixed = useSignal({}); // lines that were corrected, by their number
   /** @param {SentFile} list */
   const corrected = async (list) => {
@@ -86,7 +86,7 @@ const listed = (typed) => Object.fromEntries(READ.map((name) => [name, typed[nam
 
 const MOST = 20; // rows that are corrected at a time
 
-// Lines of a list that is text, in the encoding that the answer tells; null of a workbook, corrected where it was made.
+// Lines of a text list, in the encoding of the answer; null for a workbook, which is corrected in its application.
 /** @param {SentFile} list @param {string} source */
 const linesOf = async ({ name, sha }, source) => {
   if (/\.(xlsx|ods)$/i.test(name)) return null;
@@ -101,7 +101,7 @@ const linesOf = async ({ name, sha }, source) => {
 /** @type {Words} */
 const NAMES = { mac_roman: "macintosh", "utf-8-sig": "utf-8", "utf-16-be": "utf-16be", "utf-16-le": "utf-16le" };
 
-// Rows of the list that were not assessed, as they stand in it.
+// Rows of the list that were not assessed, unchanged.
 /** @param {{ answer: any, text: any, fixed: Signal<any> }} props */
 const Corrections = ({ answer, text, fixed }) => {
   const rows = (text?.lines && answer?.not_assessed) || [];

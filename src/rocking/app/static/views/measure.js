@@ -1,4 +1,4 @@
-/** Measure: the coefficient of restitution from a sound, a table, or the microphone; and what was published of it. */
+/** Identification: coefficient of restitution from a sound, a table or the microphone; published measurements. */
 
 import { html, render, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";

@@ -1,4 +1,4 @@
-/** The motion that shook the body before it was let go from a lean, kept in this tab. */
+/** Motion before the start from an initial rotation, kept in this tab. */
 
 const KEPT = "rocking.motion-before";
 const USUAL = { pulse: "sine:amplitude=3,period=0.8" };

@@ -2,12 +2,12 @@
 import { html } from "/parts/preact.js";
 import { Choice } from "/parts/fields.js";
 
-/** The fields that choose components; neither offers what the other has taken.
+/** Fields of the components; each excludes the choice of the other.
  * @param {{ names: string[], motion: Server.MotionInput, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Components = ({ names, motion, onChange }) => {
   if (names.length < 2) return null;
   const main = motion.component ?? names.find((name) => name !== motion.vertical);
-  // a link may say the same for both: both lists are whole then, so that one can change either
+  // a link may give the same component for both: then both lists are complete, so that either can be changed
   const clash = motion.vertical === main;
   /** @param {string | null} [taken] */
   const optionsBut = (taken) => names.filter((name) => clash || name !== taken).map((name) => [name, name]);

@@ -10,7 +10,7 @@ import { t } from "/app/words.js";
 const USUAL = "sine";
 const kept = new Map(); // the parameters of each pulse that were turned
 
-/** Forget what was turned. */
+/** Discard the edited values. */
 export const forgetPulses = () => kept.clear();
 
 /** The editor of a pulse; `blamed`: the parameter that was refused, and why.

@@ -1,4 +1,4 @@
-/** The pulses that the server knows, as the form shows them. */
+/** Pulses of the server, as form fields. */
 
 /** @type {{ [parameter: string]: { label: string, low: number, high: number, log: boolean, limits?: Limits, integer?: boolean, usual: number } | undefined }} */
 const RANGES = {

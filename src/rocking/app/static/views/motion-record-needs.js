@@ -1,4 +1,4 @@
-/** What a record file does not say, asked in a small form. */
+/** Form for the missing data of a record file. */
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { keyOf } from "/app/refusal.js";
 import { Button, Choice, NumberField, toWrong, wrongIn } from "/parts/fields.js";
@@ -38,7 +38,7 @@ export const blamedOf = (needs, refusal, text) => {
   return name ? { name, text } : null;
 };
 
-/** Fields for what `answer` needs; `take` gets what was answered once nothing is missing or wrong.
+/** Fields for the `needs` of `answer`; `take` receives the values once all are valid.
  * @param {{ answer: LeftOpen, info: Server.Info, given: Told, blamed?: ReturnType<typeof blamedOf>, take: (given: Told) => unknown, button?: object, [more: string]: any }} props */
 export const Needs = ({ answer, info, given: initial, blamed, take, button, ...more }) => {
   const form = useRef(null);

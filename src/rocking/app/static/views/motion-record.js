@@ -1,4 +1,4 @@
-/** A record file: dropped or chosen, with what it does not say asked for. */
+/** Record file: dropped or chosen, with a form for its missing data. */
 import { batch, html, signal, useEffect, useLayoutEffect, useRef } from "/parts/preact.js";
 import { contentOf } from "/app/file-content.js";
 import { freshId } from "/app/dom.js";
@@ -20,12 +20,12 @@ const picked = (from, keys) => Object.fromEntries(keys.filter((key) => from[key]
 /** @param {string} name */
 const isStations = (name) => /\.xml$/i.test(name);
 
-/** What stands of the files that were given last: `take(files)` sends them, `onChange(motion)` hears when it is read.
+/** State of the last uploaded files: `take(files)` uploads them, `onChange(motion)` is called after the import.
  * @param {App} app @param {(motion: Server.MotionInput) => unknown} onChange */
 export const createRecord = (app, onChange) => {
   const [status, openNeeds, blamed, waiting, answer] = [null, null, null, false, null].map(signal);
   /** @type {any} */
-  let held = null; // the file, its content, and what was answered about it
+  let held = null; // the file, its content, and the given data
 
   /** @param {object} [statement] */
   const send = async (statement) => {
@@ -41,7 +41,7 @@ export const createRecord = (app, onChange) => {
       if (sent === held) batch(() => refuse(error));
     }
   };
-  // the components are chosen here, the server is not asked again
+  // the components are chosen here, without a request
   /** @param {Need[]} needs */
   const enough = (needs) => needs.every((need) => need === "component") && held.given.component !== undefined;
   /** @param {Server.RecordFacts} facts */
@@ -65,7 +65,7 @@ export const createRecord = (app, onChange) => {
     const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: text }) : text;
     return { text: `${sentence(named)}${stays}`, kind: "error" };
   };
-  // What was answered stays as it was typed, with the refusal beside the field that it is about.
+  // Given data are kept as typed, with the error beside its field.
   /** @param {any} error */
   const refuse = ({ message, ...error }) => {
     if (!openNeeds.value || error.needs?.length) {
@@ -129,14 +129,14 @@ export const Record = ({ app, record, motion, lost, onChange }) => {
     before.current = [status.value, openNeeds.value];
     if (openNeeds.value && openNeeds.value !== form) return focus(".record-form :is(input, select)");
     if (status.value === note || document.activeElement !== document.body) return undefined;
-    return focus(FOCUSED[status.value?.as] ?? "none"); // what was pressed is gone
+    return focus(FOCUSED[status.value?.as] ?? "none"); // the pressed control is removed
   }, [status.value, openNeeds.value]);
   const formats = app.info.formats.map(({ name }) => name).join(", ");
   const isAnswered = answer.value?.record === motion?.record;
   useEffect(() => void (motion && rememberTold(motion)), [motion]);
   useEffect(() => {
     if (isAnswered || !motion) return;
-    // what a file holds that was sent before this page was loaded; a motion that is refused says so itself
+    // data of a file uploaded before this load of the page; the error of a motion is shown there
     /** @param {Server.RecordFacts} facts */
     const learn = (facts) => app.inputs.get().motion?.record === motion.record && (answer.value = facts);
     app.call(`records/${motion.record}`, { query: picked(motion, TOLD) }).then(learn, () => {});

@@ -1,4 +1,4 @@
-/** What a motion is: facts, traces, spectrum and measures. */
+/** Motion: properties, time histories, spectrum and measures. */
 import { html, useMemo } from "/parts/preact.js";
 import { pretty, quantity } from "/app/format.js";
 import { Figure } from "/charts/figure.js";

@@ -5,7 +5,7 @@ import { NumberField, Slider } from "/parts/fields.js";
 const LEAST = 0.1;
 const MOST = 10;
 
-/** A slider and a number that say the same factor. @param {{ value: number, on: (value: number) => unknown }} props */
+/** Slider and number of the same factor. @param {{ value: number, on: (value: number) => unknown }} props */
 export const Scale = ({ value, on }) => html`
   <div class="motion-scale">
     <${Slider} label="Scale of the motion" min=${LEAST} max=${MOST} log

@@ -23,7 +23,7 @@ const positive = (periods, values) => {
   return [kept.map((k) => periods[k]), kept.map((k) => values[k])];
 };
 
-/** The spectrum with a choice of what it shows. @param {{ spectrum: Server.SpectrumFacts }} props */
+/** Spectrum with a choice of its quantity. @param {{ spectrum: Server.SpectrumFacts }} props */
 export const Spectrum = ({ spectrum }) => {
   /** @type {Signal<keyof typeof KINDS>} */
   const kind = useSignal("pseudo_acceleration");

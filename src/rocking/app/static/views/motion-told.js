@@ -1,4 +1,4 @@
-/** What was answered about a record file, kept by its hash in this browser. */
+/** Data given for a record file, stored by its hash in this browser. */
 
 const KEPT = "rocking.told";
 const KEYS = ["format", "units", "time_step", "component", "vertical"];
@@ -17,17 +17,17 @@ const write = (entries) => {
   try {
     localStorage.setItem(KEPT, JSON.stringify(Object.fromEntries(entries.slice(-MOST))));
   } catch {
-    // a browser that keeps nothing asks again
+    // a browser without storage asks again
   }
 };
 
 /** @param {string} record */
 const others = (record) => Object.entries(all()).filter(([hash]) => hash !== record);
 
-/** Returns what was answered about a record: format, units, time_step, component, vertical. @param {string} record */
+/** Data given for a record: format, units, time_step, component, vertical. @param {string} record */
 export const toldOf = (record) => all()[record] ?? {};
 
-/** Keeps what a motion says about its record. @param {any} motion */
+/** Store the record data of a motion. @param {any} motion */
 export const rememberTold = ({ record, ...motion }) => {
   const stated = KEYS.filter((key) => motion[key] !== undefined);
   const options = Object.fromEntries(stated.map((key) => [key, motion[key]]));

@@ -1,4 +1,4 @@
-/** What shakes the ground: a record file, a pulse, or a synthetic motion. */
+/** Ground motion: a record file, a pulse, or a synthetic motion. */
 import { batch, computed, html, render, signal } from "/parts/preact.js";
 import { createTime } from "/charts/figure.js";
 import { dotsOf } from "/charts/zoom.js";
@@ -60,7 +60,7 @@ export const mount = (section, app) => {
     way.value = next;
   });
   const record = createRecord(app, set);
-  // What was turned, and a file that waits, belong to one project.
+  // Edited values and a pending file belong to one project.
   computed(() => app.project.here.value.id).subscribe(() => batch(() => {
     kept = {};
     forgetPulses();
@@ -77,7 +77,7 @@ const Motion = ({ app, request, motion: { value: motion }, way, faulty, record, 
   const { answer: { value: answer }, refused: { value: refused }, closeup } = request;
   const Editor = /** @type {any} */ (EDITORS)[way.value];
   const waits = way.value === "record" && record.waiting.value;
-  // what is measured is not what the form shows: another way, a file that waits, an error
+  // the measured motion differs from the form: another source, a pending file, an error
   const stale = motion && ((faulty.value && !refused) || waits || wayOf(motion) !== way.value);
   return html`
     <header class="view-head"><h1>Ground motion</h1>

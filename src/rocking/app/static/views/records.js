@@ -100,7 +100,7 @@ const chainOf = (steps) => steps.map(({ name, keys }) => {
 /** @param {string} text */
 const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " ").trim() : String(parseNumber(text)));
 
-// Which step a refusal is about: its place if it says one, else its name.
+// Step of a rejection: its index if present, else its name.
 /** @param {Questions} questions @param {{ steps: RecordStep[], asked?: string }} form */
 const faultyOf = (questions, { steps, asked }) => {
   const refusal = questions.shown.value?.state === "refused" ? questions.shown.value.refusal : null;

@@ -1,4 +1,4 @@
-/** What one may turn while the answer follows: strength, size, a free start, friction, models. */
+/** Parameters with immediate results: scale factor, size, initial rotation, friction, models. */
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { Card, Choice, NumberField, Slider, Switch } from "/parts/fields.js";
 import { motionBefore, rememberMotion } from "/views/motion-before.js";
@@ -10,7 +10,7 @@ import { canBeScaled, scaledBody } from "/views/response-size.js";
 const [LEAN, USUAL] = [0.5, 0.9];
 const CALIBRATED = "The calibrated model is fitted to published measurements. Impact shows its interval.";
 
-/** Lets the body go from a lean, on ground that stands still. @param {App} app */
+/** Start from an initial rotation, without ground motion. @param {App} app */
 export const lean = (app) => {
   rememberMotion(app, app.inputs.get().motion);
   app.inputs.set("response.initial_rotation", LEAN);
@@ -49,7 +49,7 @@ export const Controls = ({ app, inputs }) => {
     </div>`;
 };
 
-/** Every length of the body, from the body as it was when the slider stood at one.
+/** All lengths of the body, relative to the body at the slider value 1.
  * @param {{ app: App, body: Server.BodyInput }} props */
 const Size = ({ app, body }) => {
   const drawn = useRef(body);
@@ -67,7 +67,7 @@ const Size = ({ app, body }) => {
 /** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */
 export const complete = ({ parameters }) => Object.values(parameters).every((parameter) => parameter.default !== null);
 
-/** Which models of the impact are compared, with a coefficient of one's own beside them.
+/** Restitution models to compare, and a coefficient of the user.
  * @param {{ app: App, table?: Server.RestitutionTable }} props */
 const Models = ({ app, table }) => {
   const state = readRestitution(table);

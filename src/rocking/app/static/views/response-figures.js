@@ -1,4 +1,4 @@
-/** What happens over time, as linked figures: rotation, velocity, ground, energy, forces. */
+/** Time histories as linked figures: rotation, velocity, ground, energy, forces. */
 import { html, useMemo } from "/parts/preact.js";
 import { highest } from "/app/extremes.js";
 import { Figure } from "/charts/figure.js";
@@ -12,7 +12,7 @@ const TIME = { label: "time", unit: "s" };
 const MOST_FRICTION = 3;
 const FALL_SHOWN = 1.5;
 
-// what follows the point of no return is a fall to the ground, beside which no rocking could be seen
+// beyond the point of no return the body falls to the ground; rocking would not be visible at that scale
 /** @param {Server.ResponseFacts} answer @param {(number | null)[]} values */
 const untilFall = (answer, values) => {
   const shares = sharesOf(answer.series.rotation, answer.body);
@@ -24,7 +24,7 @@ const untilFall = (answer, values) => {
 /** @param {(number | null)[]} values */
 const capped = (values) => values.map((value) => (value === null || value > MOST_FRICTION ? null : value));
 
-// the lines of +1 and -1 are in sight unless the rocking is small beside them
+// the lines of +1 and -1 are visible unless the rocking is small compared with them
 /** @param {unknown} _ @param {number | null} low @param {number | null} high */
 const rotationRange = (_, low, high) => {
   const most = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0));
@@ -40,7 +40,7 @@ const ENERGIES = [
   { key: "work_of_ground", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
-/** The answer that goes on longest. @param {Server.ResponseFacts[]} answers */
+/** The longest answer. @param {Server.ResponseFacts[]} answers */
 export const longest = (answers) => {
   const ends = answers.map(({ series }) => series.time[series.time.length - 1]);
   return answers[ends.indexOf(highest(ends))];
@@ -85,7 +85,7 @@ const KINDS = {
   ),
 };
 
-/** What the marks of the figures mean; `whose` impacts are ticked.
+/** Legend of the marks; `whose`: model of the impact ticks.
  * @param {Server.ResponseFacts[]} answers @param {string} whose */
 export const marksWords = (answers, whose) => [
   t("Ticks on the axis: impacts of {model}; dashed: the slenderness angles.", { model: whose }),

@@ -76,7 +76,7 @@ export const Impacts = ({ app, answers, answer }) => {
 
 const FILES = [["Curves, CSV", "table/response.csv"], ["Animation, page", "animation.html"]];
 
-/** Files of the response, of the model that is looked at, and they say so.
+/** Files of the response of the selected model.
  * @param {{ app: App, restitution?: Server.RestitutionTable }} props */
 export const TakeAway = ({ app, restitution }) => {
   /** @param {string} path */

@@ -29,7 +29,7 @@ const scaledTable = (table, factor) => {
   return Object.fromEntries(entries);
 };
 
-/** Whether the size of a body can be changed here: text of a drawing is left as it is.
+/** Whether the size of a body can be changed here: text of a drawing is not scaled.
  * @param {Server.BodyInput} body */
 export const canBeScaled = (body) => (body.section?.region || []).every(({ outline }) => outline !== undefined);
 

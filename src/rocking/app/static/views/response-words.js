@@ -1,4 +1,4 @@
-/** What came out, in words and with a sign that needs no colour. */
+/** Outcome as text and as a sign independent of color. */
 import { html } from "/parts/preact.js";
 import { curveKey, wordsOf } from "/views/response-labels.js";
 import { t } from "/app/words.js";
@@ -13,10 +13,10 @@ const OUTCOMES = {
 /** @type {Words} */
 const SIGNS = { differs: "\u21c4", falls: "\u25b2", rocks: "\u2713", calm: "\u25a0", unknown: "?" };
 
-/** Returns how an outcome is shown: kind (a class), sign and word. @param {{ outcome?: string }} answer */
+/** Display of an outcome: kind (a class), sign and word. @param {{ outcome?: string }} answer */
 export const outcomeOf = (answer) => OUTCOMES[answer.outcome ?? "failed"] || OUTCOMES.failed;
 
-/** Returns the kind of a verdict over several models: what they agree on, or that they do not.
+/** Kind of an outcome over several models: the common one, or "differs".
  * @param {{ outcome?: string }[]} answers */
 export const verdictKind = (answers) => {
   const kinds = new Set(answers.map((answer) => outcomeOf(answer).kind));
@@ -42,7 +42,7 @@ export const inWords = (sentence, answers) =>
 /** @param {string} label */
 const wordOf = (label) => new RegExp(`(?<![\\w-])${label.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}(?![\\w-])`, "g");
 
-/** Returns the sentence for the screen reader that stands for the animation. @param {Server.ResponseFacts[]} answers */
+/** Sentence for screen readers in place of the animation. @param {Server.ResponseFacts[]} answers */
 export const sceneWords = (answers) => {
   const lines = answers.map((answer) => `${t(wordsOf(answer.label))}: ${t(answer.summary || outcomeOf(answer).word)}`);
   return t("Rocking body on the moving ground. {outcomes}.", { outcomes: lines.join("; ") });

@@ -1,4 +1,4 @@
-/** How the body rocks: one stage of verdict, animation and linked figures, for several restitution models at once. */
+/** Response of the body: outcome, animation and linked figures, for several restitution models. */
 import { html, render, signal, useLayoutEffect, useMemo, useRef } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 import { createTime } from "/charts/figure.js";
@@ -36,7 +36,7 @@ export const mount = (section, app) => {
   const faulty = faultsOf(app, "body", "motion");
   app.inputs.subscribe((now) => (inputs.value = now));
   render(html`<${Response} app=${app} request=${request} inputs=${inputs} player=${player} time=${time} stale=${stale} faulty=${faulty} />`, section);
-  // what is drawn belongs to the last good numbers while a field is in error
+  // figures show the last valid inputs while a field is in error
   const look = () => (stale.value = section.querySelector(".response-controls [aria-invalid=true]") !== null);
   for (const kind of ["input", "change"]) section.addEventListener(kind, look);
   section.addEventListener("keydown", (event) => onKey(event, player));

@@ -1,4 +1,4 @@
-/** In space: a scan, what was mended in it, in which ways it can stand, what its edges cost, and how it moves. */
+/** 3D: a scan, its repairs, its stable poses, the restitution of its edges, and its response. */
 
 import { html, render, useRef, useSignal } from "/parts/preact.js";
 import { number, parseNumber } from "/app/format.js";
@@ -35,7 +35,7 @@ const FIRST = {
 const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "inner", "density"];
 const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
 
-/** The scan that is asked about: the chosen one, or the last; none where the body of the project is.
+/** Scan of the analysis: the selected one, or the last; none if the body of the project is used.
  * @param {any} form @returns {SentFile | undefined} */
 const scanOf = ({ files, chosen }) => (chosen === OWN ? undefined : files.find((/** @type {SentFile} */ { sha }) => sha === chosen) ?? files.at(-1));
 
@@ -52,7 +52,7 @@ const Space = ({ app, questions }) => {
   const [files, chosen, command, units, up, repair, surface, inner, density] = BODY.map((name) => form.at(name));
   const [shaken, friction, law, coefficient, times, recordUnits] = MOVES.map((name) => form.at(name));
   const records = Object.fromEntries(["x", "y", "z"].map((axis) => [axis, form.at(`along_${axis}`)]));
-  const pose = form.at("pose"); // {number, up}: which way up it shall stand, in the axes of the file
+  const pose = form.at("pose"); // {number, up}: upward direction in the pose, in the axes of the file
   /** @type {Signal<Wrong>} */
   const wrong = useSignal("");
   const scan = scanOf(form.value);
@@ -99,7 +99,7 @@ const Space = ({ app, questions }) => {
     pose.value = { number: number_, up: direction };
     app.say(t("The next run uses the body in pose {pose}.", { pose: number_ }));
   };
-  // One component as long as the view lives: another one would draw the scene anew at every letter that is typed.
+  // One component for the life of the view: another one would redraw the scene at every typed character.
   const Found = useRef((/** @type {any} */ { answer, question }) => html`
     <${Answer} key=${question.id} answer=${answer} question=${question} onPose=${goOn} />`).current;
   return html`
@@ -135,7 +135,7 @@ const Space = ({ app, questions }) => {
     <//>`;
 };
 
-/** The table of the body, with what was said alone; missing: what has to be said first.
+/** Table of the body, with given values only; missing: required values.
  * @param {SentFile | undefined} scan @param {{ units: string, density: string, [key: string]: any }} options @returns {{ table?: any, missing?: Wrong }} */
 const bodyOf = (scan, options) => {
   if (!scan) return { missing: { key: "files", text: "Add a scan." } };
@@ -147,7 +147,7 @@ const bodyOf = (scan, options) => {
   return { table: { file: scan.name, ...Object.fromEntries(stated) } };
 };
 
-/** What shakes it along its axes, the files for that, and what is missing.
+/** Ground motion along the axes, its files, and missing inputs.
  * @param {App} app @param {string} shaken @param {{ [axis: string]: { value: SentFile[] } }} records @param {string} units @param {string} times @returns {Shaking} */
 const shakenBy = (app, shaken, records, units, times) => {
   const scale = parseNumber(times);

@@ -4,7 +4,7 @@ import { Figure } from "/charts/figure.js";
 import { Button, stopped } from "/parts/fields.js";
 import { t, userText } from "/app/words.js";
 
-/** Beyond this share of alpha a body lies on the ground, and its curve would hide what went before. */
+/** Beyond this fraction of alpha the body has fallen, and the rest of its curve would be invisible. */
 const MOST = 2;
 const KEYS = ["body", "motion", "restitution", "response", "settings"];
 const SHAPE = {
@@ -15,11 +15,11 @@ const SHAPE = {
   series: [{ label: "rotation / \u03b1", colour: "--accent" }],
 };
 
-/** What is known of a cell: show(aim, k, kept) asks for it, open() takes a cell that is kept to the step Response.
+/** Data of a cell: show(aim, k, kept) requests them, open() loads a kept cell into the step Response.
  * @param {App} app @param {Server.StudyFacts} study */
 export const createCell = (app, study) => {
   const summary = signal("Click a cell of the map.");
-  const data = signal(null); // of the curve that was drawn last
+  const data = signal(null); // of the last drawn curve
   const curve = signal(false);
   const opens = signal(false);
   /** @type {any} */
@@ -30,7 +30,7 @@ export const createCell = (app, study) => {
 
   const open = () => {
     if (!opens.value) return;
-    // what the cell does not have must be absent, not null
+    // missing keys of the cell must be absent, not null
     const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
     const cell = /** @type {any} */ (Object.fromEntries(there.map((key) => [key, inputs[key]])));
     app.inputs.lend(cell, t("a cell of \u201c{study}\u201d", { study: userText(study.name) }));

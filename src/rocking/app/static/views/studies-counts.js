@@ -1,4 +1,4 @@
-/** Studies without a picture of their own: how many histories ended in which way, and tables. */
+/** Studies without a figure: number of histories per outcome, and tables. */
 import { html } from "/parts/preact.js";
 import { Table } from "/parts/table.js";
 import { percent } from "/app/format.js";

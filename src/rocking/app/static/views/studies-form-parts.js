@@ -22,7 +22,7 @@ export const usualRange = ({ info }, name, count) => {
   return { from, to, count };
 };
 
-/** Limits of the field of a number from what the server says of its key. @param {Server.KeyFacts} facts */
+/** Limits of a numeric field from the description of its key. @param {Server.KeyFacts} facts */
 export const limitsOf = ({ ge, gt, le }) => ({ min: ge ?? undefined, above: gt ?? undefined, max: le ?? undefined });
 
 /** The unit that a label has, of none nothing. @param {{ unit: string }} [axis] */

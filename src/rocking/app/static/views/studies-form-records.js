@@ -1,4 +1,4 @@
-/** The uploaded records, to be ticked for a study, told what they do not say, and deleted. */
+/** Uploaded records: selection for a study, missing data, deletion. */
 import { html, useEffect, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";
 import { quantity } from "/app/format.js";
@@ -63,7 +63,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     </div>`;
 };
 
-/** Records that were told the same stand in one table. @param {any[]} tables */
+/** Records with the same data share one table. @param {any[]} tables */
 const together = (tables) => {
   const byOptions = new Map();
   for (const { records, ...options } of tables) {

@@ -1,4 +1,4 @@
-/** What a new study computes: chosen here, about the body and the motion of the other steps. */
+/** Form of a new study of the body and the motion of the other steps. */
 import { html, useRef, useSignal } from "/parts/preact.js";
 import { Button, Field, Segmented, wrongIn } from "/parts/fields.js";
 import { MapQuestion } from "/views/studies-form-map.js";
@@ -26,7 +26,7 @@ const fresh = (name, taken) => {
   return candidate;
 };
 
-/** Form with one question at a time; calls onLaunched(id); `taken` says which names there are.
+/** Form with one step at a time; calls onLaunched(id); `taken`: existing names.
  * @param {{ app: App, visits: number, onLaunched: (id: string) => unknown, taken: () => Set<string> }} props */
 export const StudyForm = ({ app, visits, onLaunched, taken }) => {
   const [kind, name, problem, busy] = [useSignal("map"), useSignal(""), useSignal(""), useSignal(false)];

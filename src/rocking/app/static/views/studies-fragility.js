@@ -1,4 +1,4 @@
-/** A fragility: probability curves with their bands, the points they come from, and what the fit says. */
+/** Fragility: probability curves with their bands, data points, and the quality of the fit. */
 import { html, useMemo, useSignal } from "/parts/preact.js";
 import { modelWords, seriesStyle } from "/app/palette.js";
 import { Figure } from "/charts/figure.js";
@@ -61,7 +61,7 @@ const NO_CURVE = { x: [], probability: [], low: null, high: null };
 const Curve = ({ state, curve, points, index, x }) => {
   const { colour } = seriesStyle(index);
   const band = Boolean(curve.low && curve.high);
-  // the legend names what is drawn, and nothing else
+  // the legend contains the drawn curves only
   const drawn = [curve.x.length > 0, band, band, true];
   const series = [
     { label: "maximum likelihood", colour, width: 2.2 },

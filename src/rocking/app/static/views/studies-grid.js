@@ -28,7 +28,7 @@ const edgesOf = (places) => {
   return [1.5 * places[0] - 0.5 * places[1], ...inner, 1.5 * places[places.length - 1] - 0.5 * places[places.length - 2]];
 };
 
-/** Places of an axis: value to share of its length, and edges of its cells. @param {{ values: number[] }} axis */
+/** Positions of an axis: value to fraction of its length, and edges of its cells. @param {{ values: number[] }} axis */
 export const axisOf = ({ values }) => {
   const log = isGeometric(values);
   const positionOf = log ? Math.log : Number;
@@ -80,13 +80,13 @@ const around = (position, length) => {
   return [from, from + length];
 };
 
-/** A colour "#rrggbb" as a dot of an image has it, the least byte first. @param {string} paint */
+/** Color "#rrggbb" as a pixel of an image, least significant byte first. @param {string} paint */
 const wordOf = (paint) => {
   const rgb = parseInt(paint.slice(1), 16);
   return (0xff000000 | ((rgb & 0xff) << 16) | (rgb & 0xff00) | (rgb >> 16)) >>> 0;
 };
 
-/** Painter of a map: draw(paintOf, [kept, aim], lines, drag), cellAt(event), and what part of it is seen.
+/** Painter of a map: draw(paintOf, [kept, aim], lines, drag), cellAt(event), and the visible part.
  * @param {HTMLCanvasElement} canvas @param {MapAxis} x @param {MapAxis} y */
 export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
@@ -95,8 +95,8 @@ export const createGrid = (canvas, x, y) => {
   let ratio = 1; // dots of the screen for one of the page
   /** @type {{ by?: PaintOf, lines?: Lines }} */
   let painted = {};
-  let seen = [WHOLE, WHOLE]; // shares of the axes
-  const still = document.createElement("canvas"); // all but what follows the pointer: drawn once, not at every move
+  let seen = [WHOLE, WHOLE]; // fractions of the axes
+  const still = document.createElement("canvas"); // all except the pointer marks: drawn once, not at every move
 
   const fit = () => {
     const width = Math.max(240, canvas.parentElement?.clientWidth ?? 0);
@@ -204,7 +204,7 @@ export const createGrid = (canvas, x, y) => {
     drawAxes(pen);
   };
 
-  /** The part that is seen, without what follows the pointer, for a file. @param {PaintOf} paintOf @param {Lines} lines */
+  /** Visible part without the pointer marks, for a file. @param {PaintOf} paintOf @param {Lines} lines */
   const asSvg = (paintOf, lines) => {
     const cells = Object.assign(document.createElement("canvas"), { width: FINE * inner().w, height: FINE * inner().h });
     const brush = /** @type {CanvasRenderingContext2D} */ (cells.getContext("2d"));
@@ -266,7 +266,7 @@ export const createGrid = (canvas, x, y) => {
     }
   };
 
-  /** Shares of the axes under the pointer, on the map or beside it. @param {MouseEvent} event */
+  /** Fractions of the axes at the pointer, on the map or beside it. @param {MouseEvent} event */
   const sharesAt = (event) => {
     const box = canvas.getBoundingClientRect();
     const right = (event.clientX - box.left - LEFT) / inner().w;
@@ -287,7 +287,7 @@ export const createGrid = (canvas, x, y) => {
     const places = aim ? placeOf(aim) : seen.map(([from, to]) => (from + to) / 2);
     look(...places.map((position, k) => around(position, Math.min(1, (seen[k][1] - seen[k][0]) / factor))));
   };
-  /** Move what is seen so far that a cell is in it. @param {Cell} aim */
+  /** Move the visible part to include a cell. @param {Cell} aim */
   const reveal = (aim) => {
     const places = placeOf(aim);
     if (places.every((position, k) => position >= seen[k][0] && position <= seen[k][1])) return;

@@ -1,4 +1,4 @@
-/** What a map can show: the verdict, the peak rotation, the impacts, and where two models differ. */
+/** Layers of a map: outcome, peak rotation, impacts, and differences between two models. */
 import { highest } from "/app/extremes.js";
 import { number, quantity } from "/app/format.js";
 import { modelWords } from "/app/palette.js";

@@ -1,4 +1,4 @@
-/** The studies there are: how far each is, and what can be done with it. */
+/** List of the studies with progress and actions. */
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { fixed, number } from "/app/format.js";
 import { t, userText } from "/app/words.js";
@@ -52,7 +52,7 @@ const pace = (study) => {
 /** The state of a study in words. @param {{ state: string }} study */
 export const stateWords = ({ state }) => WORDS[state] || state;
 
-/** What can be done with a study; then `after` looks again. @param {App} app @param {() => unknown} after */
+/** Actions of a study; `after` is called after each. @param {App} app @param {() => unknown} after */
 export const actsOf = (app, after) => {
   /** @param {Server.StudyFacts} study @param {string} action @param {CallOptions} options */
   const act = (study, action, options) =>

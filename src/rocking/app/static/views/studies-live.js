@@ -1,4 +1,4 @@
-/** The studies as they are now: pushed by the server, asked for while there is no connection. */
+/** Current studies: pushed by the server, polled without a connection. */
 
 import { signal } from "/parts/preact.js";
 

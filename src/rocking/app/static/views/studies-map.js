@@ -1,4 +1,4 @@
-/** An overturning map: point at a cell to see what is there, click it or walk to it to keep its history. */
+/** Overturning map: the pointer shows a cell; a click or a key keeps its history. */
 import { batch, html, useLayoutEffect, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { modelWords } from "/app/palette.js";
 import { Pictured } from "/charts/pictured.js";
@@ -118,7 +118,7 @@ export const OverturningMap = ({ app, study, result, chosen }) => {
   </div>`;
 };
 
-// What a pointer does on the map: it looks at a cell, keeps it with a click, or draws a frame to look into.
+// Pointer on the map: shows a cell, keeps it with a click, or drags a zoom rectangle.
 /** @param {{ canvas: any, painter: any, frame: Signal<any>, keep: (at: Cell) => unknown, preview: (at: Cell) => unknown, aim: Signal<Cell | null>, look: (how: () => unknown) => unknown }} given */
 const usePointer = ({ canvas, painter, frame, keep, preview, aim, look }) => {
   const drag = useRef(null);

@@ -8,7 +8,7 @@ import { t } from "/app/words.js";
 
 const SHOWN = [["median", "Median peak"], ["high", "84 % peak"], ["overturned", "Overturning fraction"]];
 
-/** Spectra, of the peaks or of how often the block overturns. @param {{ result: Server.SpectrumResult }} props */
+/** Spectra of peaks or of overturning probability. @param {{ result: Server.SpectrumResult }} props */
 export const Spectrum = ({ result }) => {
   const quantity = useSignal("median");
   const periods = /** @type {number[]} */ (result.x.values);

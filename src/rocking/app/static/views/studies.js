@@ -16,7 +16,7 @@ import { Exports } from "/views/studies-exports.js";
 export const mount = (section, app) => {
   const [every, open, visits] = [signal(false), signal(null), signal(0)];
   const live = liveStudies(app);
-  // What was launched elsewhere than in a project is everybody's.
+  // Studies launched outside a project belong to all projects.
   /** @param {Server.StudyFacts} study */
   const mine = ({ project }) => every.value || !project || project === app.project.here.value.id;
   const studies = computed(() => live.all.value.filter(mine));
@@ -24,7 +24,7 @@ export const mount = (section, app) => {
   /** @type {string | null} */
   let expected = null;
 
-  // `from`: what was pressed to see it; of what comes by itself nothing was.
+  // `from`: control that opened it; none if it opened by itself.
   /** @param {Server.StudyFacts} study @param {Element | null} [from] */
   const show = async (study, from) => {
     /** @param {object} more */
@@ -84,7 +84,7 @@ const Studies = ({ app, studies, every, open, visits, show, acts, launched }) =>
 const Outcome = ({ app, shown, from, result, refused, chosen }) => {
   const heading = useRef(null);
   const focused = document.activeElement;
-  useLayoutEffect(() => { // from what was pressed, or is gone; what is typed meanwhile goes on
+  useLayoutEffect(() => { // focus from the pressed or removed control; typing elsewhere continues
     if (focused && ((result && focused === from) || !focused.isConnected)) heading.current.focus();
   }, [shown, result]);
   const Found = SHOW[shown.kind] ?? Counts;

@@ -1,4 +1,4 @@
-/** The animation as a GIF: its frames take a while, so it says so, starts once, and can be stopped. */
+/** Animation as a GIF: shows its progress, starts once, can be cancelled. */
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { saveBlob } from "/app/api.js";
 import { Button } from "/parts/fields.js";
@@ -7,9 +7,9 @@ import { t } from "/app/words.js";
 
 const NAME = "rocking-animation.gif";
 
-/** A button, and below it how far the frames are. @param {{ app: App, children?: any, [more: string]: any }} props */
+/** Button with the number of drawn frames. @param {{ app: App, children?: any, [more: string]: any }} props */
 export const Film = ({ app, children, ...more }) => {
-  const seconds = useSignal(null); // since they were begun; null while none are drawn
+  const seconds = useSignal(null); // seconds since the start; null while no frames are drawn
   const [start, progress, abort] = [useRef(null), useRef(null), useRef(null)];
   const running = seconds.value !== null;
   const draw = async () => {
