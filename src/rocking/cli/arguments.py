@@ -28,7 +28,7 @@ Tables = dict[str, Any]
 _KNOWN = ("mass", "centre", "moment_of_inertia")
 _SIZES = ("width", "height"), ("slenderness_angle", "semi_diagonal")
 _OF_EVERY_FILE = {"format", "units", "time_step", "skip", "process"}
-NO_MOTION = "what moves the ground? Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
+NO_MOTION = "No ground motion. Give a record file, or a pulse such as sine:amplitude=3,period=0.8"
 
 
 def is_body(text: str) -> bool:
