@@ -177,7 +177,7 @@ REFUSED = {
         "a.stl --units mm --set body.base_tolerance=-1": "body.base_tolerance must be > 0 m",
         "a.stl --units mm --width 1": "give a body file or dimensions, not both",
         "a.stl --units mm --foot left": "it takes no --foot",
-        "a.stl --units mm --check-identities --output stages=s.png": "it takes no --check-identities, --output stages=FILE",
+        "a.stl --units mm --check-identities --output stages=s.png": "it takes no --check-identities, --output",
         "a.stl --units mm --restitution best": "unknown restitution model in space 'best'",
         "a.stl --units mm --set settings.gravity=0": "settings.gravity must be a number > 0",
         "a.stl --units mm --output a.bmp": ".png, .svg or .pdf",
