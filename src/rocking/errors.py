@@ -90,7 +90,7 @@ class RockingError(Exception):
     @property
     def parameter(self) -> str:
         """Path of the refused parameter in the input, such as body.block.width; empty if unknown."""
-        tables = [place.name for place in self.places if place.kind in {"table", "key"}]
+        tables = [location.name for location in self.places if location.kind in {"table", "key"}]
         return ".".join([*tables, *([self._name] if self._name else [])])
 
     @property
@@ -125,8 +125,8 @@ class RockingError(Exception):
         sentence = self.message
         if isinstance(self.value, float) and self._name:  # for the decimal mark of the reader
             sentence = Message(sentence.text, {**sentence.facts, "value": Amount(self.value)} | self.facts)
-        for place in reversed(places):
-            sentence = Message("{place}: {fault}", {"place": str(place), "fault": sentence})
+        for location in reversed(places):
+            sentence = Message("{place}: {fault}", {"place": str(location), "fault": sentence})
         if self.hint:
             sentence = Message("{fault}; {hint}", {"fault": sentence, "hint": as_message(self.hint)})
         return Message("{fault} (and {count} more)", {"fault": sentence, "count": self.more}) if self.more else sentence
@@ -148,7 +148,7 @@ class RockingError(Exception):
             "unit": self.unit,
             **self.message.data(),
             "hint": as_message(self.hint).data(),
-            "places": [asdict(place) for place in self.places],
+            "places": [asdict(location) for location in self.places],
             "more": self.more,
         }
 
@@ -236,9 +236,10 @@ class RockingError(Exception):
             The error itself.
         """
         kept = (
-            replace(place, name="") if (place.name, place.kind) == (name, "file") else place for place in self.places
+            replace(location, name="") if (location.name, location.kind) == (name, "file") else location
+            for location in self.places
         )
-        self.places = tuple(place for place in kept if str(place))
+        self.places = tuple(location for location in kept if str(location))
         return self
 
     def without_folder(self, folder: str | PathLike[str], name: str = "") -> Self:
@@ -263,7 +264,7 @@ class RockingError(Exception):
 
         self.text, self.hint, self.value = bare(self.text), bare(self.hint), bare(self.value)
         self.facts = {key: bare(fact) for key, fact in self.facts.items()}
-        self.places = tuple(replace(place, name=bare(place.name)) for place in self.places)
+        self.places = tuple(replace(location, name=bare(location.name)) for location in self.places)
         return self
 
 

@@ -129,12 +129,12 @@ def contact_words(lost: Any) -> str:
     return contact_sentence(int((results == 1.0).sum()), results.size)
 
 
-def contact_sentence(lost: int, known: int) -> str:
+def contact_sentence(lost: int, count: int) -> str:
     """Return the sentence from two counts: histories with a tensile contact force, and with a result."""
     if not lost:
         return ""
-    fraction = percent(lost / known)
+    fraction = percent(lost / count)
     return Message(
         "the contact force becomes tensile in {lost} of {known} histories ({share}); their results assume contact",
-        {"lost": lost, "known": known, "share": fraction},
+        {"lost": lost, "known": count, "share": fraction},
     )

@@ -181,9 +181,11 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     # relative to the moving equilibrium of a line a + b t, the motion is a free vibration
     w2, lag = 1.0 / (w * w), 2.0 / w**3
     a, slope = acceleration[:-1], np.diff(acceleration) / time_step
-    rest, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope
+    equilibrium, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope
     (m00, m01), (m10, m11) = move.tolist()
-    z, v = recurrence(move, (0.0, 0.0), end - (m00 * rest + m01 * speed), speed - (m10 * rest + m11 * speed))
+    z, v = recurrence(
+        move, (0.0, 0.0), end - (m00 * equilibrium + m01 * speed), speed - (m10 * equilibrium + m11 * speed)
+    )
     return acceleration - 2.0 * w * v - w * w * z  # Eq. 168
 
 

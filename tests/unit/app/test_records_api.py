@@ -50,7 +50,7 @@ def test_what_a_header_and_its_data_contradict_is_told(client):
     assert sent(client, content, "a.dat").json()["doubts"] == ""
     late = sent(client, re.sub(rb"AT +\S+ SEC", b"AT  99.00 SEC", content), "a.dat").json()
     assert late["needs"] == []
-    assert late["doubts"].startswith("a.dat: the header states the peak at 99 s, the data have it at")
+    assert late["doubts"].startswith("a.dat: the header states the peak at 99 s, but the data have it at")
 
 
 def test_several_components_are_asked_for(client):

@@ -186,9 +186,9 @@ def is_words(text: str) -> bool:
     >>> [is_words(text) for text in ("Station A", "1940 El Centro NS", "0.01 nan", "0.5 x3 1.0", "acc [g]")]
     [True, True, False, False, True]
     """
-    words = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
+    tokens = [word for word in _WORD.findall(text[:400]) if not _NO_NAME.fullmatch(word)]
     begins_with_number = re.match(r"[-+.,\d]", text.strip()) is not None
-    are_words = len(words) > begins_with_number and max(map(len, words)) > 2
+    are_words = len(tokens) > begins_with_number and max(map(len, tokens)) > 2
     states_property = _PROPERTY.match(text.strip()) is not None
     return (are_words or states_property) and len(text) <= 100 * MOST_NAMED
 
@@ -295,8 +295,8 @@ class ColumnName:
     @property
     def is_time(self) -> bool:
         """True if the name means time; T may be a period, or transversal."""
-        words = set(re.split(r"[\W\d_]+", self.name.casefold()))
-        is_named_time = bool(words & _TIMES) or (self.name == "t" and (self.index == 0 or self.suffix in _SECONDS))
+        tokens = set(re.split(r"[\W\d_]+", self.name.casefold()))
+        is_named_time = bool(tokens & _TIMES) or (self.name == "t" and (self.index == 0 or self.suffix in _SECONDS))
         return is_named_time and self.unit is None
 
     @property

@@ -131,7 +131,7 @@ class Columns(RecordFormat):
             Component(_name(column, about), values[:, column.index].copy(), column.unit or "", step, None, about)
             for column in accelerations
         )
-        header = [*(words for _, words in (*comments, *text.preamble)), *filter(None, [text.heading])]
+        header = [*(text_line for _, text_line in (*comments, *text.preamble)), *filter(None, [text.heading])]
         return Record(self.name, components, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
@@ -164,9 +164,9 @@ def _name(column: ColumnName, about: dict[str, str]) -> str:
 
 def _check_words(source: Source, text: ColumnText) -> None:
     """Refuse header text with an unknown form of the sampling."""
-    for line, words in text.preamble:
-        if not is_understood(words):
-            raise source.error(line, "{entry!r} is not understood", entry=words.strip()[:60], hint=SKIP)
+    for line, text_line in text.preamble:
+        if not is_understood(text_line):
+            raise source.error(line, "{entry!r} is not understood", entry=text_line.strip()[:60], hint=SKIP)
 
 
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
@@ -184,7 +184,9 @@ def _first_rows(source: Source) -> list[tuple[int, list[str]]] | None:
     if not source.is_text or not all(map(is_understood, comments)):
         return None
     text = ColumnText.of(source, _LOOK)
-    if text.preamble and (len(text.first) < _LOOK or not all(is_understood(words) for _, words in text.preamble)):
+    if text.preamble and (
+        len(text.first) < _LOOK or not all(is_understood(text_line) for _, text_line in text.preamble)
+    ):
         return None
     # with names, the reader reports damage further down, with its line
     rows = text.first if text.names is None else text.first[:1]

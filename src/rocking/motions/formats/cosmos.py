@@ -113,8 +113,8 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
     if (int(wholes[_QUANTITY]), int(wholes[_UNIT])) != (1, code):
         raise source.error(line, "the integer header must contain acceleration (1) and the unit of this line")
     unit = headers.acceleration_unit(source, _UNITS[code][0], units)
-    known = None if figures[_STEP] == _UNKNOWN else float(figures[_STEP] / 1000.0)
-    step = headers.step_between_samples(source, known, time_step)
+    stated_step = None if figures[_STEP] == _UNKNOWN else float(figures[_STEP] / 1000.0)
+    step = headers.step_between_samples(source, stated_step, time_step)
     form = fortran_form(source, line, data[6])
     values, after = fixed(source, line + 1, whole(source, line, data[1], "count", 2), *form)
     largest = word(source, line + 1, int(np.abs(values).argmax()), *form)

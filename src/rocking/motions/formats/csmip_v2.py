@@ -106,10 +106,10 @@ def _checked_block(
 
 
 def _block(source: Source, line: int) -> tuple[str, FloatArray, float, tuple[int, int], int]:
-    found = _BLOCK.fullmatch(source.lines[line])
-    if found is None:
+    match = _BLOCK.fullmatch(source.lines[line])
+    if match is None:
         raise source.error(line, "POINTS OF ... DATA EQUALLY SPACED AT ... SEC expected")
-    count, kind, tail = whole(source, line, found[1], "number of points", 2), found[2].upper(), found[4].upper()
+    count, kind, tail = whole(source, line, match[1], "number of points", 2), match[2].upper(), match[4].upper()
     powers = {"ACCEL": ("CM/SEC/SEC", "CM/SEC2"), "VELOC": ("CM/SEC",), "DISPL": ("CM",)}[kind]
     stated = re.search(r"(?:UNITS?:|\bIN)\s*(CM[^\s).,]*)", tail)
     if stated is None or stated[1] not in powers:
@@ -122,7 +122,7 @@ def _block(source: Source, line: int) -> tuple[str, FloatArray, float, tuple[int
         )
     form = re.search(r"\(\s*(\d+[FE]\d+\.\d+)\s*\)", tail)
     per_line, width = fortran_form(source, line, form[1]) if form else (8, 10)
-    step = number(source, line, found[3], "time step")
+    step = number(source, line, match[3], "time step")
     values, after = fixed(source, line + 1, count, per_line, width)
     return kind, values, step, (per_line, width), after
 

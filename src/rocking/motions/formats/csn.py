@@ -41,10 +41,10 @@ class Csn(RecordFormat):
         if any(re.search(r"\bmuestras\b", text) and "Tasa" not in text for text in source.lines[:first]):
             stated = header_value(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
             headers.check_count(source, int(stated), count)
-        words = header_text(source, first, r"# *Esta\S*").split()
-        name = words[-1] if len(words) > 1 else "acceleration"
+        fields = header_text(source, first, r"# *Esta\S*").split()
+        name = fields[-1] if len(fields) > 1 else "acceleration"
         metadata = metadata_of(
-            station=words[0].strip(",") if words else "",
+            station=fields[0].strip(",") if fields else "",
             starttime=header_text(source, first, r"# *Tiempo[^:]*:").rstrip("Z"),
         )
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata)

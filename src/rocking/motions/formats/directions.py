@@ -27,7 +27,7 @@ _WORDS = {
     180.0: "S SOUTH SUR SÜD SUD GUNEY GÜNEY",
     270.0: "W WEST OVEST OUEST OESTE BATI",
 }
-_SIDES = {word: azimuth for azimuth, words in _WORDS.items() for word in words.split()}
+_SIDES = {name: azimuth for azimuth, names in _WORDS.items() for name in names.split()}
 _WHOLE_WORDS = re.compile(r"[^\W_]+")
 _BESIDE = re.compile(
     r"A|ACC\w*|COMP\w*|CH\w*|DIR\w*|GROUND|MOTION|SENSOR|BESCHLEUNIGUNG|IVME|İVME|\d+|[GXY]|M|S|S2|CM|MS2",
@@ -46,12 +46,12 @@ def orientation(name: str) -> Direction:
     ['up', 90.0, 0.0, 340.0, 90.0, None, 'up', 'unclear']
     """
     bare = " ".join(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name[:200]).split()) or " ".join(name[:200].split())
-    words = _WHOLE_WORDS.findall(bare)
-    if (direction := _of_word(bare)) is not None or not words:
+    tokens = _WHOLE_WORDS.findall(bare)
+    if (direction := _of_word(bare)) is not None or not tokens:
         return direction
-    if len(words) == 1:
-        return _of_word(re.sub(r"^(?:acc\w*?|a)(?=[xyz]$)", "", words[0], flags=re.IGNORECASE))
-    direction = _of_words(words)
+    if len(tokens) == 1:
+        return _of_word(re.sub(r"^(?:acc\w*?|a)(?=[xyz]$)", "", tokens[0], flags=re.IGNORECASE))
+    direction = _of_words(tokens)
     return direction if direction is not None else _of_word(bare.split()[0])
 
 
@@ -76,9 +76,9 @@ def _of_compass(north: str, degrees: str, east: str) -> Direction:
     return (turned if north == "N" else 180.0 + turned) % 360.0 if float(degrees) <= 90.0 else UNCLEAR
 
 
-def _of_words(words: Sequence[str]) -> Direction:
+def _of_words(tokens: Sequence[str]) -> Direction:
     """Return the direction of several words; unclear if they contradict each other."""
-    pairs = [(word, _of_word(word)) for word in words if not word.isdigit()]
+    pairs = [(word, _of_word(word)) for word in tokens if not word.isdigit()]
     stated = [(word, side) for word, side in pairs if side is not None and (len(word) > 1 or word in "zZnNeE")]
     if all(_BESIDE.fullmatch(word) for word, side in pairs if side is None):
         stated = [(word, side) for word, side in pairs if side is not None and not _BESIDE.fullmatch(word)]

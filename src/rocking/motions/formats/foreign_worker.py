@@ -26,9 +26,9 @@ FORKS = sys.platform == "linux"
 def send(channel: BinaryIO, parts: Sequence[bytes]) -> None:
     """Write parts of a message."""
     channel.write(struct.pack("<I", len(parts)))
-    for part in parts:
-        channel.write(struct.pack("<Q", len(part)))
-        channel.write(part)
+    for data in parts:
+        channel.write(struct.pack("<Q", len(data)))
+        channel.write(data)
     channel.flush()
 
 

@@ -45,9 +45,9 @@ _OTHER = re.compile(
 _ACCELERATION = re.compile(r"(?<![^\W_])acc", re.IGNORECASE)
 
 
-def refuse_other(source: Source, words: str = "") -> None:
+def refuse_other(source: Source, header_text: str = "") -> None:
     """Refuse a file with a name or header of velocities or displacements."""
-    for text, origin in ((source.name, "its name"), (words, "its header")):
+    for text, origin in ((source.name, "its name"), (header_text, "its header")):
         match = _OTHER.search(text[:LONGEST_LINE])
         if match and not _ACCELERATION.search(text[:LONGEST_LINE]):
             kind = "velocity" if match[1] else "displacement"
@@ -107,10 +107,10 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
     return rows
 
 
-def step_of_times(source: Source, times: FloatArray, words: list[str], requested: float | None) -> float:
+def step_of_times(source: Source, times: FloatArray, texts: list[str], requested: float | None) -> float:
     """Return the step of a column of times [s]; the requested step if equal within the digits of the column."""
-    decimals = [len(word.partition(".")[2]) for word in words]
-    powers = [_last_place(word) for word in words if _has_power(word)] if _has_power("".join(words)) else []
+    decimals = [len(word.partition(".")[2]) for word in texts]
+    powers = [_last_place(word) for word in texts if _has_power(word)] if _has_power("".join(texts)) else []
     # plain numbers may miss final zeros; large numbers with an exponent have fewer decimals
     decimal_places = min(powers) if powers else max(decimals)
     digit = float(10.0 ** -min(15, max(-3, decimal_places)))

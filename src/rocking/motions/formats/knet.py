@@ -136,16 +136,16 @@ def _counts(source: Source) -> FloatArray:
     rows = [(line, source.lines[line].split()) for line in range(len(_KEYS), len(source.lines))]
     while rows and not rows[-1][1]:
         rows.pop()
-    for (line, words), _ in pairwise(rows):
-        if len(words) != _PER_LINE:
-            raise source.error(line, "{expected} counts expected, found {count}", expected=_PER_LINE, count=len(words))
+    for (line, fields), _ in pairwise(rows):
+        if len(fields) != _PER_LINE:
+            raise source.error(line, "{expected} counts expected, found {count}", expected=_PER_LINE, count=len(fields))
     if rows and len(rows[-1][1]) > _PER_LINE:
         raise source.error(
             rows[-1][0], "at most {most} counts expected, found {count}", most=_PER_LINE, count=len(rows[-1][1])
         )
     counts = [
         numbers.whole(source, line, word, "count of the recorder", minimum=-_LARGEST_COUNT)
-        for line, words in rows
-        for word in words
+        for line, fields in rows
+        for word in fields
     ]
     return np.array(counts, dtype=np.float64)

@@ -40,24 +40,24 @@ def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
         read.extend(rows)
     except RecordError as error:
         refusal = error
-    values = at_once(list(chain.from_iterable(words for _, words in read))) if refusal is None else None
+    values = at_once(list(chain.from_iterable(texts for _, texts in read))) if refusal is None else None
     if values is None:
-        values = np.array([number(source, line, word) for line, words in read for word in words], dtype=np.float64)
+        values = np.array([number(source, line, word) for line, texts in read for word in texts], dtype=np.float64)
     if refusal is not None:
         raise refusal
     return values
 
 
-def at_once(words: Sequence[str]) -> FloatArray | None:
+def at_once(texts: Sequence[str]) -> FloatArray | None:
     """Return words as numbers; None if they are not all plain decimal numbers.
 
     >>> at_once(["1.5", "-2e-3"]), at_once(["1.5", "nan"]), at_once(["1_000", "2"])
     (array([ 1.5  , -0.002]), None, None)
     """
-    if not _is_plain("\n".join(words)):
+    if not _is_plain("\n".join(texts)):
         return None
     try:
-        values = np.array(list(map(float, words)), dtype=np.float64)
+        values = np.array(list(map(float, texts)), dtype=np.float64)
     except ValueError:
         return None
     return values if np.isfinite(values).all() else None
@@ -117,10 +117,10 @@ def free(source: Source, first: int, last: int, columns: int | None = None) -> F
 
 def _free_rows(source: Source, first: int, last: int, columns: int | None) -> Iterator[Row]:
     for line in range(first, last):
-        words = source.lines[line].split()
-        if columns is not None and words and len(words) != columns:
-            raise source.error(line, "{expected} numbers expected, found {count}", expected=columns, count=len(words))
-        yield line, words
+        texts = source.lines[line].split()
+        if columns is not None and texts and len(texts) != columns:
+            raise source.error(line, "{expected} numbers expected, found {count}", expected=columns, count=len(texts))
+        yield line, texts
 
 
 def rows(source: Source, first: int, last: int) -> FloatArray:
@@ -128,16 +128,16 @@ def rows(source: Source, first: int, last: int) -> FloatArray:
     columns, short = 0, False
     last = min(last, source.end) if last == len(source.lines) else last
     for line in range(first, last):
-        words = len(source.lines[line].split())
-        columns = columns or words
-        if words and (short or words > columns):
+        count = len(source.lines[line].split())
+        columns = columns or count
+        if count and (short or count > columns):
             raise source.error(
                 line,
                 "{columns} numbers per line expected, except on the last line",
                 columns=columns,
                 hint="check the line",
             )
-        short = short or 0 < words < columns
+        short = short or 0 < count < columns
     if not columns:
         raise source.error(None, "the file has no sample after the header")
     return free(source, first, last)
@@ -188,8 +188,8 @@ def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
 
 def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -> list[str]:
     """Return lines of numbers, for writers."""
-    words = [form.format(value) for value in values]
-    return ["".join(words[start : start + per_line]) for start in range(0, len(words), per_line)]
+    texts = [form.format(value) for value in values]
+    return ["".join(texts[start : start + per_line]) for start in range(0, len(texts), per_line)]
 
 
 def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, decimals: int) -> list[str]:

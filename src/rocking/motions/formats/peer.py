@@ -100,10 +100,10 @@ def _size_line(source: Source) -> int | None:
 def _size(source: Source, line: int) -> tuple[int, float]:
     text = source.lines[line]
     old = _OLD.fullmatch(text)
-    words = {"NPTS": old[1], "DT": old[2]} if old else _keyed(text)
-    if words is None:
+    values = {"NPTS": old[1], "DT": old[2]} if old else _keyed(text)
+    if values is None:
         raise source.error(line, "NPTS= and DT= expected once each, found {entry!r}", entry=text.strip()[:60])
-    return whole(source, line, words["NPTS"], "number of samples", 2), number(source, line, words["DT"], "time step")
+    return whole(source, line, values["NPTS"], "number of samples", 2), number(source, line, values["DT"], "time step")
 
 
 def _keyed(text: str) -> dict[str, str] | None:

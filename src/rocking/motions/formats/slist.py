@@ -80,8 +80,8 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
         values = numbers.rows(source, first + 1, last)
     else:
         rows = [(line, source.lines[line].split()) for line in range(first + 1, last) if source.lines[line].strip()]
-        values = np.array([_value(source, line, words) for line, words in rows])
-        times = [np.datetime64(words[0].rstrip("Z"), "ns") for _, words in rows]
+        values = np.array([_value(source, line, fields) for line, fields in rows])
+        times = [np.datetime64(fields[0].rstrip("Z"), "ns") for _, fields in rows]
         late = np.array([float((time - times[0]) / np.timedelta64(1, "ns")) * 1e-9 for time in times])
         if np.abs(late - step * np.arange(late.size)).max(initial=0.0) > 0.01 * step + 1e-6:
             raise source.error(first, "the times are not evenly spaced at {step:g} s; a line may be missing", step=step)
@@ -94,7 +94,7 @@ def _channel(source: Source, first: int, last: int, units: str | None, time_step
     )
 
 
-def _value(source: Source, line: int, words: list[str]) -> float:
-    if len(words) != 2 or not re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z?", words[0]):
-        raise source.error(line, "time and sample expected, found {entry!r}", entry=" ".join(words)[:60])
-    return numbers.number(source, line, words[1])
+def _value(source: Source, line: int, fields: list[str]) -> float:
+    if len(fields) != 2 or not re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z?", fields[0]):
+        raise source.error(line, "time and sample expected, found {entry!r}", entry=" ".join(fields)[:60])
+    return numbers.number(source, line, fields[1])
