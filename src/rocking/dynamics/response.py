@@ -108,7 +108,7 @@ class Response(ResponseBase):
 
     @property
     def rotation(self) -> FloatArray:
-        """Rotation theta at the samples, positive clockwise, about the right foot [rad]."""
+        """Rotation theta at the samples, positive (clockwise) about the right foot [rad]."""
         return self.trajectory.rotation[: self._finite]
 
     @property
