@@ -18,9 +18,9 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
             arcs[k + 1][m] = k > 0 ? term * Pack(-1.0 / (k + 1)) : Pack(0.0) - term;
         }
     SimpleRoots<N + 1, M> landings;
-    const Bits found = landings.solve(arcs) & ((Bits(1) << count) - 1);
+    const Bits landed = landings.solve(arcs) & ((Bits(1) << count) - 1);
     Bits rising = 0;
-    if (found) {
+    if (landed) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
@@ -33,17 +33,17 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     }
     // one thing after another for all of them, and without branches that depend on the lane
     int settling[M * P], settlings = 0;
-    for (Bits left = found & rising; left; left &= left - 1) {
+    for (Bits left = landed & rising; left; left &= left - 1) {
         const int s = lowest(left);
         keep_peak(who[s], {&queued[0][from + s], W + M * P}, zero[s], 0.0, true);
     }
-    for (Bits left = found; left; left &= left - 1) {
+    for (Bits left = landed; left; left &= left - 1) {
         const int s = lowest(left);
         settling[settlings] = who[s];
         settlings += bounce(who[s], zero[s], speed[s]);
     }
     for (int k = 0; k < settlings; ++k) settle(settling[k]);
-    for (Bits left = ~found & ((Bits(1) << count) - 1); left; left &= left - 1) {
+    for (Bits left = ~landed & ((Bits(1) << count) - 1); left; left &= left - 1) {
         const int s = lowest(left);
         resolve_event(who[s], {&queued[0][from + s], W + M * P}, true);
     }
@@ -51,10 +51,10 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
 
 // Height above the ground over the step.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::arc(int i, Step made, double* c) const {
+void Kernel<G, U, N, D, Z, L>::arc(int i, Step step, double* c) const {
     c[0] = alpha[i] - u[i];
     ROCKING_UNROLL
-    for (int k = 0; k <= N; ++k) c[k + 1] = -made[k] * (1.0 / (k + 1));
+    for (int k = 0; k <= N; ++k) c[k + 1] = -step[k] * (1.0 / (k + 1));
 }
 
 ROCKING_KERNEL
@@ -71,24 +71,24 @@ void Kernel<G, U, N, D, Z, L>::note(int i, EventKind kind, double time, double b
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::resolve_event(int i, Step made, bool near) {
+void Kernel<G, U, N, D, Z, L>::resolve_event(int i, Step step, bool near) {
     double sum = 0.0;
-    for (int k = 0; k <= N; ++k) sum += std::fabs(made[k]);
+    for (int k = 0; k <= N; ++k) sum += std::fabs(step[k]);
     if (!(sum < 1e100)) return finish(i, kFailed, kNotFinite);
     double c[N + 2], zero = 2.0;
     if (near) {
-        arc(i, made, c);
+        arc(i, step, c);
         zero = first_contact(c);
     }
     if (!(zero <= 1.0)) {
         // one term above the sum of the others, or of those that follow it where it starts from rest: no turn
-        const bool comes_down = v_end[i] >= 0.0, none = 2.0 * std::fabs(made[0] != 0.0 ? made[0] : made[1]) > sum;
-        if (!none || (made[0] < 0.0 && comes_down)) keep_peak(i, made, 1.0, alpha[i] - u_end[i], comes_down);
-        return advance(i, made);
+        const bool comes_down = v_end[i] >= 0.0, none = 2.0 * std::fabs(step[0] != 0.0 ? step[0] : step[1]) > sum;
+        if (!none || (step[0] < 0.0 && comes_down)) keep_peak(i, step, 1.0, alpha[i] - u_end[i], comes_down);
+        return advance(i, step);
     }
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
-    keep_peak(i, made, zero, 0.0, true);
+    keep_peak(i, step, zero, 0.0, true);
     if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / length(i)))) settle(i);
 }
 
@@ -123,10 +123,10 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     stand(i);
     u[i] = s.alpha;
     v[i] = -after;
-    const bool whole = to >= kWhole;
-    idx[i] += whole ? stride : 0;
-    tau[i] = whole ? 0.0 : to;
-    if (trace && whole) sample(i);
+    const bool ends_stretch = to >= kWhole;
+    idx[i] += ends_stretch ? stride : 0;
+    tau[i] = ends_stretch ? 0.0 : to;
+    if (trace && ends_stretch) sample(i);
     return (lane.impacts >= set.most_impacts) | (idx[i] >= last[i]) | (after <= s.calm);
 }
 
@@ -206,14 +206,14 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
+void Kernel<G, U, N, D, Z, L>::advance(int i, Step step) {
     Lane& lane = lanes[i];
     const double u1 = u_end[i], v1 = v_end[i];
     if (u1 < 0.0) {
         double c[N + 2], slopes[N + 1], passing = u[i] == 0.0 ? 0.0 : -1.0;
         c[0] = u[i];
         for (int k = 0; k <= N; ++k) {
-            slopes[k] = made[k];
+            slopes[k] = step[k];
             c[k + 1] = slopes[k] / (k + 1);
         }
         each_fall<N + 1>(c, [&](double at) { passing = at; });

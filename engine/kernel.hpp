@@ -153,10 +153,10 @@ class Kernel {
     }
     ROCKING_APART void sample(int i);
     ROCKING_APART void note(int i, EventKind kind, double time, double before, double after, double coefficient);
-    void arc(int i, Step made, double* c) const;
-    ROCKING_APART void resolve_event(int i, Step made, bool near);
+    void arc(int i, Step step, double* c) const;
+    ROCKING_APART void resolve_event(int i, Step step, bool near);
     double first_contact(double* c) const;
-    void keep_peak(int i, Step made, double upto, double height, bool comes_down);
+    void keep_peak(int i, Step step, double upto, double height, bool comes_down);
     ROCKING_APART void find_peaks();
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
@@ -174,7 +174,7 @@ class Kernel {
     ROCKING_APART double coefficient(int i, double speed) const;
     void stand(int i);
     void move(int i, double to);
-    void advance(int i, Step made);
+    void advance(int i, Step step);
     bool over(int i);
     void overturned(int i);
     bool beyond_return(int i) const;
@@ -217,7 +217,7 @@ class Kernel {
     bool prepare(std::int64_t row);
     void write_still(std::int64_t row);
     void look_for_one();
-    const Shake* shake_of(std::int64_t place) const;
+    const Shake* shake_of(std::int64_t position) const;
     void start(int i);
 };
 

@@ -27,20 +27,20 @@ template <class T>
 using Out = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 static std::vector<std::string> instruction_sets() {
-    std::vector<std::string> found;
+    std::vector<std::string> names;
 #if defined(ROCKING_X86)
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        found.push_back("avx512");
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found.push_back("avx2");
+        names.push_back("avx512");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) names.push_back("avx2");
 #endif
-    found.push_back("plain");
-    return found;
+    names.push_back("plain");
+    return names;
 }
 
 static Run kernel(const std::string& isa, bool single, const Choice& choice) {
-    const auto known = instruction_sets();
-    if (std::find(known.begin(), known.end(), isa) == known.end())
+    const auto supported = instruction_sets();
+    if (std::find(supported.begin(), supported.end(), isa) == supported.end())
         throw std::invalid_argument("this processor has no " + isa);
     Run run = nullptr;
 #if defined(ROCKING_X86)
@@ -165,10 +165,10 @@ static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     return rows;
 }
 
-static Settings settings_of(double gravity, double longest_step, double rest, std::int64_t most_impacts, bool linear, int order, bool ground) {
-    if (!(gravity > 0.0) || !(longest_step > 0.0) || !(rest >= 0.0) || most_impacts < 1)
+static Settings settings_of(double gravity, double longest_step, double rest_speed, std::int64_t most_impacts, bool linear, int order, bool ground) {
+    if (!(gravity > 0.0) || !(longest_step > 0.0) || !(rest_speed >= 0.0) || most_impacts < 1)
         throw std::invalid_argument("settings must be positive");
-    return {gravity, longest_step, rest, most_impacts, linear, order, ground};
+    return {gravity, longest_step, rest_speed, most_impacts, linear, order, ground};
 }
 
 // Rows for one kernel, in the order in which threads take them.
@@ -215,11 +215,11 @@ static void share_out(std::deque<Share>& shares, const Motions& m, const Law& la
 }
 
 static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
-                          std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
+                          std::uint64_t seed, double gravity, double longest_step, double rest_speed, std::int64_t most_impacts,
                           bool linear, int order, int threads, std::int64_t chunk, const std::string& isa) {
     const Rows rows = rows_of(in, out);
     const Law law = law_of(kind, at, value, seed);
-    const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, order, false);
+    const Settings set = settings_of(gravity, longest_step, rest_speed, most_impacts, linear, order, false);
     const Motions& m = library.motions;
     if (order != 8 && m.vertical_part) throw std::invalid_argument("no kernel for this order, degree and model");
     const Run run = kernel(isa, false, {order, m.degree, m.vertical_part, linear});
@@ -248,11 +248,11 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
 }
 
 static nb::list run_single(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
-                           std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
+                           std::uint64_t seed, double gravity, double longest_step, double rest_speed, std::int64_t most_impacts,
                            bool linear, bool to_the_ground, Out<double> rotation, Out<double> velocity, const std::string& isa) {
     const Rows rows = rows_of(in, out);
     const Law law = law_of(kind, at, value, seed);
-    const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, 8, to_the_ground);
+    const Settings set = settings_of(gravity, longest_step, rest_speed, most_impacts, linear, 8, to_the_ground);
     const Motions& m = library.motions;
     if (rows.count != 1 || rows.motion[0] < 0 || rows.motion[0] >= static_cast<std::int64_t>(m.shakes.size()))
         throw std::invalid_argument("one row of a known motion expected");

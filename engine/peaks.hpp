@@ -8,11 +8,11 @@ namespace ROCKING_ISA {
 // Stores a step, up to a position in it at which the body is at `height` above the ground. A return to the ground there,
 // with the initial direction, implies a turning point.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step made, double upto, double height, bool comes_down) {
+void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step step, double upto, double height, bool comes_down) {
     const int s = peaks_waiting++;
     ROCKING_UNROLL
-    for (int k = 0; k <= N; ++k) waiting[k][s] = made[k];
-    const bool turns = made[0] < 0.0 && comes_down;
+    for (int k = 0; k <= N; ++k) waiting[k][s] = step[k];
+    const bool turns = step[0] < 0.0 && comes_down;
     bases[s] = alpha[i] - u[i];
     peaks[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
     // Never by more, even if the highest point is known: the next action of a lane must not depend on the time of the
@@ -30,8 +30,8 @@ void Kernel<G, U, N, D, Z, L>::find_peaks() {
     for (int k = 0; k <= N; ++k)
         for (int m = 0; m < M; ++m) rise[k][m] = Pack(0.0) - Pack::load(&waiting[k][m * P]);
     SimpleRoots<N, M> ends;
-    const Bits found = ends.solve(rise);
-    for (int m = 0; found && m < M; ++m) {
+    const Bits ended = ends.solve(rise);
+    for (int m = 0; ended && m < M; ++m) {
         Pack y = rise[N][m] * Pack(1.0 / (N + 1));
         ROCKING_UNROLL
         for (int k = N - 1; k >= 0; --k) y = fma(y, ends.zero[m], rise[k][m] * Pack(1.0 / (k + 1)));
@@ -41,7 +41,7 @@ void Kernel<G, U, N, D, Z, L>::find_peaks() {
     for (int s = 0; s < peaks_waiting; ++s) {
         const Top& top = peaks[s];
         if (lanes[top.lane].row != top.row) continue;  // it has ended since
-        if (found >> s & 1) {
+        if (ended >> s & 1) {
             raise_peak(top, at[s], height[s]);
         } else {
             double c[N + 2], slopes[N + 1];

@@ -27,10 +27,10 @@ inline void Motions::find_ranges() {
     const int hop = stride();
     for (Shake& shake : shakes) {
         shake.block = static_cast<std::int64_t>(horizontal.within.size());
-        const std::int64_t whole = shake.segments + shake.still;
-        for (std::int64_t from = 0; from < whole; from += kBlock) {
+        const std::int64_t total = shake.segments + shake.still;
+        for (std::int64_t from = 0; from < total; from += kBlock) {
             Range across{1e300, -1e300}, up = across;
-            const std::int64_t stop = std::min(whole, from + kBlock) + (degree == 1);
+            const std::int64_t stop = std::min(total, from + kBlock) + (degree == 1);
             for (const double* a = data + shake.first + from * hop; a < data + shake.first + stop * hop; a += hop) {
                 widen(across, a, degree);
                 if (vertical_part) widen(up, a + 1, 1);

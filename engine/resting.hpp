@@ -123,9 +123,9 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     if (!(after <= set.rest * unit)) return false;
     holding(i, -lane.side, at, d);
     const double across = value_of<D>(d, tau[i]), r = largest(i, lane.side < 0), q = largest(i, lane.side > 0), lost = 1.0 - r * q;
-    const double one = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
+    const double p2 = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
     // the flights under the moments of now, as a guess of the time they take
-    const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;  // Eq. 37
+    const double flights = 2.0 * after * (other * across + q * p2 * held), rate = p2 * held * (other * across) * lost;  // Eq. 37
     if (!(across > 0.0 && flights < kLongest * rate)) return false;
     const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
     const std::int64_t rest_of_it = (last[i] - idx[i]) / stride;
@@ -144,9 +144,9 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double low = w.low[k], low_ = w.low[1 - k], x = 0.5 * (w.variation + kHeights);
     if (!(x <= 1.0)) return false;
     const double gain = 1.0 + x + x * x;  // more than exp(x)
-    const double heights = w.steepness * (after * after) * (gain * gain) / std::min(one * low * low, other * low_ * low_);  // Eq. 40
+    const double heights = w.steepness * (after * after) * (gain * gain) / std::min(p2 * low * low, other * low_ * low_);  // Eq. 40
     if (!(2.2 * heights * (1.0 + q * q) <= kHeights * (1.0 - r * r * q * q) && heights <= 0.3)) return false;
-    const double all = 2.0 * after * gain * (1.0 / (one * low) + q / (other * low_)) / (lost * (1.0 - heights));  // Eq. 16
+    const double all = 2.0 * after * gain * (1.0 / (p2 * low) + q / (other * low_)) / (lost * (1.0 - heights));  // Eq. 16
     return all <= end;
 }
 

@@ -161,15 +161,15 @@ inline void each_fall(const double* c, Report report) {
 // First zero in (0, 1] of a polynomial that starts above zero, or 2 if there is none.
 template <int degree>
 inline double first_zero(const double* c) {
-    double rest = 0.0, bend = 0.0, curve = 0.0;
+    double residual = 0.0, bend = 0.0, curve = 0.0;
     ROCKING_UNROLL
     for (int k = 1; k <= degree; ++k) {
         const double size = std::fabs(c[k]);
-        rest += size;
+        residual += size;
         if (k > 1) bend = fma(static_cast<double>(k), size, bend);
         if (k > 1) curve = fma(0.5 * k * (k - 1), size, curve);
     }
-    if (c[0] > rest) return 2.0;
+    if (c[0] > residual) return 2.0;
     double d[degree];
     slopes_of<degree>(c, d);
     if (-c[1] > bend) {  // falling all the way: at most one zero, and a parabola is a good guess

@@ -103,9 +103,9 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
 
 // The motion of the row at a position of the queue, if available.
 ROCKING_KERNEL
-const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t place) const {
-    if (place >= end) return nullptr;
-    const std::int64_t k = rows.motion[listed(place)];
+const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t position) const {
+    if (position >= end) return nullptr;
+    const std::int64_t k = rows.motion[listed(position)];
     return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size()) ? &motions.shakes[k] : nullptr;
 }
 

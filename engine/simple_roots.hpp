@@ -22,10 +22,10 @@ class SimpleRoots {
     // Returns which of them were plain.
     std::uint64_t solve(const Pack (*terms)[M]) {
         take(terms);
-        std::uint64_t found = 0;
-        ROCKING_BOTH found |= static_cast<std::uint64_t>(plain[m].bits()) << (m * P);
-        if (found) iterate();
-        return found;
+        std::uint64_t mask = 0;
+        ROCKING_BOTH mask |= static_cast<std::uint64_t>(plain[m].bits()) << (m * P);
+        if (mask) iterate();
+        return mask;
     }
 
   private:

@@ -228,14 +228,14 @@ public:
             for (std::size_t k = 0; k < K; ++k) g[0][k] = from + x[k].gap(s, z);
             return 1;
         }
-        const bool one = mode[i] == Mode::pressing && p_.law != kHuntCrossley;
-        if (one && p_.law == kKelvinVoigt) {
+        const bool is_single = mode[i] == Mode::pressing && p_.law != kHuntCrossley;
+        if (is_single && p_.law == kKelvinVoigt) {
             for (std::size_t k = 0; k < K; ++k) g[0][k] = -(p_.stiffness * x[k].gap(s, z) + p_.damping * x[k].rate(s, z));
             return 1;
         }
-        for (int which = 0; which < (one ? 1 : 2); ++which)
+        for (int which = 0; which < (is_single ? 1 : 2); ++which)
             for (std::size_t k = 0; k < K; ++k) g[which][k] = margin(i, which, x[k]);
-        return one ? 1 : 2;
+        return is_single ? 1 : 2;
     }
 
     void change(std::int64_t i, int which, const Place& x) {  // margin `which` of point i has run out

@@ -74,7 +74,7 @@ static void run_batch(Line<const double> at, Line<const double> height, Line<con
         counts.shape(1) != kCounts || threads < 1)
         throw std::invalid_argument("room for the results expected");
     double* values = results.data();
-    std::int64_t* whole = counts.data();
+    std::int64_t* integers = counts.data();
     nb::gil_scoped_release release;
     std::atomic<std::int64_t> next{0};
     auto labour = [&] {
@@ -82,7 +82,7 @@ static void run_batch(Line<const double> at, Line<const double> height, Line<con
             Problem p;
             Start s;
             read(t, row, p, s);
-            write(Run(p, s, nullptr).run(), values + row * kResults, whole + row * kCounts);
+            write(Run(p, s, nullptr).run(), values + row * kResults, integers + row * kCounts);
         }
     };
     std::vector<std::thread> crew;

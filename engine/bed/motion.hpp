@@ -58,8 +58,8 @@ public:
         return energy(x, at, travel, stored(at));
     }
     // The same for a state whose rates are known.
-    double energy(const State& x, const Place& at, double travel, const Rates& known) const {
-        return energy(x, at, travel, bed_.linear() ? stored(at) : known.stored);
+    double energy(const State& x, const Place& at, double travel, const Rates& rates) const {
+        return energy(x, at, travel, bed_.linear() ? stored(at) : rates.stored);
     }
 
     // Kinetic, potential and elastic.

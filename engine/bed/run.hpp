@@ -84,9 +84,9 @@ private:
                 out_.status = kTooManySteps;
                 return;
             }
-            const double wanted = std::min({h, cap, start_.longest - out_.time});
-            if (!attempt(wanted)) {
-                h = 0.25 * wanted;
+            const double target = std::min({h, cap, start_.longest - out_.time});
+            if (!attempt(target)) {
+                h = 0.25 * target;
                 if (h < shortest) {
                     out_.status = kFailed;
                     return;
@@ -95,11 +95,11 @@ private:
             }
             const double factor = 0.9 * std::pow(std::max(step_.error / estimate_, 1e-10), -1.0 / 6.0);
             if (step_.error > estimate_) {
-                h = wanted * std::max(0.1, factor);
+                h = target * std::max(0.1, factor);
                 ++out_.rejected;
                 continue;
             }
-            const double next = wanted * std::min(bed_.linear() ? 6.0 : 3.0, std::max(0.2, factor));
+            const double next = target * std::min(bed_.linear() ? 6.0 : 3.0, std::max(0.2, factor));
             arresting_ = start_.end == kAtPeak && out_.touch >= 0.0 && out_.parting < 0.0 && alone();
             const double tau = stuck_ > 100 ? 1.0 : first_cause();
             if (stuck_ > 100) {
@@ -115,7 +115,7 @@ private:
                 continue;
             }
             if (!causes_.empty() && !shorten(tau)) {
-                h = 0.25 * wanted;
+                h = 0.25 * target;
                 ++out_.rejected;
                 continue;
             }
@@ -206,14 +206,14 @@ private:
         Tally sum;
         for (int k = 0; k < kStages; ++k) {
             const Rates& r = rates_[k + 1];
-            const double part = step_.h * radau::weight[k];
-            sum.travel += part * r.travel;
-            sum.bed_loss += part * r.bed_loss;
-            sum.friction_loss += part * r.friction_loss;
-            sum.impulse += part * r.normal;
-            sum.moment += part * r.moment;
-            sum.shear += part * r.shear;
-            sum.slid += part * (r.normal > 0.0 ? std::abs(step_.stage[k][kU]) : 0.0);
+            const double node_weight = step_.h * radau::weight[k];
+            sum.travel += node_weight * r.travel;
+            sum.bed_loss += node_weight * r.bed_loss;
+            sum.friction_loss += node_weight * r.friction_loss;
+            sum.impulse += node_weight * r.normal;
+            sum.moment += node_weight * r.moment;
+            sum.shear += node_weight * r.shear;
+            sum.slid += node_weight * (r.normal > 0.0 ? std::abs(step_.stage[k][kU]) : 0.0);
         }
         return sum;
     }
@@ -248,14 +248,14 @@ private:
         crests();
         if (trace_)
             for (int k = 0; k < kStages; ++k) {
-                Tally part;
+                Tally tally;
                 for (int j = 0; j < kStages; ++j) {
                     const double share = step_.h * radau::matrix[k][j];
-                    part.bed_loss += share * r[j].bed_loss;
-                    part.friction_loss += share * r[j].friction_loss;
-                    part.travel += share * r[j].travel;
+                    tally.bed_loss += share * r[j].bed_loss;
+                    tally.friction_loss += share * r[j].friction_loss;
+                    tally.travel += share * r[j].travel;
                 }
-                record(step_.stage[k], radau::node[k] * step_.h, part);
+                record(step_.stage[k], radau::node[k] * step_.h, tally);
             }
         out_.time += step_.h;
         out_.travel += sum.travel;
@@ -273,10 +273,10 @@ private:
         if (p_.kind == kCoulomb && motion_.slip == 0) x_[kU] = 0.0;
     }
 
-    void record(const State& x, double after, const Tally& part) {
+    void record(const State& x, double after, const Tally& tally) {
         const Rates r = motion_.rates(x);
-        trace_->samples.push_back({out_.time + after, out_.travel + part.travel, r.normal, r.shear, r.moment,
-                                   out_.bed_loss + part.bed_loss, out_.friction_loss + part.friction_loss, x});
+        trace_->samples.push_back({out_.time + after, out_.travel + tally.travel, r.normal, r.shear, r.moment,
+                                   out_.bed_loss + tally.bed_loss, out_.friction_loss + tally.friction_loss, x});
         const Place at = place(x, p_.exact);
         for (std::int64_t i = 0; i < p_.points.count; ++i) trace_->forces.push_back(bed_.force(i, at));
     }

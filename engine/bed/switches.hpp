@@ -144,12 +144,12 @@ protected:
         const double from = low;
         double f_low = margin(c, step_.at(low)), f_high = margin(c, step_.at(high));
         if (f_low <= 0.0 && c.point == -1 && motion_.slip != 0 && x_[kU] == 0.0)  // begins to slide at zero, and comes back to it
-            for (double part = 0.5; part > 1e-4 && f_low <= 0.0; part *= 0.5) low = part * high, f_low = margin(c, step_.at(low));
+            for (double fraction = 0.5; fraction > 1e-4 && f_low <= 0.0; fraction *= 0.5) low = fraction * high, f_low = margin(c, step_.at(low));
         if (f_low <= 0.0) return from;
         for (int round = 0; round < 60 && high - low > 1e-14; ++round) {
             double mid = low + (high - low) * f_low / (f_low - f_high);
-            const double least = 1e-3 * (high - low);
-            mid = round % 3 == 2 ? 0.5 * (low + high) : std::min(std::max(mid, low + least), high - least);
+            const double resolution = 1e-3 * (high - low);
+            mid = round % 3 == 2 ? 0.5 * (low + high) : std::min(std::max(mid, low + resolution), high - resolution);
             const double f = margin(c, step_.at(mid));
             if (f > 0.0) low = mid, f_low = f;
             else high = mid, f_high = f;

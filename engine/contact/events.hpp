@@ -129,10 +129,10 @@ inline double first_fall(const double* c, int n) {
     for (int k = 1; k < n; ++k) low += std::min(c[k], 0.0);
     if (low > 0.0) return 2.0;
     while (n > 1 && c[n - 1] == 0.0) --n;
-    double found[kTerms + 1];
-    const int count = zeros(c, n, found);
+    double times[kTerms + 1];
+    const int count = zeros(c, n, times);
     for (int i = 0; i < count; ++i)
-        if (found[i] > 0.0 && found[i] <= 1.0 && slope(c, n, found[i]) < 0.0) return found[i];
+        if (times[i] > 0.0 && times[i] <= 1.0 && slope(c, n, times[i]) < 0.0) return times[i];
     return 2.0;
 }
 

@@ -18,7 +18,7 @@ class SlidingFoot {
     // One step; push, lift: acceleration of the ground and gravity with it, at the begin and the end of the step [m/s2].
     Tilted step(Tilted s, double h, const double (&push)[2], const double (&lift)[2], double& direction) const {
         double x = 0.0;
-        for (int part = 0; part < kParts && x < 1.0; ++part) {
+        for (int piece = 0; piece < kParts && x < 1.0; ++piece) {
             const Line a = between(push, x), b = between(lift, x);
             const double left = (1.0 - x) * h;
             if (s.slip == 0.0 && direction == 0.0 && over(s, a.begin, b.begin, direction) <= 0.0) direction = 0.0;
@@ -27,8 +27,8 @@ class SlidingFoot {
             const Tilted end = moved(s, left, a, b, 1.0, slides ? direction : 0.0);
             double ignored = 0.0;
             const double before = slides ? s.slip * direction : -over(s, a.begin, b.begin, ignored), after = slides ? end.slip * direction : -over(end, a.end, b.end, ignored);
-            if (after >= 0.0 || part + 1 == kParts) {
-                if (part + 1 == kParts && slides && after < 0.0) direction = 0.0;
+            if (after >= 0.0 || piece + 1 == kParts) {
+                if (piece + 1 == kParts && slides && after < 0.0) direction = 0.0;
                 s = end, x = 1.0;
                 if (slides && after < 0.0) s.slip = 0.0;
                 break;
@@ -82,15 +82,15 @@ class SlidingFoot {
     }
 
     // Runge and Kutta, order 4, over a fraction of the remaining step.
-    Tilted moved(const Tilted& s, double h, const Line& push, const Line& lift, double part, double direction) const {
-        const double half = 0.5 * h, pm = push.at(0.5 * part), lm = lift.at(0.5 * part);
+    Tilted moved(const Tilted& s, double h, const Line& push, const Line& lift, double fraction, double direction) const {
+        const double half = 0.5 * h, pm = push.at(0.5 * fraction), lm = lift.at(0.5 * fraction);
         const Rates a = rates(s.rotation, s.velocity, push.begin, lift.begin, direction);
         const double v2 = s.velocity + half * a.turning;
         const Rates b = rates(s.rotation + half * s.velocity, v2, pm, lm, direction);
         const double v3 = s.velocity + half * b.turning;
         const Rates c = rates(s.rotation + half * v2, v3, pm, lm, direction);
         const double v4 = s.velocity + h * c.turning;
-        const Rates d = rates(s.rotation + h * v3, v4, push.at(part), lift.at(part), direction);
+        const Rates d = rates(s.rotation + h * v3, v4, push.at(fraction), lift.at(fraction), direction);
         return {s.rotation + h / 6.0 * (s.velocity + 2.0 * (v2 + v3) + v4), s.velocity + h / 6.0 * (a.turning + 2.0 * (b.turning + c.turning) + d.turning),
                 s.slip + h / 6.0 * (a.sliding + 2.0 * (b.sliding + c.sliding) + d.sliding)};
     }

@@ -26,58 +26,58 @@ class Impact {
     }
 
     // Result with e of each foot; true if another law than the requested one replaces it.
-    bool resolve(const double (&bounce)[3], Struck& made, bool& stands_in) const {
+    bool resolve(const double (&bounce)[3], Struck& struck, bool& stands_in) const {
         stands_in = false;
-        if (law_.kind == Bounce::newton ? newton(bounce, made, true) : grown(bounce, law_.kind, made)) return true;
+        if (law_.kind == Bounce::newton ? newton(bounce, struck, true) : grown(bounce, law_.kind, struck)) return true;
         stands_in = true;
-        return grown(bounce, Bounce::stronge, made);
+        return grown(bounce, Bounce::stronge, struck);
     }
 
     // A foot that slides although no force there obeys Coulomb's law: its impulse grows until it sticks.
-    bool shock(Struck& made) const {
+    bool shock(Struck& struck) const {
         for (int foot : {kLeft, kRight}) {
             if (!(s_.touching & foot) || away_[foot] != 0.0) continue;
             const double speed = along(s_, arm_[foot]);
             const Delassus a = at(arm_[foot]);
             const int slip = speed > 0.0 ? 1 : -1;
             if (speed == 0.0 || a.nn - slip * law_.friction * a.nt > 1e-6) continue;
-            made = grow(arm_[foot], foot, law_.kind == Bounce::newton ? 0.0 : law_.bounce, law_.kind, true);
-            if (dissipates(made) && leaves(made)) return true;
-            made = grow(arm_[foot], foot, 0.0, Bounce::stronge, true);
-            return dissipates(made) && leaves(made);
+            struck = grow(arm_[foot], foot, law_.kind == Bounce::newton ? 0.0 : law_.bounce, law_.kind, true);
+            if (dissipates(struck) && leaves(struck)) return true;
+            struck = grow(arm_[foot], foot, 0.0, Bounce::stronge, true);
+            return dissipates(struck) && leaves(struck);
         }
         return false;
     }
 
     // theta_dot_after / theta_dot_before imposed on a rocking impact; false where the impulse would have to pull, or energy is gained.
-    bool imposed(int foot, double r, Struck& made) const {
+    bool imposed(int foot, double r, Struck& struck) const {
         const double j = b_.inertia, h = b_.height, d = b_.lever[foot];
-        const double place = (foot == kRight ? 1.0 : -1.0) * (1.0 - r) * (j + h * h) / (std::fabs(b_.lever[kBoth - foot]) + r * std::fabs(d));  // Eq. 4
+        const double arm = (foot == kRight ? 1.0 : -1.0) * (1.0 - r) * (j + h * h) / (std::fabs(b_.lever[kBoth - foot]) + r * std::fabs(d));  // Eq. 4
         const double slack = 1e-12 * (std::fabs(away_[foot]) + std::fabs(along(s_, arm_[foot])));
-        double spin = (j * s_.spin + h * s_.u + place * s_.w) / (j + h * h + place * d);  // Eq. 74
+        double spin = (j * s_.spin + h * s_.u + arm * s_.w) / (j + h * h + arm * d);  // Eq. 74
         if (std::fabs(spin) <= 1e-12 * std::fabs(s_.spin)) spin = 0.0;
-        made.state = s_, made.state.u = h * spin, made.state.w = d * spin, made.state.spin = spin;
-        made.slip = 0, made.tangential = made.state.u - s_.u;
-        double total = made.state.w - s_.w;
-        if (std::fabs(made.tangential) > law_.friction * total + slack) {
+        struck.state = s_, struck.state.u = h * spin, struck.state.w = d * spin, struck.state.spin = spin;
+        struck.slip = 0, struck.tangential = struck.state.u - s_.u;
+        double total = struck.state.w - s_.w;
+        if (std::fabs(struck.tangential) > law_.friction * total + slack) {
             int valid = 0;
             Struck slid;
             for (int slip : {1, -1}) {
-                const double pull = slip * law_.friction, turn = (pull * h - place) / j, stiff = 1.0 - d * turn;
+                const double pull = slip * law_.friction, turn = (pull * h - arm) / j, stiff = 1.0 - d * turn;
                 if (!(stiff > 0.0)) continue;
                 const double normal = (d * s_.spin - s_.w) / stiff;  // Eq. 75
-                Struck one;
-                one.state = s_, one.state.spin = s_.spin + turn * normal;
-                one.state.u = s_.u - pull * normal, one.state.w = d * one.state.spin;
-                one.tangential = -(pull * normal), one.slip = slip;
-                if (slip * along(one.state, arm_[foot]) >= -slack) slid = one, total = normal, ++valid;
+                Struck candidate;
+                candidate.state = s_, candidate.state.spin = s_.spin + turn * normal;
+                candidate.state.u = s_.u - pull * normal, candidate.state.w = d * candidate.state.spin;
+                candidate.tangential = -(pull * normal), candidate.slip = slip;
+                if (slip * along(candidate.state, arm_[foot]) >= -slack) slid = candidate, total = normal, ++valid;
             }
             if (valid != 1) return false;
-            made = slid;
+            struck = slid;
         }
-        share(made, place, total);
-        if (total < -slack || away(made.state, arm_[kBoth - foot]) < -slack) return false;
-        return !(kinetic(b_, made.state) > kinetic(b_, s_) * (1.0 + 1e-12));
+        share(struck, arm, total);
+        if (total < -slack || away(struck.state, arm_[kBoth - foot]) < -slack) return false;
+        return !(kinetic(b_, struck.state) > kinetic(b_, s_) * (1.0 + 1e-12));
     }
 
   private:
@@ -86,9 +86,9 @@ class Impact {
     };
     Delassus at(Arm r) const { return {1.0 + r.x * r.x / b_.inertia, -r.x * r.z / b_.inertia, 1.0 + r.z * r.z / b_.inertia}; }
 
-    void share(Struck& s, double place, double normal) const {
-        s.normal[kLeft] = normal * (b_.lever[kRight] - place) / b_.width();
-        s.normal[kRight] = normal * (place - b_.lever[kLeft]) / b_.width();
+    void share(Struck& s, double arm, double normal) const {
+        s.normal[kLeft] = normal * (b_.lever[kRight] - arm) / b_.width();
+        s.normal[kRight] = normal * (arm - b_.lever[kLeft]) / b_.width();
     }
     bool dissipates(const Struck& s) const { return !(kinetic(b_, s.state) > kinetic(b_, s_) * (1.0 + 10.0 * kRounding)); }
     bool leaves(const Struck& s) const {
@@ -98,86 +98,86 @@ class Impact {
     }
 
     // Newton's law: every choice of feet that take part and of how they slide is tried. `single`: two that differ are none.
-    bool newton(const double (&bounce)[3], Struck& made, bool single) const {
+    bool newton(const double (&bounce)[3], Struck& struck, bool single) const {
         double target[3];
         for (int foot : {kLeft, kRight}) target[foot] = -bounce[foot] * away_[foot];  // Eq. 70
         bool any = false;
         for (int slip : {0, 1, -1})
             for (int feet : {kLeft, kRight, kBoth}) {
-                Struck one;
-                if ((s_.touching & feet) != feet || !solution(feet, slip, target, one) || !valid(one, feet, target)) continue;  // Eq. 20
+                Struck candidate;
+                if ((s_.touching & feet) != feet || !solution(feet, slip, target, candidate) || !valid(candidate, feet, target)) continue;  // Eq. 20
                 if (!any) {
-                    made = one, any = true;
+                    struck = candidate, any = true;
                     if (!single) return true;
                     continue;
                 }
-                const State &p = made.state, &q = one.state;
+                const State &p = struck.state, &q = candidate.state;
                 if (std::max({std::fabs(p.u - q.u), std::fabs(p.w - q.w), b_.height * std::fabs(p.spin - q.spin)}) > 1e-8 * speed_) return false;
             }
-        return any && dissipates(made);
+        return any && dissipates(struck);
     }
 
-    bool solution(int feet, int slip, const double (&target)[3], Struck& one) const {
+    bool solution(int feet, int slip, const double (&target)[3], Struck& candidate) const {
         const double j = b_.inertia, pull = slip * law_.friction;
-        State& a = one.state;
-        a = s_, one.slip = slip;
+        State& a = candidate.state;
+        a = s_, candidate.slip = slip;
         if (feet == kBoth) {
             const double left = -b_.lever[kLeft], right = b_.lever[kRight], width = b_.width();
             a.spin = (target[kLeft] - target[kRight]) / width;  // Eq. 73
             a.w = (target[kLeft] * right + target[kRight] * left) / width;
             const double total = a.w - s_.w;
             a.u = slip ? s_.u - pull * total : b_.height * a.spin;
-            one.tangential = a.u - s_.u;
-            const double turn = one.tangential * b_.height + j * (a.spin - s_.spin);
-            one.normal[kLeft] = (total * right + turn) / width, one.normal[kRight] = (total * left - turn) / width;  // Eq. 73
+            candidate.tangential = a.u - s_.u;
+            const double turn = candidate.tangential * b_.height + j * (a.spin - s_.spin);
+            candidate.normal[kLeft] = (total * right + turn) / width, candidate.normal[kRight] = (total * left - turn) / width;  // Eq. 73
             return true;
         }
         const Arm r = arm_[feet];
         if (!slip) {
             a.spin = (j * s_.spin - r.z * s_.u + r.x * (s_.w - target[feet])) / (j + r.x * r.x + r.z * r.z);  // Eq. 71
             a.u = -(r.z * a.spin), a.w = target[feet] + r.x * a.spin;
-            one.normal[feet] = a.w - s_.w, one.tangential = a.u - s_.u;
+            candidate.normal[feet] = a.w - s_.w, candidate.tangential = a.u - s_.u;
             return true;
         }
         const double level = r.x + pull * r.z, stiff = 1.0 + r.x * level / j;
         if (!(stiff > 0.0)) return false;
         const double normal = (target[feet] - away_[feet]) / stiff;  // Eq. 72
         a.spin = s_.spin - normal * level / j, a.u = s_.u - pull * normal, a.w = target[feet] + r.x * a.spin;
-        one.normal[feet] = normal, one.tangential = -(pull * normal);
+        candidate.normal[feet] = normal, candidate.tangential = -(pull * normal);
         return true;
     }
 
-    bool valid(const Struck& one, int feet, const double (&target)[3]) const {
+    bool valid(const Struck& candidate, int feet, const double (&target)[3]) const {
         const double slack = kRounding * speed_;
         double total = 0.0;
         for (int foot : {kLeft, kRight}) {
-            if ((feet & foot) && !(one.normal[foot] >= -slack)) return false;
-            if ((s_.touching & foot) && !(away(one.state, arm_[foot]) >= target[foot] - slack)) return false;
-            if (feet & foot) total += one.normal[foot];
+            if ((feet & foot) && !(candidate.normal[foot] >= -slack)) return false;
+            if ((s_.touching & foot) && !(away(candidate.state, arm_[foot]) >= target[foot] - slack)) return false;
+            if (feet & foot) total += candidate.normal[foot];
         }
-        if (one.slip) return one.slip * along(one.state, arm_[feet == kBoth ? kLeft : feet]) >= -slack;
-        return std::fabs(one.tangential) <= law_.friction * total + slack * (1.0 + law_.friction);
+        if (candidate.slip) return candidate.slip * along(candidate.state, arm_[feet == kBoth ? kLeft : feet]) >= -slack;
+        return std::fabs(candidate.tangential) <= law_.friction * total + slack * (1.0 + law_.friction);
     }
 
     // Poisson's or Stronge's law: at the foot that lands; where the other one would be pressed down, at the place between
     // the feet where the plastic impact has its resultant, and if even that presses one down, plastically.
-    bool grown(const double (&bounce)[3], Bounce kind, Struck& made) const {
+    bool grown(const double (&bounce)[3], Bounce kind, Struck& struck) const {
         const bool falls[3] = {false, (s_.touching & kLeft) && away_[kLeft] < 0.0, (s_.touching & kRight) && away_[kRight] < 0.0};
         if (falls[kLeft] != falls[kRight]) {
             const int foot = falls[kRight] ? kRight : kLeft;
-            made = grow(arm_[foot], foot, bounce[foot], kind);
-            if (leaves(made)) return dissipates(made);
+            struck = grow(arm_[foot], foot, bounce[foot], kind);
+            if (leaves(struck)) return dissipates(struck);
         }
         const double none[3] = {0.0, 0.0, 0.0};
         Struck plastic;
         if (!newton(none, plastic, false)) return false;
-        made = plastic;
+        struck = plastic;
         const double left = plastic.normal[kLeft], right = plastic.normal[kRight], e = std::max(bounce[kLeft], bounce[kRight]);
-        if (!(left > 0.0 && right > 0.0)) return dissipates(made);
-        const double place = (left * b_.lever[kLeft] + right * b_.lever[kRight]) / (left + right);
-        const Struck both = grow({place, -b_.height, 0.0}, 0, e, kind);
-        if (e > 0.0 && leaves(both)) made = both, share(made, place, both.normal[0]);
-        return dissipates(made);
+        if (!(left > 0.0 && right > 0.0)) return dissipates(struck);
+        const double arm = (left * b_.lever[kLeft] + right * b_.lever[kRight]) / (left + right);
+        const Struck both = grow({arm, -b_.height, 0.0}, 0, e, kind);
+        if (e > 0.0 && leaves(both)) struck = both, share(struck, arm, both.normal[0]);
+        return dissipates(struck);
     }
 
     // The impulse at one place grows, sliding or sticking: to the end of compression, then to that of restitution.
@@ -188,30 +188,30 @@ class Impact {
         if (std::fabs(vt) <= kRounding * speed_) vt = 0.0;
         int slip = 0;
         bool restitution = false;
-        for (int part = 0; part < 8; ++part) {
+        for (int phase = 0; phase < 8; ++phase) {
             slip = vt > 0.0 ? 1 : vt < 0.0 ? -1 : std::fabs(a.nt) <= mu * a.tt ? 0 : a.nt > 0.0 ? 1 : -1;
             const double pull = slip ? -slip * mu : -a.nt / a.tt, up = a.nn + pull * a.nt, right = slip ? a.nt + pull * a.tt : 0.0;  // Eq. 236
             const double stops = vt * right < 0.0 ? -vt / right : HUGE_VAL;
-            double ends = up > 0.0 && !(shocked && part == 0) ? -vn / up : HUGE_VAL;
+            double ends = up > 0.0 && !(shocked && phase == 0) ? -vn / up : HUGE_VAL;
             if (restitution && kind == Bounce::poisson) ends = left;
             if (restitution && kind != Bounce::poisson) ends = 2.0 * left / (vn + std::sqrt(vn * vn + 2.0 * up * left));  // Eq. 238
-            const bool whole = !(stops < ends);
-            const double p = whole ? ends : stops;
+            const bool is_complete = !(stops < ends);
+            const double p = is_complete ? ends : stops;
             if (!std::isfinite(p)) break;
             const double work = (vn + 0.5 * up * p) * p;
-            normal += p, tangential += pull * p, vn += up * p, vt = whole ? vt + right * p : 0.0;
+            normal += p, tangential += pull * p, vn += up * p, vt = is_complete ? vt + right * p : 0.0;
             if (restitution) left -= kind == Bounce::poisson ? p : work;
             else taken -= work;
-            if (!whole) continue;
+            if (!is_complete) continue;
             left = kind == Bounce::poisson ? e * normal : e * e * taken;  // Eq. 237, 238
             if (restitution || !(left > 0.0)) break;
             restitution = true, vn = 0.0;
         }
-        Struck made;
-        made.state = s_, made.slip = slip;
-        made.state.u += tangential, made.state.w += normal, made.state.spin += (tangential * r.z - normal * r.x) / b_.inertia;
-        made.normal[foot] = normal, made.tangential = tangential;
-        return made;
+        Struck struck;
+        struck.state = s_, struck.slip = slip;
+        struck.state.u += tangential, struck.state.w += normal, struck.state.spin += (tangential * r.z - normal * r.x) / b_.inertia;
+        struck.normal[foot] = normal, struck.tangential = tangential;
+        return struck;
     }
 
     const Base& b_;
@@ -228,9 +228,9 @@ inline State cleaned(const Base& b, const State& s, double stop) {
         if ((s.touching & foot) && std::fabs(away(b, s, foot)) <= stop) resting |= foot;
     if (!resting) return s;
     const bool stick = std::fabs(along(b, s, resting & kLeft ? kLeft : kRight)) <= stop;
-    State made = kept(b, s, resting, stick);
-    made.touching = s.touching;
-    return made;
+    State after = kept(b, s, resting, stick);
+    after.touching = s.touching;
+    return after;
 }
 
 }  // namespace rocking::contact

@@ -24,8 +24,8 @@ using Block = nb::ndarray<T, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 constexpr int kNumbers = 16, kChoices = 3, kResults = 9, kCounts = 9;
 constexpr std::int64_t kChunk = 8;
 
-static void expect(bool fine, const char* what) {
-    if (!fine) throw std::invalid_argument(what);
+static void expect(bool fine, const char* message) {
+    if (!fine) throw std::invalid_argument(message);
 }
 
 class Library {
@@ -51,14 +51,14 @@ class Library {
         const double* v = numbers.data();
         const std::int64_t* c = choices.data();
         double* out = results.data();
-        std::int64_t* whole = counts.data();
+        std::int64_t* integers = counts.data();
         const Settings set{gravity, tolerance, most_events};
         nb::gil_scoped_release release;
         std::atomic<std::int64_t> next{0};
         auto labour = [&] {
             for (std::int64_t first; (first = next.fetch_add(kChunk)) < rows;)
                 for (std::int64_t row = first; row < std::min(first + kChunk, rows); ++row)
-                    write(one(v + row * kNumbers, c + row * kChoices, set, rest_speed), out + row * kResults, whole + row * kCounts);
+                    write(one(v + row * kNumbers, c + row * kChoices, set, rest_speed), out + row * kResults, integers + row * kCounts);
         };
         std::vector<std::thread> crew;
         for (std::int64_t k = 1; k < std::min<std::int64_t>(threads, (rows + kChunk - 1) / kChunk); ++k) crew.emplace_back(labour);

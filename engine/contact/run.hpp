@@ -28,11 +28,11 @@ struct Motion {
         for (int k = 1; k < terms; ++k) r.low += std::min(c[k], 0.0), r.high += std::max(c[k], 0.0);
         return r;
     }
-    static void blocks(const double* c, std::int64_t count, int terms, std::vector<Range>& made) {
+    static void blocks(const double* c, std::int64_t count, int terms, std::vector<Range>& ranges) {
         for (std::int64_t i = 0; i < count; ++i) {
             const Range r = range_of(c + i * terms, terms);
-            if (i % kBlock == 0) made.push_back(r);
-            made.back() = {std::min(made.back().low, r.low), std::max(made.back().high, r.high)};
+            if (i % kBlock == 0) ranges.push_back(r);
+            ranges.back() = {std::min(ranges.back().low, r.low), std::max(ranges.back().high, r.high)};
         }
     }
     void screen() {
@@ -250,27 +250,27 @@ class Run {
     }
 
     void strike(Mode mode) {
-        Struck made;
+        Struck struck;
         const Impact impact(b_, s_, law_);
         bool resolved = false, stands_in = false;
         if (mode.feet == kLeft || mode.feet == kRight) {
             const int foot = kBoth - mode.feet;
-            if (!std::isnan(law_.imposed[foot])) resolved = impact.imposed(foot, law_.imposed[foot], made);
+            if (!std::isnan(law_.imposed[foot])) resolved = impact.imposed(foot, law_.imposed[foot], struck);
         }
         if (!resolved) {
             double bounce[3] = {};
             for (int foot : {kLeft, kRight})
                 if (s_.touching & foot) bounce[foot] = law_.bounce * -away(b_, s_, foot) > b_.slow ? law_.bounce : 0.0;
-            resolved = impact.resolve(bounce, made, stands_in);
+            resolved = impact.resolve(bounce, struck, stands_in);
         }
         if (!resolved) return stop(kNoForce);
         ++r_.impacts, r_.replaced += stands_in;
-        after(made);
+        after(struck);
     }
 
-    void after(const Struck& made) {
+    void after(const Struck& struck) {
         const double rounding = 1e-13 * largest_speed(b_, s_);
-        s_ = calmed(cleaned(b_, made.state, rounding));
+        s_ = calmed(cleaned(b_, struck.state, rounding));
         r_.peak_velocity = std::max(r_.peak_velocity, std::fabs(s_.spin));
         change();
     }
@@ -290,10 +290,10 @@ class Run {
         if (++events_ >= set_.most_events) stop(kTooManyEvents);
         if (done_) return;
         if (!finite()) return stop(kNotFinite);
-        Struck made;
-        if (++changed_ > 40 || !Impact(b_, s_, law_).shock(made)) return stop(kNoForce);
+        Struck struck;
+        if (++changed_ > 40 || !Impact(b_, s_, law_).shock(struck)) return stop(kNoForce);
         ++r_.impacts, ++r_.shocks;
-        after(made);
+        after(struck);
     }
 
     bool finite() const {
@@ -303,9 +303,9 @@ class Run {
     void change() {
         if (done_) return;
         ++changed_;
-        Mode found;
+        Mode next;
         double tolerance;
-        if (!choose(b_, s_, ground(1.0 / b_.pace), law_.friction, found, tolerance)) return shocked();
+        if (!choose(b_, s_, ground(1.0 / b_.pace), law_.friction, next, tolerance)) return shocked();
         if (changed_ > 40) return stop(kStuck);
         if (changed_ > 3) {
             double more = kTolerance;
@@ -313,11 +313,11 @@ class Run {
             tolerance = std::max(tolerance, more);
         }
         tolerance_ = tolerance;
-        if (mode_.feet == kBoth && found.feet != kBoth) {
+        if (mode_.feet == kBoth && next.feet != kBoth) {
             if (std::isnan(r_.first_uplift)) r_.first_uplift = now();
             ++r_.uplifts;
         }
-        mode_ = found;
+        mode_ = next;
         if ((mode_.feet == kLeft || mode_.feet == kRight) && s_.rotation != 0.0) s_ = kept(b_, s_, mode_.feet, mode_.slip == 0);
     }
 
@@ -331,10 +331,10 @@ class Run {
         double low = row_.scale * push.low, high = row_.scale * push.high;
         if (low > high) std::swap(low, high);
         double down = row_.scale * lift.low, up = row_.scale * lift.high;
-        const double least = set_.gravity + std::min(down, up);
+        const double min_weight = set_.gravity + std::min(down, up);
         const double right = b_.lever[kRight], left = -b_.lever[kLeft], h = b_.height, mu = law_.friction;
-        if (!(least > 0.0)) return true;
-        return !(least * right + low * h > 0.0 && least * left - high * h > 0.0 && mu * least - high > 0.0 && mu * least + low > 0.0);  // Eq. 69
+        if (!(min_weight > 0.0)) return true;
+        return !(min_weight * right + low * h > 0.0 && min_weight * left - high * h > 0.0 && mu * min_weight - high > 0.0 && mu * min_weight + low > 0.0);  // Eq. 69
     }
 
     // Rests through stretches that cannot move the body; whether there were any.
@@ -347,8 +347,8 @@ class Run {
             const Range still{0.0, 0.0}, push = m_.pushes[block], lift = m_.lift ? m_.lifts[block] : still;
             if (stretch_ % kBlock == 0 && stretch_ + kBlock <= last && !excited(push, lift)) {
                 const double most = std::fabs(row_.scale) * std::max(push.high, -push.low);
-                const double least = set_.gravity + std::min(row_.scale * lift.low, row_.scale * lift.high);
-                if (most <= r_.friction_usage * law_.friction * least) {
+                const double min_weight = set_.gravity + std::min(row_.scale * lift.low, row_.scale * lift.high);
+                if (most <= r_.friction_usage * law_.friction * min_weight) {
                     stretch_ += kBlock, tau_ = 0.0;
                     continue;
                 }

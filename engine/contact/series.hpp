@@ -32,9 +32,9 @@ inline double slope(const double* c, int n, double at) {
 }
 
 // Position from an acceleration, with its value and rate at the start.
-inline void twice(const double* a, int n, double start, double rate, double unit, double* made) {
-    made[0] = start, made[1] = rate * unit;
-    for (int k = 2; k < n; ++k) made[k] = a[k - 2] * unit * unit / (k * (k - 1.0));
+inline void twice(const double* a, int n, double start, double rate, double unit, double* result) {
+    result[0] = start, result[1] = rate * unit;
+    for (int k = 2; k < n; ++k) result[k] = a[k - 2] * unit * unit / (k * (k - 1.0));
 }
 
 inline void flat(const Base& b, const State& s, Mode m, const Ground& g, double mu, Series& c) {
@@ -61,13 +61,13 @@ inline void flight(const Base& b, const State& s, const Ground& g, int order, Se
     sine_cosine(s.rotation, sine, cosine), sine_cosine(0.5 * s.rotation, half, unused);
     const double turns[4] = {sine, cosine, -sine, -cosine}, lowers[4] = {-cosine, sine, cosine, -sine};
     double power = 1.0, sines[kTerms], lowered[kTerms];
-    const int least = g.terms + 2;
+    const int forcing_terms = g.terms + 2;
     int n = 0;
     c.converged = false;
     for (; n <= order; ++n) {
         if (n) power *= s.spin * g.unit / n;
         sines[n] = power * turns[n % 4], lowered[n] = power * lowers[n % 4];
-        if (n >= least && std::fabs(power) < 0.01 * g.small) {
+        if (n >= forcing_terms && std::fabs(power) < 0.01 * g.small) {
             c.converged = true, ++n;
             break;
         }

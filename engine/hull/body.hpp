@@ -40,12 +40,12 @@ struct Body {
         for (const Vec& p : points) {
             size = greater(size, norm(p));
             const Mat turn{cross(p, {1.0, 0.0, 0.0}), cross(p, {0.0, 1.0, 0.0}), cross(p, {0.0, 0.0, 1.0})};  // columns of [r]
-            Mat made = diagonal(1.0 / mass);
+            Mat matrix = diagonal(1.0 / mass);
             const Vec turned[3] = {inverse * turn.a, inverse * turn.b, inverse * turn.c};
-            made.a = made.a + Vec{dot(turn.a, turned[0]), dot(turn.a, turned[1]), dot(turn.a, turned[2])};
-            made.b = made.b + Vec{dot(turn.b, turned[0]), dot(turn.b, turned[1]), dot(turn.b, turned[2])};
-            made.c = made.c + Vec{dot(turn.c, turned[0]), dot(turn.c, turned[1]), dot(turn.c, turned[2])};
-            soft.push_back(made), stiff.push_back(spatial::ROCKING_ISA::inverse(made));
+            matrix.a = matrix.a + Vec{dot(turn.a, turned[0]), dot(turn.a, turned[1]), dot(turn.a, turned[2])};
+            matrix.b = matrix.b + Vec{dot(turn.b, turned[0]), dot(turn.b, turned[1]), dot(turn.b, turned[2])};
+            matrix.c = matrix.c + Vec{dot(turn.c, turned[0]), dot(turn.c, turned[1]), dot(turn.c, turned[2])};
+            soft.push_back(matrix), stiff.push_back(spatial::ROCKING_ISA::inverse(matrix));
         }
     }
 
@@ -59,11 +59,11 @@ struct Body {
 
     // The facet through which the vertical through the centre leaves, downward: from a facet to better neighbours.
     int under(Vec up, int from) const {
-        for (double least = dot(facets[from], up);;) {
+        for (double lowest = dot(facets[from], up);;) {
             const int before = from;
             for (int k = first[before]; k < first[before + 1]; ++k) {
-                const double found = dot(facets[beside[k]], up);  // Eq. 258
-                if (found < least) least = found, from = beside[k];
+                const double height = dot(facets[beside[k]], up);  // Eq. 258
+                if (height < lowest) lowest = height, from = beside[k];
             }
             if (from == before) return from;
         }
@@ -117,12 +117,12 @@ struct Ground {
     double end() const { return motion->count ? motion->times[motion->count] : 0.0; }
     double time(std::int64_t stretch) const { return motion->times[stretch]; }
 
-    void field(std::int64_t stretch, double start, double span, Field& made) const {
-        made.degree = 0, made.power[0] = weight;
+    void field(std::int64_t stretch, double start, double span, Field& field) const {
+        field.degree = 0, field.power[0] = weight;
         if (stretch >= motion->count) return;
         const int n = motion->degree;
-        const double whole = motion->times[stretch + 1] - motion->times[stretch];
-        const double to = (start - motion->times[stretch]) / whole, width = span / whole;
+        const double duration = motion->times[stretch + 1] - motion->times[stretch];
+        const double to = (start - motion->times[stretch]) / duration, width = span / duration;
         const double* row = motion->rows + stretch * (n + 1) * 3;
         Vec c[kPowers];
         for (int k = 0; k <= n; ++k) c[k] = {row[3 * k], row[3 * k + 1], row[3 * k + 2]};
@@ -131,14 +131,14 @@ struct Ground {
         double power = 1.0;
         for (int k = 0; k <= n; ++k, power *= width) {
             const Vec a = (-scale * power) * (level * c[k]);
-            made.power[k] = k ? a : weight + a;
+            field.power[k] = k ? a : weight + a;
         }
-        made.degree = n;
+        field.degree = n;
     }
 
     // The field over several stretches of lines: the cubic with the moments of the motion, on which the end of a step depends up to
     // the fourth order. Returns its distance from the samples within.
-    double across(std::int64_t stretch, double start, double span, Field& made) const {
+    double across(std::int64_t stretch, double start, double span, Field& result) const {
         const double end = start + span;
         const std::int64_t first = stretch;
         Vec moments[4], at[kAcross];
@@ -151,8 +151,8 @@ struct Ground {
             const Vec rise = pace * Vec{row[3], row[4], row[5]}, base = Vec{row[0], row[1], row[2]} + (start - t[0]) / span * rise;
             double low = from, high = to;
             for (int k = 0; k < 4; ++k, low *= from, high *= to) {
-                const double one = (high - low) / (k + 1), two = (high * to - low * from) / (k + 2);
-                moments[k] = moments[k] + one * base + two * rise;
+                const double first_moment = (high - low) / (k + 1), two = (high * to - low * from) / (k + 2);
+                moments[k] = moments[k] + first_moment * base + two * rise;
             }
             if (to < 1.0) shares[inner] = to, at[inner++] = base + to * rise;
             from = to;
@@ -167,14 +167,14 @@ struct Ground {
             const double s = shares[k];
             beside = greater(beside, largest(powers[0] + s * (powers[1] + s * (powers[2] + s * powers[3])) - at[k]));
         }
-        if (!inner) return field(first, start, span, made), 0.0;
-        made.degree = 3;
-        for (int k = 0; k < 4; ++k) made.power[k] = -scale * (level * powers[k]);
-        made.power[0] = made.power[0] + weight;
+        if (!inner) return field(first, start, span, result), 0.0;
+        result.degree = 3;
+        for (int k = 0; k < 4; ++k) result.power[k] = -scale * (level * powers[k]);
+        result.power[0] = result.power[0] + weight;
         return scale * beside;
     }
 
-    double inside(Vec place) const { return lesser(shelf[0] - std::fabs(place.x), shelf[1] - std::fabs(place.y)); }
+    double inside(Vec position) const { return lesser(shelf[0] - std::fabs(position.x), shelf[1] - std::fabs(position.y)); }
     bool ends() const { return shelf[0] < kInfinite || shelf[1] < kInfinite; }
 };
 

@@ -68,9 +68,9 @@ struct Wrench {
 
 // Gauss without exchange; false where a pivot is not positive, so that no force answers a motion.
 template <int n>
-bool eliminated(double (&t)[n][n + 1], const double* least, double* answer) {
+bool eliminated(double (&t)[n][n + 1], const double* thresholds, double* answer) {
     for (int k = 0; k < n; ++k) {
-        if (!(t[k][k] > least[k])) return false;
+        if (!(t[k][k] > thresholds[k])) return false;
         for (int j = k + 1; j < n; ++j) {
             const double factor = t[j][k] / t[k][k];
             if (factor != 0.0)
@@ -86,13 +86,13 @@ bool eliminated(double (&t)[n][n + 1], const double* least, double* answer) {
 }
 
 template <int n>
-bool answered(const Problem& p, const Wrench* columns, const Wrench* rows, const double* known, double* answer) {
+bool answered(const Problem& p, const Wrench* columns, const Wrench* rows, const double* offsets, double* answer) {
     double t[n][n + 1], sizes[n];
     Wrench soft[n];
     for (int c = 0; c < n; ++c) soft[c] = {1.0 / p.body->mass * columns[c].f, p.body->inverse * columns[c].m};
     for (int r = 0; r < n; ++r) {
         for (int c = 0; c < n; ++c) t[r][c] = dot(rows[r].f, soft[c].f) + dot(rows[r].m, soft[c].m);
-        t[r][n] = -(dot(rows[r].f, p.linear) + dot(rows[r].m, p.angular) + known[r]);  // Eq. 252
+        t[r][n] = -(dot(rows[r].f, p.linear) + dot(rows[r].m, p.angular) + offsets[r]);  // Eq. 252
         sizes[r] = kSingular * t[r][r];
     }
     return eliminated<n>(t, sizes, answer);
@@ -106,8 +106,8 @@ inline void share_pulls(const Problem& p, const double* parts, Solution& s) {
     if (!n) return;
     std::size_t from = 0;
     const auto slot = [&](int i) {
-        const std::size_t found = slot_of(s.contact.members, i, from);
-        return from = found + 1, found;
+        const std::size_t index = slot_of(s.contact.members, i, from);
+        return from = index + 1, index;
     };
     const Vec total = p.ground(parts[0], parts[1]), up = p.axes.c;
     if (n == 1) {
@@ -148,7 +148,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
     const Vec up = p.axes.c;
     const int n = static_cast<int>(carrying.size()), shapes = n <= 3 ? n : 3, rest = static_cast<int>(stuck.size());
     Wrench columns[size], rows[size];
-    double known[size] = {}, answer[size];
+    double offsets[size] = {}, answer[size];
     const auto weights = [&](int k, Vec at, double* w) {  // weights of the distributions at a loaded vertex
         if (n > 3) w[0] = 1.0, w[1] = dot(p.axes.a, at), w[2] = dot(p.axes.b, at);  // Eq. 253
         else w[0] = w[1] = w[2] = 0.0, w[k] = 1.0;
@@ -164,7 +164,7 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
         for (int j = n > 3 ? 0 : k, end = n > 3 ? most : std::min(k + 1, most); j < end; ++j) {
             columns[j].f = columns[j].f + w[j] * push, columns[j].m = columns[j].m + w[j] * turn;
             rows[j].f = rows[j].f + w[j] * up, rows[j].m = rows[j].m + w[j] * lift;
-            known[j] += w[j] * swing;
+            offsets[j] += w[j] * swing;
         }
     }
     if (size > 2 && rest) {
@@ -177,16 +177,16 @@ bool linear_of(const Problem& p, const Points& carrying, Solution& s) {
         }
         for (const Vec axis : {p.axes.a, p.axes.b}) {
             columns[at] = {axis, cross(acts, axis)}, rows[at] = {axis, cross(moves, axis)};
-            known[at++] = dot(axis, known_there);
+            offsets[at++] = dot(axis, known_there);
         }
         if (size > 3 && rest > 1) {
-            const int one = stuck[0], other = stuck[rest / 2];
-            const Vec arm = body.points[other] - body.points[one], across = cross(up, arm);
+            const int first = stuck[0], other = stuck[rest / 2];
+            const Vec arm = body.points[other] - body.points[first], across = cross(up, arm);
             columns[at] = rows[at] = {{}, up};
-            known[at++] = p.forces ? dot(across, p.bias(other) - p.bias(one)) / dot(across, across) : 0.0;
+            offsets[at++] = p.forces ? dot(across, p.bias(other) - p.bias(first)) / dot(across, across) : 0.0;
         }
     }
-    if (!answered<size>(p, columns, rows, known, answer)) return false;
+    if (!answered<size>(p, columns, rows, offsets, answer)) return false;
     Vec force, moment;
     for (int k = 0; k < size; ++k) force = force + answer[k] * columns[k].f, moment = moment + answer[k] * columns[k].m;
     s.linear = p.linear + 1.0 / body.mass * force;
@@ -242,11 +242,11 @@ inline bool solve(const Problem& p, Solution& s) {
         if (!s.exists || s.contact.members.size() <= 3) return s.exists;
         const std::size_t before = carrying.size();
         for (std::size_t out = std::max<std::size_t>(before / 16, 1); out && carrying.size() > 3; --out) {
-            auto least = carrying.begin();
+            auto weakest = carrying.begin();
             for (auto k = carrying.begin(); k != carrying.end(); ++k)
-                if (s.normals[*k] < s.normals[*least]) least = k;
-            if (s.normals[*least] >= 0.0) break;
-            carrying.erase(least);
+                if (s.normals[*k] < s.normals[*weakest]) weakest = k;
+            if (s.normals[*weakest] >= 0.0) break;
+            carrying.erase(weakest);
         }
         if (carrying.size() == before) return true;
     }
@@ -284,8 +284,8 @@ struct Yields {
         for (std::size_t k = 0; k < at.size(); ++k) {
             const Vec s = axes * p.place(at[k]), x = turns * Vec{0.0, s.z, -s.y}, y = turns * Vec{-s.z, 0.0, s.x}, z = turns * Vec{s.y, -s.x, 0.0};
             for (std::size_t j = 0; j < at.size(); ++j) {
-                Mat& made = yields[j][k] = {cross(x, arms[j]), cross(y, arms[j]), cross(z, arms[j])};
-                made.a.x += light, made.b.y += light, made.c.z += light;
+                Mat& yield = yields[j][k] = {cross(x, arms[j]), cross(y, arms[j]), cross(z, arms[j])};
+                yield.a.x += light, yield.b.y += light, yield.c.z += light;
             }
         }
     }
@@ -347,7 +347,7 @@ class Rubbing {
     template <int n, int rest>
     bool turned_alone(int slot, double soft) {
         constexpr int m = n - 1 + rest, room = m ? m : 1;
-        const auto part = [](Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+        const auto component = [](Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
         int from[room], axis[room], row[room];  // other forces: point and direction; rates that they constrain
         Flat pushes[room];
         int count = 0;
@@ -361,9 +361,9 @@ class Rubbing {
         const int here = by_[slot];
         double t[room][room + 4];
         for (int j = 0; j < m; ++j) {
-            for (int k = 0; k < m; ++k) t[j][k] = part(answer(from[j], k), row[j]);
+            for (int k = 0; k < m; ++k) t[j][k] = component(answer(from[j], k), row[j]);
             const Mat& by = table_->yields[from[j]][here];
-            t[j][m] = -part(table_->free[from[j]], row[j]), t[j][m + 1] = -part(by.a, row[j]), t[j][m + 2] = -part(by.b, row[j]), t[j][m + 3] = -part(by.c, row[j]);
+            t[j][m] = -component(table_->free[from[j]], row[j]), t[j][m + 1] = -component(by.a, row[j]), t[j][m + 2] = -component(by.b, row[j]), t[j][m + 3] = -component(by.c, row[j]);
         }
         for (int k = 0; k < m; ++k) {
             if (!(t[k][k] > 0.0)) return false;
@@ -443,10 +443,10 @@ class Rubbing {
     }
 
     Vec rate_of(int i) const {
-        Vec made = table_->free[i];
-        for (std::size_t k = 0; k < n_; ++k) made = made + x_[k] * row_times({pushes_[k].x, pushes_[k].y, 1.0}, table_->yields[i][by_[k]]);
-        if (one_ >= 0) made = made + x_[n_] * table_->yields[i][one_].a + x_[n_ + 1] * table_->yields[i][one_].b;
-        return made;
+        Vec rate = table_->free[i];
+        for (std::size_t k = 0; k < n_; ++k) rate = rate + x_[k] * row_times({pushes_[k].x, pushes_[k].y, 1.0}, table_->yields[i][by_[k]]);
+        if (one_ >= 0) rate = rate + x_[n_] * table_->yields[i][one_].a + x_[n_ + 1] * table_->yields[i][one_].b;
+        return rate;
     }
 
     bool breaks() const {
@@ -630,10 +630,10 @@ inline Points outline(const Problem& p, const Points& touching) {
     Few<At> places, kept;
     for (int i : touching) places.push_back({dot(p.axes.a, p.body->points[i]), dot(p.axes.b, p.body->points[i]), i});
     std::sort(places.begin(), places.end(), [](const At& a, const At& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.i < b.i; });
-    Points made;
+    Points points;
     if (places.size() < 3) {
-        for (const At& at : places) made.push_back(at.i);
-        return made;
+        for (const At& at : places) points.push_back(at.i);
+        return points;
     }
     const double slack = 1e-10 * p.body->size * p.body->size;
     for (int pass = 0; pass < 2; ++pass) {
@@ -646,29 +646,29 @@ inline Points outline(const Problem& p, const Points& touching) {
             }
             kept.push_back(at);
         }
-        for (std::size_t k = 0; k + 1 < kept.size(); ++k) made.push_back(kept[k].i);
+        for (std::size_t k = 0; k + 1 < kept.size(); ++k) points.push_back(kept[k].i);
         std::reverse(places.begin(), places.end());
     }
-    return made;
+    return points;
 }
 
 // Possible contacts of touching vertices: all, the edges of their border, single ones. staying: vertices that do not leave; a chord with
 // vertices beyond it is not an edge.
 inline std::vector<Points> faces(const Problem& p, const Points& touching, const Points& staying) {
     const Points border = outline(p, touching);
-    std::vector<Points> made;
+    std::vector<Points> faces;
     const std::size_t n = border.size();
-    made.reserve(2 * n + 1);
+    faces.reserve(2 * n + 1);
     const bool all = staying.size() == touching.size();
     std::vector<char> stays(n, 1);
     for (std::size_t k = 0; k < n && !all; ++k) stays[k] = has(staying, border[k]);
-    if (n > 2 && std::find(stays.begin(), stays.end(), 0) == stays.end()) made.push_back(border);
+    if (n > 2 && std::find(stays.begin(), stays.end(), 0) == stays.end()) faces.push_back(border);
     if (n > 1)
         for (std::size_t k = 0; k < (n > 2 ? n : 1); ++k)
-            if (stays[k] && stays[(k + 1) % n]) made.push_back({border[k], border[(k + 1) % n]});
+            if (stays[k] && stays[(k + 1) % n]) faces.push_back({border[k], border[(k + 1) % n]});
     for (std::size_t k = 0; k < n; ++k)
-        if (stays[k]) made.push_back({border[k]});
-    return made;
+        if (stays[k]) faces.push_back({border[k]});
+    return faces;
 }
 inline std::vector<Points> faces(const Problem& p, const Points& touching) { return faces(p, touching, touching); }
 

@@ -14,7 +14,7 @@ class Few {
 
   public:
     Few() {}
-    explicit Few(std::size_t n, T each = T()) { assign(n, each); }
+    explicit Few(std::size_t n, T value = T()) { assign(n, value); }
     Few(std::initializer_list<T> all) { assign(all.begin(), all.end()); }
     Few(const Few& o) { assign(o.begin(), o.end()); }
     Few(Few&& o) noexcept { take(o); }
@@ -38,8 +38,8 @@ class Few {
     T& back() { return all_[size_ - 1]; }
 
     void clear() { size_ = 0; }
-    void push_back(const T& one) {
-        const T kept = one;
+    void push_back(const T& value) {
+        const T kept = value;
         if (size_ == room_) grow(2 * room_);
         all_[size_++] = kept;
     }
@@ -48,9 +48,9 @@ class Few {
         if (n > size_) fit(n), std::fill(all_ + size_, all_ + n, T());
         size_ = n;
     }
-    void assign(std::size_t n, T each) {
+    void assign(std::size_t n, T value) {
         fit(n), size_ = n;
-        std::fill(all_, all_ + n, each);
+        std::fill(all_, all_ + n, value);
     }
     template <class It>
     std::enable_if_t<!std::is_integral_v<It>> assign(It from, It to) {

@@ -47,9 +47,9 @@ class Flow {
         const std::size_t n = c.members.size(), stuck = c.stuck.size();
         kind_ = n == 0 ? kFlight : n == 1 ? (stuck ? kStuckVertex : kSlidingVertex) : n == 2 && stuck == 2 ? kEdge : n <= 3 && !stuck ? kSliding : kAny;
         if (kind_ == kEdge) {
-            const Vec one = b_.points[c.members[0]], arm = b_.points[c.members[1]] - one;
+            const Vec first = b_.points[c.members[0]], arm = b_.points[c.members[1]] - first;
             length_ = norm(arm), along_ = 1.0 / length_ * arm;
-            const Vec lever = cross(along_, one);
+            const Vec lever = cross(along_, first);
             about_ = dot(along_, b_.inertia * along_) + b_.mass * dot(lever, lever);
         }
         if (kind_ == kSliding)
@@ -64,9 +64,9 @@ class Flow {
         if (kept) *kept = axes;
         const Vec w = s.spin;
         Vec linear = row_times(field, axes), angular = b_.inverse * cross(b_.inertia * w, w);
-        const bool found = act(s, axes, linear, angular, f);
-        if (f) f->found = found;
-        found_ &= found;
+        const bool solved = act(s, axes, linear, angular, f);
+        if (f) f->found = solved;
+        found_ &= solved;
         r.place = s.velocity, r.velocity = axes * linear, r.spin = angular;
         const double *q = s.q;
         r.q[0] = -0.5 * (q[1] * w.x + q[2] * w.y + q[3] * w.z);  // Eq. 22
@@ -86,7 +86,7 @@ class Flow {
     static constexpr double last[6] = {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0};
 
     // Advances by a part of a step.
-    const State& step(const State& state, const Field& field, double whole, double part, double pace) {
+    const State& step(const State& state, const Field& field, double span, double fraction, double pace) {
         static constexpr double node[7] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
         static constexpr double a[7][6] = {{},
                                            {1.0 / 5.0},
@@ -97,7 +97,7 @@ class Flow {
                                            {last[0], last[1], last[2], last[3], last[4], last[5]}};
         static constexpr double off[7] = {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
         static constexpr int sample[7] = {0, -1, 1, 2, -1, -1, 3};
-        const double h = part * whole;
+        const double h = fraction * span;
         Rates* const k = rates_;
         State at = state;
         found_ = true;
@@ -107,12 +107,12 @@ class Flow {
             k[0] = k[6], samples[0] = state, forces[0] = forces[3], axes[0] = axes[3];
             first = forces[0].found;
         }
-        known_ = true, first_ = field.power[0], last_ = field.at(part);
+        known_ = true, first_ = field.power[0], last_ = field.at(fraction);
         for (int n = first; n < 7; ++n) {
             if (n) at = moved(state, k, a[n], n, h);
             const int keep = sample[n];
             if (keep >= 0) samples[keep] = at;
-            rates(at, field.at(part * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr, keep >= 0 ? &axes[keep] : nullptr);
+            rates(at, field.at(fraction * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr, keep >= 0 ? &axes[keep] : nullptr);
         }
         const State none{{}, {0.0}, {}, {}}, wrong = moved(none, k, off, 7, h);
         double turned = 0.0;
@@ -125,38 +125,38 @@ class Flow {
     }
 
     // Keeps the motion over the step that was just made whole, for `along`.
-    void keep(double whole) { whole_ = whole, kept_ = false; }
+    void keep(double span) { whole_ = span, kept_ = false; }
     void interpolate() {
         if (kept_) return;
         kept_ = true;
-        const double whole = whole_;
+        const double span = whole_;
         static constexpr double weight[7] = {-12715105075.0 / 11282082432.0, 0.0, 87487479700.0 / 32700410799.0, -10690763975.0 / 1880347072.0,
                                              701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0};
         const State none{{}, {0.0}, {}, {}};
-        static constexpr double one = 1.0;
+        static constexpr double unity = 1.0;
         course_[0] = samples[0];
-        course_[1] = moved(none, rates_, last, 6, whole);
-        course_[2] = added(moved(none, rates_, &one, 1, whole), -1.0, course_[1]);
-        course_[3] = added(added(course_[1], -1.0, moved(none, rates_ + 6, &one, 1, whole)), -1.0, course_[2]);
-        course_[4] = moved(none, rates_, weight, 7, whole);
+        course_[1] = moved(none, rates_, last, 6, span);
+        course_[2] = added(moved(none, rates_, &unity, 1, span), -1.0, course_[1]);
+        course_[3] = added(added(course_[1], -1.0, moved(none, rates_ + 6, &unity, 1, span)), -1.0, course_[2]);
+        course_[4] = moved(none, rates_, weight, 7, span);
     }
 
     // The motion at a part of that step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
-    State along(double part) {
+    State along(double fraction) {
         interpolate();
-        const double left = 1.0 - part;
-        State made = added(course_[3], left, course_[4]);
-        made = added(course_[2], part, made), made = added(course_[1], left, made), made = added(course_[0], part, made);
-        normalise(made.q);
-        return made;
+        const double left = 1.0 - fraction;
+        State result = added(course_[3], left, course_[4]);
+        result = added(course_[2], fraction, result), result = added(course_[1], left, result), result = added(course_[0], fraction, result);
+        normalise(result.q);
+        return result;
     }
 
     // The height of a point then.
-    double height(double part, Vec point) {
+    double height(double fraction, Vec point) {
         interpolate();
-        const double left = 1.0 - part;
+        const double left = 1.0 - fraction;
         const auto mixed = [&](const double* a, const double* b, const double* c, const double* d, const double* e) {
-            return *a + part * (*b + left * (*c + part * (*d + left * *e)));
+            return *a + fraction * (*b + left * (*c + fraction * (*d + left * *e)));
         };
         const State* c = course_;
         double q[4];
@@ -167,8 +167,8 @@ class Flow {
 
     // Moves the end of the step a little.
     void nudge(double time) {
-        static constexpr double one = 1.0;
-        samples[3] = moved(samples[3], rates_ + 6, &one, 1, time);
+        static constexpr double unity = 1.0;
+        samples[3] = moved(samples[3], rates_ + 6, &unity, 1, time);
         normalise(samples[3].q), axes[3] = frame(samples[3].q);
     }
 
@@ -180,24 +180,24 @@ class Flow {
 
   private:
     static State added(const State& s, double factor, const State& o) {
-        State made{s.place + factor * o.place, {}, s.velocity + factor * o.velocity, s.spin + factor * o.spin};
-        for (int i = 0; i < 4; ++i) made.q[i] = s.q[i] + factor * o.q[i];
-        return made;
+        State result{s.place + factor * o.place, {}, s.velocity + factor * o.velocity, s.spin + factor * o.spin};
+        for (int i = 0; i < 4; ++i) result.q[i] = s.q[i] + factor * o.q[i];
+        return result;
     }
 
     enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kSliding, kAny };
 
     static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
-        double made[kNumbersOfState], rate[kNumbersOfState];
-        std::memcpy(made, &s, sizeof made);
+        double numbers[kNumbersOfState], rate[kNumbersOfState];
+        std::memcpy(numbers, &s, sizeof numbers);
         for (int j = 0; j < n; ++j) {
             const double c = h * weights[j];
             if (c == 0.0) continue;
             std::memcpy(rate, k + j, sizeof rate);
-            for (int i = 0; i < kNumbersOfState; ++i) made[i] += c * rate[i];
+            for (int i = 0; i < kNumbersOfState; ++i) numbers[i] += c * rate[i];
         }
         State moved;
-        std::memcpy(&moved, made, sizeof made);
+        std::memcpy(&moved, numbers, sizeof numbers);
         return moved;
     }
 
@@ -256,8 +256,8 @@ class Flow {
                 double* by = room[0] + room[1] > 0.0 ? room : weight;
                 if (!(by[0] + by[1] > 0.0)) by[0] = by[1] = 1.0;
                 for (int k = 0; k < 2; ++k) {
-                    const double part = by[k] / (by[0] + by[1]) * total;
-                    f->pulls[k] = std::sqrt(side[k] * side[k] + part * part);
+                    const double along = by[k] / (by[0] + by[1]) * total;
+                    f->pulls[k] = std::sqrt(side[k] * side[k] + along * along);
                 }
             }
         }
@@ -293,8 +293,8 @@ class Flow {
             double total = t[k][3];
             for (int c = k + 1; c < n; ++c) total -= t[k][c] * normal[c];
             normal[k] = total / t[k][k];
-            const Vec part = normal[k] * push[k];
-            force = force + part, moment = moment + cross(b_.points[members[k]], part);
+            const Vec vertex_force = normal[k] * push[k];
+            force = force + vertex_force, moment = moment + cross(b_.points[members[k]], vertex_force);
         }
         if (f) f->normals.assign(normal, normal + n), f->pulls.assign(n, 0.0);
         linear = linear + 1.0 / b_.mass * force, angular = angular + b_.inverse * moment;

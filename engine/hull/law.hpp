@@ -47,8 +47,8 @@ inline Vec nearest(const Body& b, const Points& stood, Vec to) {
     Vec best = b.points[stood[0]];
     for (std::size_t k = 0; n > 1 && k < n; ++k) {
         const Vec a = b.points[stood[k]], along = b.points[stood[(k + 1) % n]] - a;
-        const Vec found = a + lesser(greater(dot(to - a, along) / dot(along, along), 0.0), 1.0) * along;
-        if (dot(found - to, found - to) < dot(best - to, best - to)) best = found;
+        const Vec candidate = a + lesser(greater(dot(to - a, along) / dot(along, along), 0.0), 1.0) * along;
+        if (dot(candidate - to, candidate - to) < dot(best - to, best - to)) best = candidate;
     }
     return best;
 }

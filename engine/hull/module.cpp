@@ -23,8 +23,8 @@ using Whole = std::int64_t;
 constexpr int kNumbers = 29, kChoices = 4, kResults = 10, kCounts = 10;
 constexpr Whole kChunk = 4;
 
-static void expect(bool fine, const char* what) {
-    if (!fine) throw std::invalid_argument(what);
+static void expect(bool fine, const char* message) {
+    if (!fine) throw std::invalid_argument(message);
 }
 
 static Vec vec(const double* v) { return {v[0], v[1], v[2]}; }
@@ -84,14 +84,14 @@ class Library {
         const double* v = numbers.data();
         const Whole* c = choices.data();
         double* out = results.data();
-        Whole* whole = counts.data();
+        Whole* integers = counts.data();
         const Settings set{tolerance, rest_speed, most_events};
         nb::gil_scoped_release release;
         std::atomic<Whole> next{0};
         auto labour = [&] {
             for (Whole begin; (begin = next.fetch_add(kChunk)) < rows;)
                 for (Whole row = begin; row < std::min(begin + kChunk, rows); ++row)
-                    write(one(v + row * kNumbers, c + row * kChoices, set), out + row * kResults, whole + row * kCounts);
+                    write(one(v + row * kNumbers, c + row * kChoices, set), out + row * kResults, integers + row * kCounts);
         };
         std::vector<std::thread> crew;
         for (Whole k = 1; k < std::min<Whole>(threads, (rows + kChunk - 1) / kChunk); ++k) crew.emplace_back(labour);
@@ -104,12 +104,12 @@ class Library {
         expect(numbers.shape(0) == 1 && numbers.shape(1) == kNumbers && choices.shape(0) == 1 && choices.shape(1) == kChoices && results.shape(0) == 1 && results.shape(1) == kResults &&
                    counts.shape(0) == 1 && counts.shape(1) == kCounts,
                "tables of one history expected");
-        auto made = std::make_unique<Trace>();
+        auto trace = std::make_unique<Trace>();
         {
             nb::gil_scoped_release release;
-            write(one(numbers.data(), choices.data(), {tolerance, rest_speed, most_events}, made.get()), results.data(), counts.data());
+            write(one(numbers.data(), choices.data(), {tolerance, rest_speed, most_events}, trace.get()), results.data(), counts.data());
         }
-        return nb::make_tuple(array(made->nodes, kNode), array(made->impacts, kImpact), array(made->members, 1), array(made->stuck, 1), array(made->struck, 1), made->least_cosine, made->fell);
+        return nb::make_tuple(array(trace->nodes, kNode), array(trace->impacts, kImpact), array(trace->members, 1), array(trace->stuck, 1), array(trace->struck, 1), trace->least_cosine, trace->fell);
     }
 
   private:

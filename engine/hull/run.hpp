@@ -149,9 +149,9 @@ class Run {
         if (g_.motion->count <= stretch_) return hold(until_);
         const double end = g_.time(stretch_ + 1), span = end - time_;
         if (mode_.pulled) {
-            const double part = lesser(1e-3 / pace_, span);
-            stretch_ += part == span;
-            hold(part == span ? end : time_ + part);
+            const double pause = lesser(1e-3 / pace_, span);
+            stretch_ += pause == span;
+            hold(pause == span ? end : time_ + pause);
             touch(touching_);
             return choose(touching_);
         }
@@ -206,27 +206,27 @@ class Run {
 
     // Smallest margin of rest: moment of the pressure about the border, or friction.
     double stands(Vec pull) const {
-        double least = lesser(-pull.z, slips(pull));
+        double margin = lesser(-pull.z, slips(pull));
         for (const Side& s : sides_)
-            least = lesser(least, (-s.inside * pull.z - s.height * (pull.x * s.inward.x + pull.y * s.inward.y)) / b_.size);  // Eq. 94
-        return least;
+            margin = lesser(margin, (-s.inside * pull.z - s.height * (pull.x * s.inward.x + pull.y * s.inward.y)) / b_.size);  // Eq. 94
+        return margin;
     }
 
     double slips(Vec pull) const { return mu_ == kInfinite ? kInfinite : -mu_ * pull.z - std::sqrt(pull.x * pull.x + pull.y * pull.y); }
 
     // ---- a step ----
 
-    const State& to(double part) {
-        if (part != part_) {
-            if (part != 1.0) flow_.interpolate();  // before the whole step is lost
+    const State& to(double fraction) {
+        if (fraction != part_) {
+            if (fraction != 1.0) flow_.interpolate();  // before the whole step is lost
             if (across_) {
                 Field sooner;
-                g_.across(stretch_, time_, part * span_, sooner);
-                flow_.step(start_, sooner, part * span_, 1.0, pace_);
+                g_.across(stretch_, time_, fraction * span_, sooner);
+                flow_.step(start_, sooner, fraction * span_, 1.0, pace_);
             } else {
-                flow_.step(start_, field_, span_, part, pace_);
+                flow_.step(start_, field_, span_, fraction, pace_);
             }
-            part_ = part;
+            part_ = fraction;
         }
         return flow_.samples[3];
     }
@@ -246,22 +246,22 @@ class Run {
         ++r_.steps;
         const bool moving = stretch_ < g_.motion->count;
         const double left = (moving ? g_.time(stretch_ + 1) : kInfinite) - time_;
-        double whole = lesser(length_, left);
-        if (whole < left && left < 2.0 * whole) whole = 0.5 * left;
-        across_ = moving && crosses(whole);
-        if (!across_) g_.field(stretch_, time_, whole, field_);
-        start_ = s_, span_ = whole;
+        double span = lesser(length_, left);
+        if (span < left && left < 2.0 * span) span = 0.5 * left;
+        across_ = moving && crosses(span);
+        if (!across_) g_.field(stretch_, time_, span, field_);
+        start_ = s_, span_ = span;
         flow_.step(start_, field_, span_, part_ = 1.0, pace_);
         const double error = flow_.error;
         if (!std::isfinite(error)) {  // so much force that the first stage leaves all bounds: a shorter step stays within them
-            if (!(whole * pace_ > 1e-10)) return end_with(kNotFinite);
-            length_ = 0.1 * whole;
+            if (!(span * pace_ > 1e-10)) return end_with(kNotFinite);
+            length_ = 0.1 * span;
             return;
         }
         for (const Forces& f : flow_.forces)
             if (!f.found) {
-                if (whole * pace_ > 1e-9) {
-                    length_ = 0.25 * whole;
+                if (span * pace_ > 1e-9) {
+                    length_ = 0.25 * span;
                 } else {
                     touch(touching_);
                     shocked(touching_);
@@ -269,24 +269,24 @@ class Run {
                 return;
             }
         const double fast = fastest_start();
-        if (fast > 2.0 && whole * pace_ > 2e-3) {
-            length_ = whole * greater(1.5 / fast, 0.1);
+        if (fast > 2.0 && span * pace_ > 2e-3) {
+            length_ = span * greater(1.5 / fast, 0.1);
             return;
         }
         // above 4 all are one
         const double growth = error < 5e-4 * set_.tolerance ? 4.0 : 0.9 * std::pow(set_.tolerance / error, 0.2);
-        if (error > set_.tolerance && whole * pace_ > 1e-10) {
-            length_ = whole * greater(0.1, growth);
+        if (error > set_.tolerance && span * pace_ > 1e-10) {
+            length_ = span * greater(0.1, growth);
             return;
         }
-        const double base = growth > 1.0 && (whole == left || across_) ? greater(whole, length_) : whole;
+        const double base = growth > 1.0 && (span == left || across_) ? greater(span, length_) : span;
         length_ = lesser(base * lesser(greater(growth, 0.3), 4.0), 0.2 / pace_);
-        double part = 1.0;
-        const Kind kind = first_event(part);
-        to(part);
-        slide(part * whole);
-        time_ += part * whole;
-        if (kind == kNone && whole == left) ++stretch_, time_ = g_.time(stretch_);
+        double fraction = 1.0;
+        const Kind kind = first_event(fraction);
+        to(fraction);
+        slide(fraction * span);
+        time_ += fraction * span;
+        if (kind == kNone && span == left) ++stretch_, time_ = g_.time(stretch_);
         if (across_)
             while (stretch_ < g_.motion->count && g_.time(stretch_ + 1) <= time_) ++stretch_;
         s_ = flow_.samples[3];
@@ -296,14 +296,14 @@ class Run {
     }
 
     // True if the step may continue to a later sample, with its length.
-    bool crosses(double& whole) {
+    bool crosses(double& length) {
         std::int64_t last = stretch_ + 1;
         if (g_.motion->degree != 1 || last < smooth_ || trace_) return false;
         while (last - stretch_ < kAcross && last < g_.motion->count && g_.time(last + 1) - time_ <= length_) ++last;
         if (last == stretch_ + 1) return false;
         const double span = g_.time(last) - time_;
         if (!(g_.across(stretch_, time_, span, field_) <= std::sqrt(set_.tolerance) * g_.gravity)) return smooth_ = last + kAcross, false;
-        whole = span;
+        length = span;
         return true;
     }
 
@@ -366,14 +366,14 @@ class Run {
     };
 
     // When the first margin falls below zero, and which kind.
-    Kind first_event(double& part) {
+    Kind first_event(double& fraction) {
         Kind first = kNone;
         fallen();
         std::sort(falls_.begin(), falls_.end());
         for (const Fall& f : falls_)
-            for (const double end : {lesser(f.high, part), part})  // stages are approximate
-                if ((end == part ? at(f.what, end) : near(f.what, end)) < 0.0) {
-                    part = located(f, lesser(f.low, end), end), first = f.what.kind;
+            for (const double end : {lesser(f.high, fraction), fraction})  // stages are approximate
+                if ((end == fraction ? at(f.what, end) : near(f.what, end)) < 0.0) {
+                    fraction = located(f, lesser(f.low, end), end), first = f.what.kind;
                     break;
                 }
         return first;
@@ -402,8 +402,8 @@ class Run {
                 falls_.push_back({low + (high - low) * a / (a - b), low, high, w, {v[0], v[1], v[2], v[3]}});
             } else if (w.kind == kGap) {
                 const double a = velocity(w.i).z, b = point_velocity(b_, flow_.samples[3], flow_.axes[3], w.i).z;
-                const double least = lesser(lesser(v[0], v[1]), lesser(v[2], v[3]));
-                if (a < 0.0 && b > 0.0 && least < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w, {v[0], v[1], v[2], v[3]}});
+                const double lowest = lesser(lesser(v[0], v[1]), lesser(v[2], v[3]));
+                if (a < 0.0 && b > 0.0 && lowest < b_.size * 1e-3) dips_.push_back({0.9 * a / (a - b), 0.0, a / (a - b), w, {v[0], v[1], v[2], v[3]}});
             }
         }
         for (const Fall& d : dips_)
@@ -430,11 +430,11 @@ class Run {
 
     // Continues to the zero along the last derivative, if it is so near that the second-order error is zero.
     bool nudged(const Watch& w, double value, double slope, double close) {
-        const double part = part_;
+        const double fraction = part_;
         for (int k = 0; k < 4; ++k) {
             const double by = -(value + 0.5 * close) / slope;
             part_ += by;
-            if (!(std::fabs(part_ - part) * span_ * pace_ < kNudge * std::sqrt(set_.tolerance))) break;
+            if (!(std::fabs(part_ - fraction) * span_ * pace_ < kNudge * std::sqrt(set_.tolerance))) break;
             flow_.nudge(by * span_);
             value = margin(w, flow_.samples[3], flow_.axes[3], flow_.forces[3]);
             if (value < 0.0 && value >= -close) return true;
@@ -448,8 +448,8 @@ class Run {
         const Watch& w = f.what;
         if (low > 0.0 && near(w, low) < 0.0) high = low, low = 0.0;
         if (low == 0.0 && f.values[0] == 0.0)  // it has just left: where is it above the ground?
-            for (const double least = 1e-6 * high; near(w, low = 0.5 * high) < 0.0;)
-                if (!((high = low) > least)) return high;
+            for (const double resolution = 1e-6 * high; near(w, low = 0.5 * high) < 0.0;)
+                if (!((high = low) > resolution)) return high;
         double a = low, b = high, at_a = near(w, a) + aim, at_b = near(w, b) + aim, x = 0.0;
         if (!(at_a >= 0.0 && at_b <= 0.0)) return high;
         for (int k = 0, side = 0; k < 40; ++k) {  // regula falsi, by the Illinois rule
@@ -473,7 +473,7 @@ class Run {
         double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
         bool sure = low == 0.0;  // whether the margin is above zero at the low end
         if (sure && f.values[0] == 0.0)  // it has just left: where is it above the ground?
-            for (double up = 0.5 * high, least = 1e-6 * high; up > least; up *= 0.5) {
+            for (double up = 0.5 * high, resolution = 1e-6 * high; up > resolution; up *= 0.5) {
                 const double value = at(w, up);
                 if (value < 0.0) high = last = up, at_high = at_last = value;
                 else {
@@ -557,17 +557,17 @@ class Run {
         return speed + (mode_.starting[w.slot] ? 2.0 : -1.0) * stop_;
     }
 
-    double at(const Watch& w, double part) {
-        const State& s = to(part);
+    double at(const Watch& w, double fraction) {
+        const State& s = to(fraction);
         return margin(w, s, flow_.axes[3], flow_.forces[3]);
     }
 
     // The same by interpolation.
-    double near(const Watch& w, double part) {
+    double near(const Watch& w, double fraction) {
         static const Forces none;
-        if (w.kind == kGap && !g_.ends()) return flow_.height(part, b_.points[w.i]) + kGrazed * b_.size;
-        const State s = flow_.along(part);
-        return margin(w, s, frame(s.q), w.kind == kNormal || w.kind == kSticking ? flow_.forces_at(s, field_.at(part)) : none);
+        if (w.kind == kGap && !g_.ends()) return flow_.height(fraction, b_.points[w.i]) + kGrazed * b_.size;
+        const State s = flow_.along(fraction);
+        return margin(w, s, frame(s.q), w.kind == kNormal || w.kind == kSticking ? flow_.forces_at(s, field_.at(fraction)) : none);
     }
 
     // ---- contact ----
@@ -578,12 +578,12 @@ class Run {
         return std::sqrt(v.x * v.x + v.y * v.y);
     }
 
-    void touch(Points& found, double reach = kClosed) const {
-        found.clear();
+    void touch(Points& touching, double reach = kClosed) const {
+        touching.clear();
         const Mat axes = frame(s_.q);
         for (std::size_t i = 0; i < b_.points.size(); ++i) {
             if (s_.place.z + dot(axes.c, b_.points[i]) > reach * b_.size) continue;
-            if (!g_.ends() || g_.inside(s_.place + axes * b_.points[i]) >= 0.0) found.push_back(static_cast<int>(i));
+            if (!g_.ends() || g_.inside(s_.place + axes * b_.points[i]) >= 0.0) touching.push_back(static_cast<int>(i));
         }
     }
 
@@ -609,8 +609,8 @@ class Run {
 
     using Moving = Few<Placed>;
     static const Vec* moving_of(const Moving& moving, int i) {
-        for (const auto& each : moving)
-            if (each.first == i) return &each.second;
+        for (const auto& entry : moving)
+            if (entry.first == i) return &entry.second;
         return nullptr;
     }
 
@@ -722,17 +722,17 @@ class Run {
         all.all();
         for (std::size_t k = 0; const Solution* c = all[k]; ++k) {
             if (!fits(*c) || c->contact.members.empty() || !clear(p, *c, touching, slack)) continue;
-            const double least = *std::min_element(c->normals.begin(), c->normals.end());
-            if (!pushed && least >= -slack * p.body->mass) pushed = c;
-            if (least > most) most = least, best = c;
+            const double weakest = *std::min_element(c->normals.begin(), c->normals.end());
+            if (!pushed && weakest >= -slack * p.body->mass) pushed = c;
+            if (weakest > most) most = weakest, best = c;
             if (pushed) break;
         }
         return pushed ? pushed : best;
     }
 
-    static bool same(const Points& one, const Points& other) {
-        if (one.size() != other.size()) return false;
-        Points a = one, b = other;
+    static bool same(const Points& points, const Points& other) {
+        if (points.size() != other.size()) return false;
+        Points a = points, b = other;
         std::sort(a.begin(), a.end()), std::sort(b.begin(), b.end());
         return a == b;
     }
@@ -776,11 +776,11 @@ class Run {
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
             for (double slack : kLadder)
-                for (std::size_t k = 0; const Solution* found = candidates[k]; ++k) {
-                    const Contact& c = found->contact;
+                for (std::size_t k = 0; const Solution* candidate = candidates[k]; ++k) {
+                    const Contact& c = candidate->contact;
                     const auto ended = [&](const Over& o) { return pass < 2 && same(c.members, o.contact.members) && ((o.leaves && !pass) || same(c.stuck, o.contact.stuck)); };
-                    if (!fits(*found) || std::any_of(over_.begin(), over_.end(), ended)) continue;
-                    if (valid(p, *found, near, slack * g_.gravity)) return take(p, *found, moving);
+                    if (!fits(*candidate) || std::any_of(over_.begin(), over_.end(), ended)) continue;
+                    if (valid(p, *candidate, near, slack * g_.gravity)) return take(p, *candidate, moving);
                 }
         }
         if (!moving.empty() && !mode_.pulled && !crowd) return shocked(near);
@@ -813,8 +813,8 @@ class Run {
 
     void end_with(Status status) { ended_ = status; }
 
-    void take(const Problem& p, const Solution& found, const Moving& moving) {
-        const Contact& c = found.contact;
+    void take(const Problem& p, const Solution& solution, const Moving& moving) {
+        const Contact& c = solution.contact;
         const std::size_t n = c.members.size();
         if (mode_.contact.members.size() > 2 && n < 3) {
             if (!r_.uplifts++) r_.first_uplift = time_;
@@ -826,7 +826,7 @@ class Run {
             const bool moves = moving_of(moving, c.members[k]);
             if (!moves) still.push_back(c.members[k]);
             if (has(c.stuck, c.members[k]) || (moves && slip(c.members[k]) > slides_at_)) continue;
-            mode.starting[k] = 1, mode.starts[k] = p.axes * found.directions[k];
+            mode.starting[k] = 1, mode.starts[k] = p.axes * solution.directions[k];
         }
         mode_ = mode, bordered_ = false;
         flow_.start(mode_);
@@ -891,9 +891,9 @@ class Run {
             turn = {normal.y, -normal.x, 0.0};
         }
         const double x = 0.5 * turn.x, y = 0.5 * turn.y, *q = s_.q;
-        double made[4] = {q[0] - x * q[1] - y * q[2], q[1] + x * q[0] + y * q[3], q[2] + y * q[0] - x * q[3], q[3] + x * q[2] - y * q[1]};  // Eq. 80
-        normalise(made);
-        std::copy(made, made + 4, s_.q);
+        double product[4] = {q[0] - x * q[1] - y * q[2], q[1] + x * q[0] + y * q[3], q[2] + y * q[0] - x * q[3], q[3] + x * q[2] - y * q[1]};  // Eq. 80
+        normalise(product);
+        std::copy(product, product + 4, s_.q);
     }
 
     // ---- impacts ----
@@ -908,7 +908,7 @@ class Run {
         const Moving none;
         const double fastest = norm(p.linear) + b_.size * norm(p.angular);
         const auto fits = [&](const Solution& s) { return 0.5 * (b_.mass * dot(s.linear, s.linear) + dot(s.angular, b_.inertia * s.angular)) <= before * (1.0 + 1e-12); };
-        const Solution* found = nullptr;
+        const Solution* chosen = nullptr;
         std::vector<Candidates> tried;  // owner of the target of `found`
         tried.reserve(2);
         Problem both[2] = {p, p};
@@ -925,27 +925,27 @@ class Run {
                 }
             tried.emplace_back(now, touching, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
             Candidates& all = tried.back();
-            for (int l = 0; l < 3 && !found; ++l)
+            for (int l = 0; l < 3 && !chosen; ++l)
                 for (std::size_t k = 0; const Solution* c = all[k]; ++k)
                     if (fits(*c) && valid(now, *c, touching, kLadder[l] * fastest)) {
-                        found = c;
+                        chosen = c;
                         break;
                     }
             if (at_once_ > kPiled) {
-                found = nullptr, piled = true;
+                chosen = nullptr, piled = true;
                 break;
             }
-            if (found || now.places.empty()) break;
+            if (chosen || now.places.empty()) break;
             ++r_.replaced;
         }
-        if (!found) {
+        if (!chosen) {
             ++r_.held;
-            if (!piled) found = least_pull(both[last], tried.back(), touching, 1e-9 * fastest, fits);
+            if (!piled) chosen = least_pull(both[last], tried.back(), touching, 1e-9 * fastest, fits);
         }
         Points closed = touching;
-        if (found) {
-            s_.velocity = p.axes * found->linear, s_.spin = found->angular;
-            closed = found->contact.members;
+        if (chosen) {
+            s_.velocity = p.axes * chosen->linear, s_.spin = chosen->angular;
+            closed = chosen->contact.members;
         } else {
             pile(touching);
         }
@@ -969,10 +969,10 @@ class Run {
         if (near.size() < 3 || near.size() == touching.size()) return;
         const Mat axes = frame(s_.q);
         int flat = 0;
-        double least = kInfinite;
+        double lowest = kInfinite;
         for (std::size_t k = 0; k < b_.facets.size(); ++k) {
             const double down = dot(unit(b_.facets[k]), axes.c);
-            if (down < least) least = down, flat = static_cast<int>(k);
+            if (down < lowest) lowest = down, flat = static_cast<int>(k);
         }
         Points corners;
         for (int k = b_.first_corner[flat]; k < b_.first_corner[flat + 1]; ++k) corners.push_back(b_.corners[k]);

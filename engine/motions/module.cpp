@@ -69,8 +69,8 @@ static inline double logarithm(double x) {
     const double s = (m - 1.0) / (m + 1.0), z = s * s;
     double p = 2.0 / 23.0;
     for (int n = 21; n > 0; n -= 2) p = p * z + 2.0 / n;
-    const double found = e * kLog2High + (s * p + e * kLog2Low);
-    return x >= std::numeric_limits<double>::min() ? found : -std::numeric_limits<double>::infinity();
+    const double logarithm = e * kLog2High + (s * p + e * kLog2Low);
+    return x >= std::numeric_limits<double>::min() ? logarithm : -std::numeric_limits<double>::infinity();
 }
 
 static inline void cosine_sine(double x, double& cosine, double& sine) {
@@ -175,8 +175,8 @@ struct Shares {
             scale[i] = 1.0 / scale[i];
         }
     }
-    void at(double place, double* weight) const {
-        const double x = place + (width - 1) / 2;
+    void at(double position, double* weight) const {
+        const double x = position + (width - 1) / 2;
         double before = 1.0, after = 1.0;
         for (int i = 0; i < width; ++i) {
             weight[i] = before;
@@ -192,7 +192,7 @@ struct Shares {
 // Impulses into damped oscillators of fixed frequencies, which they pass one way: each is shared between neighbours about its place. Sums of the
 // sines, and of the squared responses times two, after every step.
 template <int width>
-static void resonate(const double* noise, const double* omega, const double* place, std::int64_t count, std::vector<Four>& four,
+static void resonate(const double* noise, const double* omega, const double* positions, std::int64_t count, std::vector<Four>& four,
                      const std::int64_t* lasting, std::int64_t nodes, double* total, double* variance) {
     std::vector<std::int64_t> fed(four.size() * kLanes, 0);
     const Shares<width> shares;
@@ -205,12 +205,12 @@ static void resonate(const double* noise, const double* omega, const double* pla
         if (step == 0) {
             std::memset(weights, 0, sizeof weights);
             for (std::int64_t k = n; k < std::min(count, n + kStretch); ++k) {
-                const auto base = static_cast<std::int64_t>(place[k]);
+                const auto base = static_cast<std::int64_t>(positions[k]);
                 check(base >= 0 && base + width <= nodes);
-                shares.at(place[k] - static_cast<double>(base), weights[k - n] + base % kLanes);
+                shares.at(positions[k] - static_cast<double>(base), weights[k - n] + base % kLanes);
             }
         }
-        const auto base = static_cast<std::int64_t>(place[n]), first = base / kLanes, last = (base + width - 1) / kLanes;
+        const auto base = static_cast<std::int64_t>(positions[n]), first = base / kLanes, last = (base + width - 1) / kLanes;
         check(base >= past);
         for (; past < base; ++past) fed[past] = n - 1;
         while (low < base && n - fed[low] > lasting[low]) ++low;
@@ -223,10 +223,10 @@ static void resonate(const double* noise, const double* omega, const double* pla
     }
 }
 
-static void resonances(Line<const double> noise, Line<const double> omega, Line<const double> place, bool shared,
+static void resonances(Line<const double> noise, Line<const double> omega, Line<const double> positions, bool shared,
                        Line<const double> cosine, Line<const double> sine, Line<const std::int64_t> lasting, Line<double> total,
                        Line<double> variance) {
-    const std::size_t count = place.shape(0), nodes = cosine.shape(0);
+    const std::size_t count = positions.shape(0), nodes = cosine.shape(0);
     check(noise.shape(0) >= count && omega.shape(0) >= count && sine.shape(0) == nodes && lasting.shape(0) == nodes &&
           total.shape(0) == count + 1 && variance.shape(0) == count + 1);
     std::vector<Four> four((nodes + kLanes - 1) / kLanes);
@@ -241,7 +241,7 @@ static void resonances(Line<const double> noise, Line<const double> omega, Line<
         a.ss[lane] = 2.0 * (x * y);
     }
     const auto run = shared ? resonate<kNeighbours> : resonate<1>;
-    run(noise.data(), omega.data(), place.data(), static_cast<std::int64_t>(count), four, lasting.data(),
+    run(noise.data(), omega.data(), positions.data(), static_cast<std::int64_t>(count), four, lasting.data(),
         static_cast<std::int64_t>(nodes), total.data(), variance.data());
 }
 

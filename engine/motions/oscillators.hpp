@@ -115,57 +115,57 @@ ROCKING_WIDER void reaches(const double* push, std::size_t steps, const double* 
                            const double* needed, std::vector<std::uint8_t>& close) {
     double size[kTogether] = {};
     for (std::size_t k = 0; k < steps; ++k) {
-        std::uint8_t found = 0;
+        std::uint8_t is_close = 0;
         for (int i = 0; i < kTogether; ++i) {
             const double x = re[(k + 1) * kTogether + i], y = im[(k + 1) * kTogether + i], next = std::sqrt(x * x + y * y);
-            found |= static_cast<std::uint8_t>((size[i] + shrink[i] * (next + push[k]) > needed[i]) << i);
+            is_close |= static_cast<std::uint8_t>((size[i] + shrink[i] * (next + push[k]) > needed[i]) << i);
             size[i] = next;
         }
-        close[k] = found;
+        close[k] = is_close;
     }
 }
 
 // The first of a group of oscillators, and the next ones: data for `follow`.
-static Lanes lanes(const Complex* rates, std::size_t some, double step) {
+static Lanes lanes(const Complex* rates, std::size_t group_size, double step) {
     Lanes with;
-    for (std::size_t i = 0; i < some; ++i) {
+    for (std::size_t i = 0; i < group_size; ++i) {
         const Complex s = rates[i];
-        const Stretch one(s, step, step);
-        with.decay_r[i] = one.decay.real(), with.decay_i[i] = one.decay.imag();
-        with.before_r[i] = (one.level - one.rise).real(), with.before_i[i] = (one.level - one.rise).imag();
-        with.after_r[i] = one.rise.real(), with.after_i[i] = one.rise.imag();
+        const Stretch stretch(s, step, step);
+        with.decay_r[i] = stretch.decay.real(), with.decay_i[i] = stretch.decay.imag();
+        with.before_r[i] = (stretch.level - stretch.rise).real(), with.before_i[i] = (stretch.level - stretch.rise).imag();
+        with.after_r[i] = stretch.rise.real(), with.after_i[i] = stretch.rise.imag();
         with.inverse[i] = 1.0 / s.imag(), with.real[i] = s.real();
         with.friction[i] = -2.0 * s.real(), with.omega2[i] = std::norm(s);
     }
     return with;
 }
 
-static void states_of(const double* a, std::size_t n, double step, const Complex* rates, std::size_t count, Complex* found) {
+static void states_of(const double* a, std::size_t n, double step, const Complex* rates, std::size_t count, Complex* states) {
     std::vector<double> re(n * kTogether), im(n * kTogether);
     for (std::size_t first = 0; first < count; first += kTogether) {
-        const std::size_t some = std::min<std::size_t>(kTogether, count - first);
-        Lanes with = lanes(rates + first, some, step);
+        const std::size_t group_size = std::min<std::size_t>(kTogether, count - first);
+        Lanes with = lanes(rates + first, group_size, step);
         follow(a, n, with, re.data(), im.data());
-        for (std::size_t i = 0; i < some; ++i)
-            for (std::size_t k = 0; k < n; ++k) found[(first + i) * n + k] = {re[k * kTogether + i], im[k * kTogether + i]};
+        for (std::size_t i = 0; i < group_size; ++i)
+            for (std::size_t k = 0; k < n; ++k) states[(first + i) * n + k] = {re[k * kTogether + i], im[k * kTogether + i]};
     }
 }
 
 // Largest displacement, velocity and absolute acceleration, one row an oscillator. `reach` is the largest of each that a
 // state of magnitude one can have, `parts` the stretches into which a step is parted, `points` those of free vibration.
 static void peaks_of(const double* a, std::size_t n, double step, const Complex* rates, std::size_t count,
-                     const double* reach, const std::int64_t* parts, double margin, std::int64_t points, double* found) {
+                     const double* reach, const std::int64_t* parts, double margin, std::int64_t points, double* peaks) {
     std::vector<double> re(n * kTogether), im(n * kTogether), push(n);
     std::vector<std::uint8_t> close(n);
     for (std::size_t k = 0; k + 1 < n; ++k) push[k] = step * std::max(std::abs(a[k]), std::abs(a[k + 1]));
     for (std::size_t first = 0; first < count; first += kTogether) {
-        const std::size_t some = std::min<std::size_t>(kTogether, count - first);
-        Lanes with = lanes(rates + first, some, step);
+        const std::size_t group_size = std::min<std::size_t>(kTogether, count - first);
+        Lanes with = lanes(rates + first, group_size, step);
         follow(a, n, with, re.data(), im.data());
         double shrink[kTogether] = {}, needed[kTogether];
         std::fill(needed, needed + kTogether, std::numeric_limits<double>::infinity());
         std::vector<Stretch> stretches[kTogether];
-        for (std::size_t i = 0; i < some; ++i) {
+        for (std::size_t i = 0; i < group_size; ++i) {
             const Complex s = rates[first + i];
             Complex z{re[(n - 1) * kTogether + i], im[(n - 1) * kTogether + i]};
             const Complex turn = std::exp(s * (kPi / s.imag() / static_cast<double>(points - 1)));
@@ -187,17 +187,17 @@ static void peaks_of(const double* a, std::size_t n, double step, const Complex*
                 const Complex s = rates[first + i], start{re[k * kTogether + i], im[k * kTogether + i]};
                 const double rise = a[k + 1] - a[k], count_of = static_cast<double>(stretches[i].size());
                 Feels left(start, a[k], s);
-                for (std::size_t part = 0; part < stretches[i].size(); ++part) {
-                    const double at = static_cast<double>(part + 1) / count_of, width = step / count_of;
-                    const Feels right(stretches[i][part].after(start, a[k], rise), a[k] + at * rise, s);
+                for (std::size_t index = 0; index < stretches[i].size(); ++index) {
+                    const double at = static_cast<double>(index + 1) / count_of, width = step / count_of;
+                    const Feels right(stretches[i][index].after(start, a[k], rise), a[k] + at * rise, s);
                     for (int j = 0; j < 3; ++j)
                         with.top[j][i] = cubic_peak(left.value[j], width * left.change[j], right.value[j],
                                                     width * right.change[j], with.top[j][i]);
                     left = right;
                 }
             }
-        for (std::size_t i = 0; i < some; ++i)
-            for (int j = 0; j < 3; ++j) found[3 * (first + i) + j] = with.top[j][i];
+        for (std::size_t i = 0; i < group_size; ++i)
+            for (int j = 0; j < 3; ++j) peaks[3 * (first + i) + j] = with.top[j][i];
     }
 }
 
@@ -230,21 +230,21 @@ struct Outline {
 // The largest displacement in every direction, one row per oscillator, under two components.
 static void directions_of(const double* a, const double* b, std::size_t n, double step, const Complex* rates, std::size_t count,
                           const double* cosine, const double* sine, std::size_t directions, const std::int64_t* parts,
-                          std::int64_t points, double* found) {
+                          std::int64_t points, double* peaks) {
     std::vector<double> re(n * kTogether), im(n * kTogether), re2(n * kTogether), im2(n * kTogether);
     for (std::size_t first = 0; first < count; first += kTogether) {
-        const std::size_t some = std::min<std::size_t>(kTogether, count - first);
-        Lanes along = lanes(rates + first, some, step), across = along;
+        const std::size_t group_size = std::min<std::size_t>(kTogether, count - first);
+        Lanes along = lanes(rates + first, group_size, step), across = along;
         follow(a, n, along, re.data(), im.data());
         follow(b, n, across, re2.data(), im2.data());
-        for (std::size_t i = 0; i < some; ++i) {
+        for (std::size_t i = 0; i < group_size; ++i) {
             const Complex s = rates[first + i];
             const double inverse = 1.0 / s.imag(), shrink = std::exp(-s.real() * step);
-            const auto one = [&](std::size_t k) { return Complex{re[k * kTogether + i], im[k * kTogether + i]}; };
+            const auto first_state = [&](std::size_t k) { return Complex{re[k * kTogether + i], im[k * kTogether + i]}; };
             const auto other = [&](std::size_t k) { return Complex{re2[k * kTogether + i], im2[k * kTogether + i]}; };
             double xx = 0.0, xy = 0.0, yy = 0.0;
             for (std::size_t k = 0; k < n; ++k) {
-                const double x = one(k).imag(), y = other(k).imag();
+                const double x = first_state(k).imag(), y = other(k).imag();
                 xx += x * x, xy += x * y, yy += y * y;
             }
             const double room = 1e-6 * (xx + yy);  // of a path that is nearly a line
@@ -254,14 +254,14 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                 double most = -1.0;
                 std::size_t at = 0;
                 for (std::size_t k = 0; k < n; ++k) {
-                    const double far = std::abs(cosine[d] * one(k).imag() + sine[d] * other(k).imag());
+                    const double far = std::abs(cosine[d] * first_state(k).imag() + sine[d] * other(k).imag());
                     if (far > most) most = far, at = k;
                 }
-                outline.raise(one(at).imag() * inverse, other(at).imag() * inverse);
+                outline.raise(first_state(at).imag() * inverse, other(at).imag() * inverse);
             }
             outline.settle();
-            for (std::size_t k = 0; k < n; ++k) outline.raise(one(k).imag() * inverse, other(k).imag() * inverse);
-            Complex x = one(n - 1), y = other(n - 1);
+            for (std::size_t k = 0; k < n; ++k) outline.raise(first_state(k).imag() * inverse, other(k).imag() * inverse);
+            Complex x = first_state(n - 1), y = other(n - 1);
             const Complex turn = std::exp(s * (kPi / s.imag() / static_cast<double>(points - 1)));
             for (std::int64_t k = 0; k < points; ++k, x = times(x, turn), y = times(y, turn))
                 outline.raise(x.imag() * inverse, y.imag() * inverse);
@@ -274,15 +274,15 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
             double size = 0.0, pushed = std::sqrt(outline.form(a[0], b[0]));
             for (std::size_t k = 0; k + 1 < n; ++k) {
                 // within a step a state changes by no more than the push of the ground, seen from either of its ends
-                const double next = std::sqrt(outline.form(one(k + 1), other(k + 1)));
+                const double next = std::sqrt(outline.form(first_state(k + 1), other(k + 1)));
                 const double push = std::sqrt(outline.form(a[k + 1], b[k + 1]));
                 const bool close = size + shrink * (next + step * std::max(pushed, push)) >= needed;
                 size = next, pushed = push;
                 if (!close) continue;
-                Complex left = one(k), left2 = other(k);
-                for (const Stretch& part : stretches) {
-                    const Complex right = part.after(one(k), a[k], a[k + 1] - a[k]);
-                    const Complex right2 = part.after(other(k), b[k], b[k + 1] - b[k]);
+                Complex left = first_state(k), left2 = other(k);
+                for (const Stretch& stretch : stretches) {
+                    const Complex right = stretch.after(first_state(k), a[k], a[k + 1] - a[k]);
+                    const Complex right2 = stretch.after(other(k), b[k], b[k + 1] - b[k]);
                     const double p = left.imag() * inverse, q = left2.imag() * inverse;
                     const double z = right.imag() * inverse, w = right2.imag() * inverse;
                     const double d = width * (left.real() + s.real() * p), d2 = width * (left2.real() + s.real() * q);
@@ -298,7 +298,7 @@ static void directions_of(const double* a, const double* b, std::size_t n, doubl
                     left = right, left2 = right2;
                 }
             }
-            std::copy(outline.best.begin(), outline.best.end(), found + (first + i) * directions);
+            std::copy(outline.best.begin(), outline.best.end(), peaks + (first + i) * directions);
         }
     }
 }

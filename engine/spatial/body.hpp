@@ -82,12 +82,12 @@ inline void equations(const Body& body, Pivot& p) {
 }
 
 inline Pivot rim_point(const Body& body, double x, double y) {
-    Pivot made;
+    Pivot pivot;
     const double s = body.radius / std::sqrt(x * x + y * y);
-    made.contact = kVertex;
-    made.at = {s * x, s * y, 0.0};
-    equations(body, made);
-    return made;
+    pivot.contact = kVertex;
+    pivot.at = {s * x, s * y, 0.0};
+    equations(body, pivot);
+    return pivot;
 }
 
 // Fills in edges, faces and vertices; `kept` has the moments of each vertex, then those of each edge.

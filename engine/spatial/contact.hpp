@@ -38,12 +38,12 @@ inline double least_support(const Body& body, const Pivot& stance, Vec force, Ve
     if (stance.contact != kRest) return normal;
     const Vec pressure = arms + normal * stance.at;  // Eq. 93
     if (body.round) return (normal * body.radius - std::sqrt(pressure.x * pressure.x + pressure.y * pressure.y)) / body.size;
-    double least = normal;
+    double smallest = normal;
     for (int i = 0; i < body.count; ++i) {
         const Vec arm = pressure - normal * body.vertices[i];
-        least = lesser(least, (arm.x * body.inward[i].x + arm.y * body.inward[i].y) / body.size);
+        smallest = lesser(smallest, (arm.x * body.inward[i].x + arm.y * body.inward[i].y) / body.size);
     }
-    return least;
+    return smallest;
 }
 
 inline double impulse_support(const Body& body, const State& s, const Pivot& stance, Vec velocity) {
@@ -53,11 +53,11 @@ inline double impulse_support(const Body& body, const State& s, const Pivot& sta
 
 // Smallest opening speed of a touching point that does not stay in contact.
 inline double opening_speed(const Body& body, const Pivot& stance, Vec velocity, Vec up, std::uint64_t touching) {
-    double least = kFar;
+    double slowest = kFar;
     for (int i = 0; i < body.count; ++i)
         if ((touching & bit(i)) && !(stance.points & bit(i)))
-            least = lesser(least, dot(cross(velocity, body.vertices[i] - stance.at), up));
-    return least;
+            slowest = lesser(slowest, dot(cross(velocity, body.vertices[i] - stance.at), up));
+    return slowest;
 }
 
 inline Vec plastic_after(const Body& body, const State& s, const Pivot& stance) {
@@ -66,7 +66,7 @@ inline Vec plastic_after(const Body& body, const State& s, const Pivot& stance) 
 
 // The largest contact set without tensile impulse or penetration; otherwise that with the smallest tension.
 inline Choice landed(const Body& body, const State& s, std::uint64_t touching, int law, double coefficient) {
-    Choice found;
+    Choice choice;
     const double scale = largest(s.velocity) * body.size;
     const auto takes = [&](const Pivot& stance) {
         const Vec plastic = plastic_after(body, s, stance);
@@ -74,19 +74,19 @@ inline Choice landed(const Body& body, const State& s, std::uint64_t touching, i
         if (push < -kRounding * body.mass * scale) return false;
         const Vec after = stance.contact == kRest ? plastic : velocity_after(body, s, stance, law, coefficient);
         if (!(opening_speed(body, stance, after, s.up, touching) >= -kRounding * scale)) return false;
-        found = {&stance, after, push};
+        choice = {&stance, after, push};
         return true;
     };
-    if (any_candidate(body, touching, takes)) return found;
+    if (any_candidate(body, touching, takes)) return choice;
     any_candidate(body, touching, [&](const Pivot& stance) {
         const Vec after = plastic_after(body, s, stance);
         const double opening = opening_speed(body, stance, after, s.up, touching & ~stance.points);
         const double push = impulse_support(body, s, stance, after);
         const bool sinks = opening < -kRounding * largest(after) * body.size;
-        if (!sinks && (!found.stance || push > found.push)) found = {&stance, after, push};
+        if (!sinks && (!choice.stance || push > choice.push)) choice = {&stance, after, push};
         return false;
     });
-    return found;
+    return choice;
 }
 
 struct Forces {
@@ -104,23 +104,23 @@ inline Forces forces(const Body& body, const Pivot& stance, Vec velocity, Vec up
 
 // The first contact set that stays when no gap opens with a speed, a preferred one before the others.
 inline Choice held(const Body& body, const State& s, std::uint64_t touching, const Pivot* first) {
-    Choice found;
+    Choice choice;
     const double scale = norm(s.field);
     const auto holds = [&](const Pivot& stance) {
         const Vec velocity = plastic_after(body, s, stance);
-        const Forces made = forces(body, stance, velocity, s.up, s.field);
-        if (made.support < -kRounding * body.mass * scale) return false;
+        const Forces reaction = forces(body, stance, velocity, s.up, s.field);
+        if (reaction.support < -kRounding * body.mass * scale) return false;
         for (int i = 0; i < body.count; ++i) {
             if (!(touching & bit(i)) || (stance.points & bit(i))) continue;
             const Vec arm = body.vertices[i] - stance.at;
-            if (!(dot(cross(made.rate, arm) + cross(velocity, cross(velocity, arm)), s.up) >= -kRounding * scale)) return false;
+            if (!(dot(cross(reaction.rate, arm) + cross(velocity, cross(velocity, arm)), s.up) >= -kRounding * scale)) return false;
         }
-        found = {&stance, velocity, made.support};
+        choice = {&stance, velocity, reaction.support};
         return true;
     };
-    if (first && holds(*first)) return found;
+    if (first && holds(*first)) return choice;
     any_candidate(body, touching, [&](const Pivot& stance) { return !(first && first->points == stance.points) && holds(stance); });
-    return found;
+    return choice;
 }
 
 // Contact if points that would close again at once stay closed.
@@ -132,8 +132,8 @@ inline Choice settled(const Body& body, const State& s, const Choice& choice, st
     std::uint64_t near = weak ? body.every() : choice.stance->points & touching;
     for (int i = 0; i < body.count && !weak; ++i)
         if ((touching & bit(i)) && dot(cross(choice.velocity, body.vertices[i] - choice.stance->at), s.up) <= slow) near |= bit(i);
-    const Choice found = held(body, s, near, choice.stance);
-    return found.stance ? found : choice;
+    const Choice next = held(body, s, near, choice.stance);
+    return next.stance ? next : choice;
 }
 
 // The stance that initial conditions imply: the lowest of the touching points stay where they are.

@@ -27,9 +27,9 @@ void Run<D>::start() {
     if (stance_->contact == kRest || touching == body_.every()) flatten();
     touching_ = touching & ~stance_->points;
     if (touching_ && largest(velocity_) == 0.0) {
-        const Choice found = held(body_, state(), touching, stance_);
-        if (found.stance) {
-            stand(*found.stance);
+        const Choice choice = held(body_, state(), touching, stance_);
+        if (choice.stance) {
+            stand(*choice.stance);
             touching_ = touching & ~stance_->points;
         }
     }
@@ -45,17 +45,17 @@ void Run<D>::rest() {
         const double begin = motion_.times[stretch_];
         tau = (time_ - begin) / (motion_.times[stretch_ + 1] - begin);
     }
-    const Uplift found = Rest<D>(body_, motion_, row_.scale, set_.gravity, x_, y_).next(stretch_, tau);
-    if (found.stretch < 0) {
+    const Uplift uplift = Rest<D>(body_, motion_, row_.scale, set_.gravity, x_, y_).next(stretch_, tau);
+    if (uplift.stretch < 0) {
         time_ = greater(horizon_, time_);
         return stop(made_.events ? kRocked : kNoUplift, kGood);
     }
-    stretch_ = found.stretch;
+    stretch_ = uplift.stretch;
     const double begin = motion_.times[stretch_];
-    time_ = greater(begin + found.tau * (motion_.times[stretch_ + 1] - begin), time_);
+    time_ = greater(begin + uplift.tau * (motion_.times[stretch_ + 1] - begin), time_);
     const State now = state();
     const Pivot* stance = nullptr;
-    if (!body_.round) stance = lifted(body_, now, found);
+    if (!body_.round) stance = lifted(body_, now, uplift);
     if (body_.round && now.field.z < 0.0) {
         const Vec pressure = body_.centre.z * now.field - now.field.z * body_.centre;
         stance = &rim(pressure.x, pressure.y, kVertex);

@@ -63,9 +63,9 @@ inline void series(const Pivot& pivot, const Four* state, double length, const d
         other = other + w[0] * wr[k];
         if (k > 0) other = other + w[k] * wr[0];
         rate = rate + pivot.gyro[0] * all_of<0>(same) + pivot.gyro[1] * all_of<1>(same);
-        Four rest = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
-        rest = rest + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
-        rate = rate + rest;  // Eq. 22
+        Four remainder = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
+        remainder = remainder + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
+        rate = rate + remainder;  // Eq. 22
         const Four a = turned<N>(x, xr, w, wr, k, inverse), b = turned<N>(y, yr, w, wr, k, inverse);
         const Four c = turned<N>(z, zr, w, wr, k, inverse);
         x[k + 1] = next_of(a), xr[k + 1] = mixed<2, 0, 1, 3>(a);
@@ -112,11 +112,11 @@ inline Four value_at(const Four* c, int order, double at) {
 }
 
 // Makes a part of the step its unit of time; velocities become radians per part.
-inline void shorten(Series& s, double part) {
+inline void shorten(Series& s, double fraction) {
     double power = 1.0;
-    for (int k = 0; k <= s.order; ++k, power *= part) {
+    for (int k = 0; k <= s.order; ++k, power *= fraction) {
         s.x[k] = s.x[k] * four(power), s.y[k] = s.y[k] * four(power), s.z[k] = s.z[k] * four(power);
-        s.w[k] = s.w[k] * four(power * part);
+        s.w[k] = s.w[k] * four(power * fraction);
     }
 }
 

@@ -82,10 +82,10 @@ inline Vec by_position(const Body& body, const State& before, const Pivot& onto,
     if (onto.contact == kEdge) step = step - dot(step, onto.axis) * onto.axis;
     const Vec speed = cross(s.velocity, body.centre - s.pivot);
     const double k = largest(step) > 1e-12 * body.size ? lesser(positions.at(step), highest) : 1.0;  // 1 where there is no step
-    Vec made = about_impulse(body, s, onto, step, k);
-    if (k < 1.0 && dot(s.up, cross(made, onto.arm) - speed) < 0.0) made = about_impulse(body, s, onto, step, 1.0);
-    const double first = dot(s.velocity, body.inertia * s.velocity) + body.mass * dot(speed, speed), left = dot(made, onto.inertia * made);
-    return left > first ? std::sqrt(first / left) * made : made;
+    Vec velocity = about_impulse(body, s, onto, step, k);
+    if (k < 1.0 && dot(s.up, cross(velocity, onto.arm) - speed) < 0.0) velocity = about_impulse(body, s, onto, step, 1.0);
+    const double first = dot(s.velocity, body.inertia * s.velocity) + body.mass * dot(speed, speed), left = dot(velocity, onto.inertia * velocity);
+    return left > first ? std::sqrt(first / left) * velocity : velocity;
 }
 
 inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, int law, double coefficient) {

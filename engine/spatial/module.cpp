@@ -25,18 +25,18 @@ using Table = nb::ndarray<T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 constexpr std::int64_t kChunk = 8, kMostCorners = 64, kKeptNumbers = 117;
 
 static std::vector<std::string> instruction_sets() {
-    std::vector<std::string> found;
+    std::vector<std::string> names;
 #if defined(ROCKING_X86)
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) found.push_back("avx512");
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found.push_back("avx2");
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) names.push_back("avx512");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) names.push_back("avx2");
 #endif
-    found.push_back("plain");
-    return found;
+    names.push_back("plain");
+    return names;
 }
 
-static void expect(bool fine, const char* what) {
-    if (!fine) throw std::invalid_argument(what);
+static void expect(bool fine, const char* message) {
+    if (!fine) throw std::invalid_argument(message);
 }
 
 class Stock {
@@ -54,16 +54,16 @@ public:
             const std::int64_t *corners_of = n.corners + i * kBodyPlaces, first = corners_of[0], count = corners_of[1];
             expect(first >= 0 && count >= 0 && count != 1 && count != 2 && count <= kMostCorners && first + count <= n.vertex_count,
                    "a body names vertices that are not there");
-            for (const std::int64_t* place : {corners_of + 2, corners_of + 4})
-                expect(place[0] >= 0 && place[1] >= 0 && place[0] + place[1] <= n.position_count, "a body names intervals that are not there");
+            for (const std::int64_t* range : {corners_of + 2, corners_of + 4})
+                expect(range[0] >= 0 && range[1] >= 0 && range[0] + range[1] <= n.position_count, "a body names intervals that are not there");
         }
         for (std::int64_t i = 0; i < n.motion_count; ++i) {
             const std::int64_t* p = n.places + 3 * i;
             expect(p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] + p[2] < n.time_count && p[1] + p[2] * 3 * (degree + 1) <= n.acceleration_count,
                    "a motion names numbers that are not there");
         }
-        const auto known = instruction_sets();
-        expect(std::find(known.begin(), known.end(), isa) != known.end(), "an instruction set of this processor expected");
+        const auto supported = instruction_sets();
+        expect(std::find(supported.begin(), supported.end(), isa) != supported.end(), "an instruction set of this processor expected");
 #if defined(ROCKING_X86)
         if (isa == "avx512") engine_ = avx512::engine_of(n);
         if (isa == "avx2") engine_ = avx2::engine_of(n);

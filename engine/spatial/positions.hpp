@@ -20,12 +20,12 @@ struct Positions {
         if (angle < p[0]) angle += 2.0 * 3.141592653589793;
         for (int i = 1; i < intervals && angle >= rows[i * kInterval]; ++i) p += kInterval;
         const double x = (2.0 * angle - p[0] - p[1]) / (p[1] - p[0]);
-        double one = 0.0, two = 0.0;
+        double current = 0.0, two = 0.0;
         for (int k = kInterval - 1; k > 2; --k) {
-            const double sum = 2.0 * x * one - two + p[k];
-            two = one, one = sum;
+            const double sum = 2.0 * x * current - two + p[k];
+            two = current, current = sum;
         }
-        return x * one - two + p[2];
+        return x * current - two + p[2];
     }
 };
 

@@ -19,21 +19,21 @@ struct Step {
     double spin(int k, Vec axis) const { return dot(vec(s.w[k]), axis) / length; }
 };
 
-inline void multiply(const double* a, const double* b, int order, double* made) {
+inline void multiply(const double* a, const double* b, int order, double* product) {
     for (int k = 0; k <= order; ++k) {
-        made[k] = 0.0;
-        for (int j = 0; j <= k; ++j) made[k] += a[j] * b[k - j];
+        product[k] = 0.0;
+        for (int j = 0; j <= k; ++j) product[k] += a[j] * b[k - j];
     }
 }
 
 // Vertical force per unit mass, up to the order of the series less two.
-inline void normal_force(const Step& step, double* made) {
+inline void normal_force(const Step& step, double* force) {
     const double rate = 1.0 / (step.length * step.length);
-    for (int k = 0; k + 2 <= step.s.order; ++k) made[k] = (k + 2) * (k + 1) * rate * step.c[k + 2][2] - step.field[k][2];  // Eq. 96
+    for (int k = 0; k + 2 <= step.s.order; ++k) force[k] = (k + 2) * (k + 1) * rate * step.c[k + 2][2] - step.field[k][2];  // Eq. 96
 }
 
 // Vertical force per unit mass at the second end of an edge.
-inline void second_force(const Pivot& edge, const Step& step, double* made) {
+inline void second_force(const Pivot& edge, const Step& step, double* force) {
     const int n = step.s.order, top = n - 2;
     double spin[kMostOrder + 1], rate[kMostOrder + 1], square[kMostOrder + 1], a[kMostOrder + 1], b[kMostOrder + 1];
     double height[kMostOrder + 1], push[kMostOrder + 1], part[3][kMostOrder + 1];
@@ -49,18 +49,18 @@ inline void second_force(const Pivot& edge, const Step& step, double* made) {
     multiply(b, square, top, part[1]);
     multiply(height, push, top, part[2]);
     for (int k = 0; k <= top; ++k)
-        made[k] = (part[2][k] - part[0][k] - part[1][k] - step.field[k][2] * edge.along) / edge.length;  // Eq. 97
+        force[k] = (part[2][k] - part[0][k] - part[1][k] - step.field[k][2] * edge.along) / edge.length;  // Eq. 97
 }
 
 // Acceleration of the gap of an end of an edge if the body turned about the other end alone.
-inline void opening_of(const Body& body, const Pivot& edge, const Step& step, int which, double* made) {
+inline void opening_of(const Body& body, const Pivot& edge, const Step& step, int which, double* opening) {
     const int top = step.s.order - 2;
     const Vec stays = which ? edge.at : edge.at + edge.length * edge.axis, arm = body.centre - stays;
     const Vec leaves = (which ? edge.length : -edge.length) * edge.axis, across{-step.heading.y, step.heading.x, 0.0};
     const Mat inertia = body.about(stays), solve = inverse(inertia);
     const Vec spun = cross(edge.axis, inertia * edge.axis);
     double spin[kMostOrder + 1], square[kMostOrder + 1];
-    for (int k = 0; k <= top; ++k) spin[k] = step.spin(k, edge.axis), made[k] = 0.0;
+    for (int k = 0; k <= top; ++k) spin[k] = step.spin(k, edge.axis), opening[k] = 0.0;
     multiply(spin, spin, top, square);
     Vec torque[kMostOrder + 1], lever[kMostOrder + 1];
     for (int k = 0; k <= top; ++k) {
@@ -73,7 +73,7 @@ inline void opening_of(const Body& body, const Pivot& edge, const Step& step, in
         lever[k] = solve * cross(leaves, step.up(k));
     }
     for (int k = 0; k <= top; ++k)
-        for (int j = 0; j <= k; ++j) made[k] += dot(lever[j], torque[k - j]);  // Eq. 98
+        for (int j = 0; j <= k; ++j) opening[k] += dot(lever[j], torque[k - j]);  // Eq. 98
 }
 
 struct Release {
@@ -98,18 +98,18 @@ inline Release first_release(const Body& body, const Pivot& stance, const Step& 
     const int top = step.s.order - 2;
     double normal[kMostOrder + 1], force[2][kMostOrder + 1];
     normal_force(step, normal);
-    Release made{first_zero(normal, top, false, 0.0), -1};
-    if (stance.contact != kEdge) return made;
+    Release release{first_zero(normal, top, false, 0.0), -1};
+    if (stance.contact != kEdge) return release;
     second_force(stance, step, force[1]);
     for (int k = 0; k <= top; ++k) force[0][k] = normal[k] - force[1][k];
     for (int which = 0; which < 2; ++which) {
-        double rest = force[which][0];
-        for (int k = 1; k <= top; ++k) rest -= std::fabs(force[which][k]);
-        if (rest > 0.0) continue;
+        double lower_bound = force[which][0];
+        for (int k = 1; k <= top; ++k) lower_bound -= std::fabs(force[which][k]);
+        if (lower_bound > 0.0) continue;
         const double at = opens(body, stance, step, which, force[which]);
-        if (at < made.at) made = {at, which};
+        if (at < release.at) release = {at, which};
     }
-    return made;
+    return release;
 }
 
 }  // namespace ROCKING_ISA

@@ -46,8 +46,8 @@ public:
     Uplift next(std::int64_t stretch, double tau) const {
         for (; stretch < motion_.count; ++stretch, tau = 0.0) {
             if (tau == 0.0 && surely_held(stretch)) continue;
-            const Uplift found = within(stretch, tau);
-            if (found.stretch >= 0) return found;
+            const Uplift uplift = within(stretch, tau);
+            if (uplift.stretch >= 0) return uplift;
         }
         return {};
     }
@@ -61,21 +61,21 @@ private:
         const double* a = motion_.data + stretch * (D + 1) * 3;
         bool held = true;
         for (int e = 0; e < rows_; ++e) {
-            double least = gravity_ * by_[e].z;
+            double smallest = gravity_ * by_[e].z;
             for (int d = 0; d <= D; ++d) {
                 const double c = scale_ * (by_[e].x * a[3 * d] + by_[e].y * a[3 * d + 1] + by_[e].z * a[3 * d + 2]);
-                least += d == 0 ? c : lesser(c, 0.0);
+                smallest += d == 0 ? c : lesser(c, 0.0);
             }
-            held = held && least > 0.0;
+            held = held && smallest > 0.0;
         }
         return held;
     }
 
     double low(std::int64_t stretch, int row, double* c) const {
         fill(stretch, row, c);
-        double least = c[0];
-        for (int k = 1; k <= order_; ++k) least += lesser(c[k], 0.0);
-        return least;
+        double smallest = c[0];
+        for (int k = 1; k <= order_; ++k) smallest += lesser(c[k], 0.0);
+        return smallest;
     }
 
     void fill(std::int64_t stretch, int row, double* c) const {
@@ -110,13 +110,13 @@ private:
     Uplift within(std::int64_t stretch, double tau) const {
         double c[kMostVertices][kMostHolds + 1], least = kFar, first = kFar;
         const double same = kSame * gravity_ * body_.size;
-        Uplift made{stretch, tau, 0, -1, -1};
+        Uplift uplift{stretch, tau, 0, -1, -1};
         for (int e = 0; e < rows_; ++e) {
             fill(stretch, e, c[e]);
             if (tau > 0.0) shift(c[e], order_, tau, 1.0 - tau);
             least = lesser(least, c[e][0]);
         }
-        if (least < -same) return made;
+        if (least < -same) return uplift;
         for (int e = 0; e < rows_; ++e) {
             const double at = c[e][0] > 0.0 ? first_fall(c[e], order_) : (falls_at_once(c[e], order_) ? 0.0 : kNone);
             if (at < kWhole) first = lesser(first, at);  // at the very end the next stretch decides
@@ -124,11 +124,11 @@ private:
         if (first == kFar) return {};
         for (int e = 0; e < rows_ && !body_.round; ++e) {
             if (value_of(c[e], order_, first) > same) continue;
-            if (made.edges < 2) (made.edges == 0 ? made.first : made.second) = e;
-            ++made.edges;
+            if (uplift.edges < 2) (uplift.edges == 0 ? uplift.first : uplift.second) = e;
+            ++uplift.edges;
         }
-        made.tau = tau + (1.0 - tau) * first;
-        return made;
+        uplift.tau = tau + (1.0 - tau) * first;
+        return uplift;
     }
 
     const Body& body_;

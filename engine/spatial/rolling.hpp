@@ -20,11 +20,11 @@ public:
         for (int k = 0; k < order; ++k) {
             contact(k);
             dynamics(k);
-            const double part = length_ / (k + 1);
-            for (auto& a : axis_) a[k + 1] = part * crossed(a, w_, k);
-            w_[k + 1] = part * spin_[k];
-            n_[k + 1] = part * bend_[k];
-            h_[k + 1] = -part * flattening(k);
+            const double factor = length_ / (k + 1);
+            for (auto& a : axis_) a[k + 1] = factor * crossed(a, w_, k);
+            w_[k + 1] = factor * spin_[k];
+            n_[k + 1] = factor * bend_[k];
+            h_[k + 1] = -factor * flattening(k);
         }
         write(order);
     }
@@ -104,10 +104,10 @@ private:
 inline void read_rolling(const Body& body, Step& step) {
     double root[kMostOrder + 1];
     for (int k = 0; k <= step.s.order; ++k) {
-        double rest = 0.0;
-        for (int j = 0; j <= k; ++j) rest += step.s.z[j][0] * step.s.z[k - j][0] + step.s.z[j][1] * step.s.z[k - j][1];
-        for (int j = 1; j < k; ++j) rest -= root[j] * root[k - j];
-        root[k] = k == 0 ? std::sqrt(rest) : rest / (2.0 * root[0]);
+        double residual = 0.0;
+        for (int j = 0; j <= k; ++j) residual += step.s.z[j][0] * step.s.z[k - j][0] + step.s.z[j][1] * step.s.z[k - j][1];
+        for (int j = 1; j < k; ++j) residual -= root[j] * root[k - j];
+        root[k] = k == 0 ? std::sqrt(residual) : residual / (2.0 * root[0]);
         const double height = dot(step.up(k), body.centre) + body.radius * root[k];
         step.c[k] = Four{height, height, height, step.s.z[k][2]};
     }

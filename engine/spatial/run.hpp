@@ -48,7 +48,7 @@ private:
 
     // ---- a step -----------------------------------------------------------------------------------------------------
 
-    void load_field(double length, bool whole);
+    void load_field(double length, bool is_full);
     template <int N>
     bool advance(double angle);
     template <int N>
@@ -63,8 +63,8 @@ private:
     bool ends_hold() const;
     void spell_out();
     void locate();
-    void shorten_step(double part);
-    void arrive(double at, bool whole);
+    void shorten_step(double fraction);
+    void arrive(double at, bool ends_stretch);
     void keep(double start, double at, Vec before, Vec spin);
     void follow(double start, double at, Vec before);
     void look_for_end();

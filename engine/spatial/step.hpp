@@ -6,7 +6,7 @@ namespace rocking::spatial {
 namespace ROCKING_ISA {
 
 template <int D>
-void Run<D>::load_field(double length, bool whole) {
+void Run<D>::load_field(double length, bool is_full) {
     double(*f)[3] = step_.field;
     for (int k = 0; k <= kMostOrder; ++k) f[k][0] = f[k][1] = f[k][2] = 0.0;
     if (stretch_ < motion_.count) {
@@ -15,7 +15,7 @@ void Run<D>::load_field(double length, bool whole) {
         for (int i = 0; i < 3; ++i) {
             double c[D + 1];
             for (int d = 0; d <= D; ++d) c[d] = -row_.scale * a[3 * d + i];
-            if (!(whole && time_ == begin)) shift(c, D, (time_ - begin) / unit, length / unit);
+            if (!(is_full && time_ == begin)) shift(c, D, (time_ - begin) / unit, length / unit);
             for (int d = 0; d <= D; ++d) f[d][i] = c[d];
         }
     }
@@ -219,23 +219,23 @@ bool Run<D>::ends_hold() const {
 }
 
 template <int D>
-void Run<D>::shorten_step(double part) {
+void Run<D>::shorten_step(double fraction) {
     spell_out();
-    shorten(step_.s, part);
-    step_.length *= part;
+    shorten(step_.s, fraction);
+    step_.length *= fraction;
     double power = 1.0;
-    for (int k = 0; k <= step_.s.order; ++k, power *= part) {
-        turn_.cosine[k] *= power, turn_.sine[k] *= power, turn_.rate[k] *= power * part;
+    for (int k = 0; k <= step_.s.order; ++k, power *= fraction) {
+        turn_.cosine[k] *= power, turn_.sine[k] *= power, turn_.rate[k] *= power * fraction;
     }
     power = 1.0;
-    for (int k = 0; k <= D; ++k, power *= part)
+    for (int k = 0; k <= D; ++k, power *= fraction)
         for (int i = 0; i < 3; ++i) step_.field[k][i] *= power;
     whole_ = to_horizon_ = false;
 }
 
 // Moves to a place within the step.
 template <int D>
-void Run<D>::arrive(double at, bool whole) {
+void Run<D>::arrive(double at, bool ends_stretch) {
     const Series& s = step_.s;
     const Vec before = z_, spin = velocity_;
     const double start = time_, rate = 1.0 / step_.length;
@@ -257,7 +257,7 @@ void Run<D>::arrive(double at, bool whole) {
     if (stance_->contact == kRolling) stance_ = &rim(-z_.x, -z_.y, kRolling);
     if (at != 1.0 || ++upkeep_ >= kUpkeep) straighten(), upkeep_ = 0;
     time_ = start + at * step_.length;
-    if (whole) time_ = motion_.times[++stretch_];
+    if (ends_stretch) time_ = motion_.times[++stretch_];
     else if (to_horizon_ && at == 1.0) time_ = horizon_;
     keep(start, at, before, spin);
     if (trace_) trace_->push_back({time_, -1, stance_->contact, stance_->number, 0.0, 0.0, x_, y_, z_, velocity_});

@@ -22,9 +22,9 @@ inline double slope_of(const double* c, int order, double at) {
 
 // Of a polynomial that starts above zero: its first fall in (0, 1], or kNone.
 inline double first_fall(const double* c, int order) {
-    double rest = c[0], padded[kMostOrder + 1] = {};
-    for (int k = 1; k <= order; ++k) rest += lesser(c[k], 0.0);
-    if (rest > 0.0) return kNone;
+    double residual = c[0], padded[kMostOrder + 1] = {};
+    for (int k = 1; k <= order; ++k) residual += lesser(c[k], 0.0);
+    if (residual > 0.0) return kNone;
     for (int k = 0; k <= order; ++k) padded[k] = c[k];
     if (order <= 4) return rocking::ROCKING_ISA::first_zero<4>(padded);
     if (order <= 8) return rocking::ROCKING_ISA::first_zero<8>(padded);
