@@ -175,7 +175,7 @@ def test_a_restitution_that_creates_energy_has_an_error_of_its_own(client):
 
 
 REFUSED = {
-    "nothing moves": ({"motion": None}, "no motion; choose a motion"),
+    "nothing moves": ({"motion": None}, "No ground motion"),
     "both": ({"response": {"initial_rotation": 0.5}}, "not both"),
     "nan": ({"motion": {**PULSE, "scale": 1e400}}, "exceeds the range of float64"),
     "zero scale": ({"motion": {**PULSE, "scale": 0.0}}, "nothing would move"),
