@@ -256,7 +256,7 @@ def spatial(item, hazard, scale=1.0):
     """Outcomes along width and depth by one history after another of the body in space."""
     motions = [replace(each, acceleration=scale * each.acceleration) for each in hazard.motions]
     shaken = [{axis: each} for axis in "xy" for each in motions]
-    found = simulate_many(item.as_solid(), shaken, restitution="ked", friction=item.friction)
+    found = simulate_many(item.as_solid(), shaken, friction=item.friction)
     return found.outcome.values.ravel()
 
 

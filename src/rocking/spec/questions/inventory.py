@@ -135,8 +135,7 @@ class InventoryQuestion(StudyQuestion):
 
         With friction or body files over object, model of impact, motion and direction.
         """
-        from rocking.studies.histories import JoinedHistories
-        from rocking.studies.inventory.assessment import assessment_plan
+        from rocking.studies.inventory.assessment import DEFAULT_MODELS, assessment_plan
         from rocking.studies.inventory.objects import DIRECTIONS
         from rocking.studies.study_plan import Study, along, labels_along, motions_along
 
@@ -147,9 +146,7 @@ class InventoryQuestion(StudyQuestion):
                 objects, hazard, restitution=restitution, thresholds=limits, gravity=problem.settings.gravity,
                 friction=problem.settings.stated.get("friction"),
             )  # fmt: skip
-        names = ("asked", "compared") if restitution is not None else ("calibrated", "housner", "ked")
-        if isinstance(histories, JoinedHistories) and restitution is None:
-            names = ("calibrated; ked in three dimensions", *names[1:])
+        names = ("asked", "compared") if restitution is not None else DEFAULT_MODELS
         coordinates = {
             "motion": motions_along(histories.motions),
             "object": labels_along("object", (item.name for item in items), "name of the object"),

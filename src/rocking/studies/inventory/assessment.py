@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Block
-from rocking.conventions import FloatArray, IntArray, g
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, FloatArray, IntArray, g
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
@@ -137,6 +137,9 @@ class Assessment:
 
 
 _ROLLS = Message("its friction was not used: a round object rocks in a plane")
+
+DEFAULT_MODELS = (DEFAULT_RESTITUTION, *reversed(COMPARED_RESTITUTIONS))
+"""Restitution models of an inventory without a stated one: the first gives the rating."""
 
 PIECE = 1 << 18
 """Histories held in memory at once unless one object has more."""
@@ -270,11 +273,10 @@ class _Assessor:
         self.gravity = checks.positive("gravity", gravity, "m/s2")
         is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
         beside = ("ked",) if is_housner else ("housner",)
-        self.restitutions = ("calibrated", "housner", "ked") if restitution is None else (restitution, *beside)
+        # in 3D the first is the mean of the calibrated model, without scatter
+        self.restitutions = DEFAULT_MODELS if restitution is None else (restitution, *beside)
         # what nobody asked for by name is drawn with its scatter, for every motion another
         self.drawn, self.draws = restitution is None, Draws(len(hazard.motions), hazard.description.get("seed", SEED))
-        # nothing that was measured rocks in space: there the default is the paper's model, and both others stand beside
-        self.spatial = ("ked", "housner", "ked") if restitution is None else self.restitutions
         # a wrong word is the user's slip, not that of every row: it is refused here
         example = Block(width=1.0, height=4.0)
         self.labels = tuple(RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions)
@@ -348,12 +350,11 @@ class _Assessor:
         """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
         try:
             row = self._histories_in_space(item)
-            parts = {id(part): part for part in row.parts}  # a model that stands twice is computed once
-            found = {key: results_of(part, threads=threads, progress=progress) for key, part in parts.items()}
+            results = [results_of(part, threads=threads, progress=progress) for part in row.parts]
         except RockingError as error:
             return NotAssessed.of(item, error.sentence)
         names = ("outcome", "peak_rotation")
-        return row.rule({name: np.concatenate([found[id(part)][name] for part in row.parts]) for name in names})
+        return row.rule({name: np.concatenate([part[name] for part in results]) for name in names})
 
     def _moving(self, item: InventoryObject, threads: int | None = None) -> SpatialObject:
         return SpatialObject(item, self.hazard, self.draws, self.gravity, self._friction(item), threads)
@@ -379,11 +380,7 @@ class _Assessor:
     def _histories_in_space(self, item: InventoryObject) -> ObjectHistories:
         moving = self._moving(item)
         lifts = moving.moves()
-        models: list[list[Product]] = []
-        for restitution in self.spatial:
-            first = self.spatial.index(restitution)
-            known = first < len(models)
-            models.append(models[first] if known else [rows for _, rows in moving.histories(restitution, self.order)])
+        models = [[rows for _, rows in moving.histories(each, self.order)] for each in self.restitutions]
         angle = np.concatenate([np.full(len(one.motions), one.sides["alpha_right"].item()) for one in models[0]])
         shape = (-1, len(DIRECTIONS), len(self.labels))
 
@@ -475,7 +472,9 @@ class _Assessor:
                 continue
             share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
             if self.moves_in_space(each.item):
-                found.append(planner.entry_in_space(self._moving(each.item, threads), self.spatial[0], share, weight))
+                found.append(
+                    planner.entry_in_space(self._moving(each.item, threads), self.restitutions[0], share, weight)
+                )
             else:
                 lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)
                 wanted.append((each.item, lifted, share, weight))
