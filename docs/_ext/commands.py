@@ -1,6 +1,6 @@
 """The pages of the command line: commands that run when the manual is built, and options as the parser has them.
 
-`command` runs lines in a folder that the commands of a page share and shows their output; `:show: FILE` a picture.
+`command` runs commands in one folder per page and shows their output; `:show: FILE` shows a picture.
 `command-options` lists the arguments and options of a command; `command-list` lists all commands in their groups.
 """
 

@@ -1,6 +1,6 @@
-"""Where each equation of the theory is computed, read from the comments of the code that cite its number.
+"""Files that compute each equation of the theory, from the comments of the code that cite its number.
 
-Beneath an equation stand the files that compute it; the directive `equations` lists all by number.
+The files are below each equation; the directive `equations` lists all equations by number.
 """
 
 from benchmarks import house_citations
@@ -11,7 +11,7 @@ from sphinx.util.docutils import SphinxDirective
 
 
 def shown(path: str) -> str:
-    """Return the path of a file of the code, as the pages print it."""
+    """Return the path of a file as on the pages."""
     return path.removeprefix("src/rocking/")
 
 
@@ -34,7 +34,7 @@ class Equations(SphinxDirective):
 
 
 def note_files(app: Sphinx, document: nodes.document, page: str) -> None:
-    """Put beneath the equations of a page the files that compute them."""
+    """Add the files that compute an equation below each equation of a page."""
     if not page.startswith("theory/"):
         return
     computed = house_citations.computed()
@@ -49,7 +49,7 @@ def note_files(app: Sphinx, document: nodes.document, page: str) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx."""
+    """Register with Sphinx."""
     app.add_directive("equations", Equations)
     app.connect("doctree-resolved", note_files)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

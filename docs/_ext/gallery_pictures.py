@@ -1,4 +1,4 @@
-"""The gallery: its order, from easy to deep, and the pictures that its scripts write.
+"""The gallery: its order, from simple to advanced, and the pictures of its scripts.
 
 A picture belongs to the block of code that names it, as in ``write(figure, "overturning_map.png")``: there the page and
 the notebook show it.
@@ -96,7 +96,7 @@ PARTS = {
     "falling_by_direction": (1, 0, (0.0, 0.06, 0.36, 0.86)),
     "which_intensity_measure": (1, 0, (0.0, 0.1, 0.6, 1.0)),
 }
-"""What a thumbnail shows, if not a whole first picture: which picture, frame, part (left, top, right, bottom)."""
+"""Source of a thumbnail other than the first picture: picture, frame, segment (left, top, right, bottom)."""
 
 _INCH, _WIDEST, _THUMBNAIL, _MARGIN = 120, 900, (456, 312), 12
 """Dots of a page in an inch of a picture, width of its text [px]; thumbnails and their margin at twice their size."""
@@ -143,7 +143,7 @@ def _copied(written: Path, target: Path) -> int:
 
 
 def thumbnails(app: Sphinx) -> None:
-    """Draw the thumbnails anew: a part of the picture that one recognises, without its margin, on white."""
+    """Write the thumbnails: a recognisable segment of the picture, without its margin, on white."""
     for section, scripts in SECTIONS.items():
         folder = Path(app.srcdir) / "gallery" / section / "images"
         for script in scripts:
@@ -177,7 +177,7 @@ _plain_notebook = gen_rst.jupyter_notebook
 def setup(app: Sphinx) -> dict[str, bool]:
     """Let notebooks show pictures, and scripts run in a copy of their folder, into which they write."""
     gen_rst.jupyter_notebook = notebook
-    warnings.simplefilter("error", PlausibilityWarning)  # what examples show was meant
+    warnings.simplefilter("error", PlausibilityWarning)  # examples contain no implausible values
     app.connect("builder-inited", thumbnails, priority=900)
     here = Path(app.srcdir)
     shutil.rmtree(copy := here.parent / "build" / "examples", ignore_errors=True)

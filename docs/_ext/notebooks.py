@@ -1,4 +1,4 @@
-"""Pages that hold code become notebooks to download: without outputs, and without links into the manual."""
+"""Write pages with code as notebooks for download, without outputs and without links into the manual."""
 
 import re
 from pathlib import Path
@@ -8,11 +8,11 @@ from sphinx.application import Sphinx
 
 DOWNLOAD = re.compile(r"[ \n]*<a [^>]*\.ipynb[^>]*>[^<]*</a>\.?")
 INWARD = re.compile(r"\[([^\]]+)\]\((?!https?:)[^)]*\)|\{\w+\}`([^`<]+?)(?: <[^`]*)?`")
-"""Links to other pages, in Markdown or by a role, which lead nowhere from a file that somebody has downloaded."""
+"""Links to other pages, in Markdown or by a role, which are invalid in a downloaded file."""
 
 
 def cleaned(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Return a notebook as whoever downloads it should find it."""
+    """Return a notebook for download."""
     cells = []
     for cell in notebook.cells:
         if cell.cell_type == "code":
@@ -27,7 +27,7 @@ def cleaned(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
 
 
 def finished(app: Sphinx, error: Exception | None) -> None:
-    """Write them."""
+    """Write the notebooks."""
     executed = Path(app.outdir).parent / "jupyter_execute"
     if error is None and app.builder.format == "html":
         for name in app.env.found_docs:
@@ -38,6 +38,6 @@ def finished(app: Sphinx, error: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx."""
+    """Register with Sphinx."""
     app.connect("build-finished", finished)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""Scripts that a theme writes into pages become files, so that the pages obey a policy which allows no others."""
+"""Move inline scripts of the theme into files, because the policy of the pages allows files only."""
 
 import hashlib
 import re
@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 
 
 def move(page: Path, static: Path, here: str) -> None:
-    """Move the scripts of a page into files beside the theme's."""
+    """Move the scripts of a page into files of the theme's folder."""
 
     def moved(script: re.Match[str]) -> str:
         name = f"inline-{hashlib.sha256(script[1].encode()).hexdigest()[:12]}.js"
@@ -28,6 +28,6 @@ def finished(app: Sphinx, error: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx."""
+    """Register with Sphinx."""
     app.connect("build-finished", finished)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

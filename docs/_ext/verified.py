@@ -24,7 +24,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 ROOT = Path(__file__).parents[2]
 RUN = ROOT / "build" / "tests.xml"
-ALL_MARKED = ("verification", "validation")  # folders in which every test must say what it verifies
+ALL_MARKED = ("verification", "validation")  # folders whose tests all need a mark
 KINDS = {
     "closed form": "an exact solution, a limit of it or a series of it",
     "computed anew": "the same number by an independent method: quadrature, a general integrator, computer algebra,"
@@ -54,7 +54,7 @@ NEEDS_NO_REFERENCE = {"behaviour", "damage", "negative control"}
 
 @dataclass(frozen=True)
 class Claim:
-    """What a test verifies; `control` is the test of its file that must fail otherwise, or "within"."""
+    """Claim of a test; `control` is the test of its file that must fail otherwise, or "within"."""
 
     path: str
     test: str
@@ -66,7 +66,7 @@ class Claim:
     doi: str = ""
     room: str = ""
     unknown: tuple[str, ...] = ()
-    numbers: frozenset[float] = field(default=frozenset(), repr=False)  # that stand in the test, or beside all tests
+    numbers: frozenset[float] = field(default=frozenset(), repr=False)  # in the test or outside of all tests
 
 
 @cache
@@ -108,14 +108,14 @@ def _mark(node: ast.expr) -> dict[str, str]:
 
 
 def _numbers(found: list[Any]) -> frozenset[float]:
-    """Numbers that stand in code; those in words count if there is nothing but a number."""
+    """Numbers in code; a text counts if it is a number."""
     values = [each.value for node in found for each in ast.walk(node) if isinstance(each, ast.Constant)]
     plain = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
     return frozenset(map(float, plain)) | {float(v) for v in values if isinstance(v, str) and v.isdecimal()}
 
 
 def faults(found: list[Claim]) -> list[str]:
-    """What is wrong with marks."""
+    """Return the faults of marks."""
     wrong = []
     for path in dict.fromkeys(claim.path for claim in found):
         here = [claim for claim in found if claim.path == path]
@@ -153,7 +153,7 @@ def figures(words: str) -> list[float]:
     return [number for number in found if number]
 
 
-# ---- what the last run found ----------------------------------------------------------------------------------------
+# ---- results of the last run -----------------------------------------------------------------------------------------
 
 
 @dataclass
@@ -168,7 +168,7 @@ class Outcome:
 
 @cache
 def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
-    """What a file of pytest's ``--junitxml`` says of each test, and of which day it is; nothing if it is not there."""
+    """Return the results per test and the date of a file of pytest's ``--junitxml``; nothing without a file."""
     if not path.exists():
         return {}, ""
     found: dict[tuple[str, str], Outcome] = {}
@@ -187,7 +187,7 @@ def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
 
 
 def how_closely(claim: Claim) -> str:
-    """What is asked for, what was measured, and what did not pass."""
+    """Return tolerance, measured deviation, and failures."""
     outcome = outcomes()[0].get((claim.path, claim.test), Outcome())
     said = [claim.within] if claim.within else []
     said += [] if outcome.measured is None else [f"measured {outcome.measured:.2g}"]
@@ -233,7 +233,7 @@ def stated(name: str) -> str:
 
 
 def _peer(name: str, word: str) -> str:
-    """In how many of the cases in space a program of others agrees, or differs."""
+    """Return the number of 3D cases in which another program agrees or differs."""
     rows = re.findall(rf"^\|  \| {name} \|.*\| (agrees|differs)[^|]*\|$", (ROOT / SPATIAL).read_text("utf-8"), re.M)
     if not rows:
         raise LookupError(f"{SPATIAL} has no cases of {name}")
@@ -345,7 +345,7 @@ def words(text: str) -> list[nodes.Node]:
 
 
 def row(claim: Claim) -> list[list[nodes.Node] | str]:
-    """One claim: its words and test, against what, how closely, its control."""
+    """Return the row of a claim: text and test, reference, tolerance, control."""
     where = f"{claim.path.removeprefix('tests/')}::{claim.test}"
     test = nodes.literal(where, where, ids=[nodes.make_id(where)])
     against = [nodes.strong(claim.kind, claim.kind), nodes.Text(": " if claim.against else ""), *words(claim.against)]
@@ -361,7 +361,7 @@ def row(claim: Claim) -> list[list[nodes.Node] | str]:
 
 
 class Claims(SphinxDirective):
-    """Tables of claims: of a room; of how many there are without one."""
+    """Tables of claims: of one subject, or the counts of all subjects."""
 
     option_spec: ClassVar = {"room": directives.unchanged_required}
 
@@ -406,7 +406,7 @@ class Stated(SphinxRole):
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx; wrong marks end it here, for a failure amid pages can leave their kernels waiting."""
+    """Register with Sphinx; wrong marks end it here, for a failure amid pages can leave their kernels waiting."""
     if wrong := faults(claims()):
         raise ExtensionError("\n".join(wrong))
     app.add_directive("claims", Claims)
