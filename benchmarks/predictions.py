@@ -46,7 +46,7 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
     friction, sign = random.uniform(*FRICTION), 1.0 if random.random() < 0.5 else -1.0
     fell = rk.simulate_many(truly, motion, coefficients, friction=friction, scale=sign, threads=1).overturned.item()
     known: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
-    known |= {"shares": False, "seed": number, "threads": 1}
+    known |= {"contributions": False, "seed": number, "threads": 1}
     found = [predict(body, motion, friction=mu, count=count, **known) for mu in (FRICTION, TAKEN_FOR_KNOWN)]
     # a share of a finite sample is never quite certain
     said = [(each.chances["overturning"].value * each.count + 0.5) / (each.count + 1.0) for each in found]

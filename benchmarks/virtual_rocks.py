@@ -125,7 +125,7 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, Any]:
     """Return what is said of a rock under each motion, and what then happened to it."""
     solid, shaken = rock(number), [motion(k) for k in range(motions)]
     # what a scan says, which way the rock stands, and nothing else
-    known = predict(solid, shaken, azimuth=0.0, count=count, shares=False, seed=number)
+    known = predict(solid, shaken, azimuth=0.0, count=count, contributions=False, seed=number)
     peaks = [[each["x"].peak, peak_ground_velocity(each["x"])] for each in shaken]
     said = known.chances["overturning"].per_motion
     return {"said": said.tolist(), "fell": fell(solid, shaken, np.random.default_rng([7, number])), "peaks": peaks}

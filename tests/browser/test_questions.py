@@ -64,7 +64,7 @@ def test_how_likely_is_it(open_page: Callable[..., Any], served: Any) -> None:
     assert [each for each in lines if each not in told] == []
     assert outcome.get_by_test_id("verdict").inner_text() == whole["answer"]["verdict"]
     assert outcome.get_by_role("table", name="Probabilities").locator("tbody tr").count() == 3
-    decided = any(share["total"] for share in whole["answer"]["shares"].values())
+    decided = any(share["total"] for share in whole["answer"]["contributions"].values())
     assert outcome.get_by_role("table", name="Contributions to variance").count() == decided
     expect(outcome.locator("img.drawing")).to_be_visible()
     section.get_by_label("friction", exact=True).fill("-1")

@@ -128,7 +128,7 @@ def test_isolators_keep_it_from_lifting():
 DEEP = rk.Block(width=0.5, height=1.8, depth=4.0, density=600.0)
 SHAKEN = rk.GroundMotion(4.0 * np.sin(2.0 * np.pi * TIME / 0.9) * (TIME < 0.9), 0.005)
 UPRIGHT = rk.GroundMotion(np.cos(2.0 * np.pi * TIME / 0.4) * (TIME < 0.8), 0.005)
-ALONE = {"friction": 10.0, "count": 4, "shares": False}
+ALONE = {"friction": 10.0, "count": 4, "contributions": False}
 
 
 def least_factors(body, **known):

@@ -460,10 +460,10 @@ class BodyAssessment:
             )
         facts = {"friction": self.friction, "slope": slope, "result": result}
         sentences.append(Message(_SLIDES_FIRST if self.friction < slope else _SLIDES_LATER, facts))
-        shares = {name: item for name, item in self.prediction.shares.items() if item.total > 0.0}
+        shares = {name: item for name, item in self.prediction.contributions.items() if item.total > 0.0}
         if shares:
             main = max(shares, key=lambda name: shares[name].total)
-            others = [item.total_high for name, item in self.prediction.shares.items() if name != main]
+            others = [item.total_high for name, item in self.prediction.contributions.items() if name != main]
             text = _MAIN_INPUT if shares[main].total_low > max(others, default=0.0) else _NO_MAIN_INPUT
             source = Message("the choice of motion" if main == "case" else main)
             sentences.append(Message(text, {"input": source, "share": min(shares[main].total, 1.0)}))

@@ -134,7 +134,7 @@ class PredictionAnswer:
             page.line(found.decides)
             page.line()
         else:
-            page.rows(found.contributions)
+            page.rows(found.ranked_contributions)
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
         told = found.assumptions.keys() | found.fixed.keys()

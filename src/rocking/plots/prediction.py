@@ -98,7 +98,7 @@ def _motions(axes: "Axes", found: Prediction) -> None:
 
 def _shares(axes: "Axes", found: Prediction) -> None:
     axes.set_xlabel("contribution to the variance of overturning [-]")
-    named = sorted(found.shares.items(), key=lambda pair: -pair[1].total)
+    named = sorted(found.contributions.items(), key=lambda pair: -pair[1].total)
     for row, (_, share) in enumerate(named):
         for offset, value, low, high, color in (
             (-0.18, share.first, share.first_low, share.first_high, COLORS[0]),

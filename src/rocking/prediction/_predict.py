@@ -43,7 +43,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     sliding_beyond: float = SLIDING_BEYOND,
     pga: float | None = None,
     count: int = COUNT,
-    shares: bool = True,
+    contributions: bool = True,
     seed: int = 0,
     normal_restitution: float = 0.0,
     normal_restitution_law: str = "newton",
@@ -89,7 +89,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         stronger horizontal one [m/s2].
     count : int
         Number of sampled bodies, a power of two.
-    shares : bool
+    contributions : bool
         If True, compute the contribution of each input to the variance. This adds ``count / 2`` bodies per input.
     seed : int
         Random seed; results do not depend on the number of threads.
@@ -131,7 +131,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     motions = motion_sequence(motions, pga)
     mechanics = _mechanics(body, motions, inputs, gravity, normal_restitution, normal_restitution_law)
     design = SaltelliDesign(half_count, mechanics.widths, checks.whole("seed", seed))
-    points = design.points if shares else design.points[: 2 * half_count]
+    points = design.points if contributions else design.points[: 2 * half_count]
     results = _counted(mechanics, points, min_sliding, threads, progress)
     sampled = {name: values[: 2 * half_count] for name, values in results.items() if name != "peak"}
     failed = int(np.isnan(results["overturning"]).sum())
@@ -160,7 +160,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         fixed=mechanics.not_sampled,
         sliding_beyond=min_sliding,
         chances={name: _chance(values, design.seed) for name, values in sampled.items()},
-        shares=design.shares(overturned) if shares and not np.isnan(overturned).all() else {},
+        contributions=design.shares(overturned) if contributions and not np.isnan(overturned).all() else {},
         ends=_ends(mechanics, points[: 2 * half_count], overturned[: 2 * half_count]),
         growth=_growth(results, len(points), mechanics.names),
         outcomes=np.unique(results["overturning"][~np.isnan(results["overturning"])]).size,

@@ -108,7 +108,7 @@ class Prediction(Exported):
         Sliding distance that counts as sliding [m].
     chances : dict of str to Chance
         Probabilities of uplift, sliding and overturning.
-    shares : dict of str to VarianceShare
+    contributions : dict of str to VarianceShare
         Contribution of each input, and of the motion as `case`, to the variance of overturning; empty if not computed.
     ends : dict of str to EndsOfRange
         Probability of overturning at the ends of each input.
@@ -134,7 +134,7 @@ class Prediction(Exported):
     fixed: Mapping[str, str]
     sliding_beyond: float
     chances: Mapping[str, Chance]
-    shares: Mapping[str, VarianceShare]
+    contributions: Mapping[str, VarianceShare]
     ends: Mapping[str, EndsOfRange]
     growth: Growth
     outcomes: int
@@ -146,9 +146,9 @@ class Prediction(Exported):
     beside: Mapping[str, Chance] = field(default_factory=dict)
 
     @property
-    def contributions(self) -> AnswerRows:
+    def ranked_contributions(self) -> AnswerRows:
         """Contributions of the uncertain inputs to the variance of overturning, largest first."""
-        ordered = sorted(self.shares.items(), key=lambda pair: -pair[1].total)
+        ordered = sorted(self.contributions.items(), key=lambda pair: -pair[1].total)
         return AnswerRows.of_records(
             {"input": "motion" if name == "case" else name, **vars(share)} for name, share in ordered
         )
@@ -189,11 +189,11 @@ class Prediction(Exported):
     @property
     def decides(self) -> str:
         """Reason for missing contributions to the variance; empty if there are contributions."""
-        if any(share.total for share in self.shares.values()):
+        if any(share.total for share in self.contributions.values()):
             return ""
         if self.outcomes == 1:
             return "All histories have the same outcome; no input contributes to the variance."
-        if self.shares:
+        if self.contributions:
             return "Too few histories differ in their outcome to compute contributions to the variance."
         return "Contributions to the variance were not computed."
 
@@ -266,7 +266,7 @@ class Prediction(Exported):
             "software": SOFTWARE,
             "probability": {name: vars(chance) for name, chance in self.chances.items()},
             "beside": {name: vars(chance) for name, chance in self.beside.items()},
-            "shares": {_input_name(name): asdict(share) for name, share in self.shares.items()},
+            "contributions": {_input_name(name): asdict(share) for name, share in self.contributions.items()},
             "ends": {
                 name: {
                     "input_low": item.low, "input_high": item.high, "probability_low": item.probability_low,
@@ -302,12 +302,12 @@ class Prediction(Exported):
             for end, meaning in (("", "probability of {}"), ("_low", "2.5 % of it"), ("_high", "97.5 % of it")):
                 values = getattr(chance, f"per_motion{end}")
                 columns[f"{name}{end}"] = Column(values, "1", meaning.format(name))
-        names = list(dict.fromkeys([*self.inputs, *self.shares]))
+        names = list(dict.fromkeys([*self.inputs, *self.contributions]))
         beside = {"name": Column(text_array(list(map(_input_name, names))), "", "uncertain input")}
-        nothing = VarianceShare(*[0.0 if self.shares else math.nan] * 6)
+        nothing = VarianceShare(*[0.0 if self.contributions else math.nan] * 6)
         for key, meaning in (("first", "first-order index of overturning"), ("total", "total index of overturning")):
             for end in ("", "_low", "_high"):
-                values = [getattr(self.shares.get(name, nothing), f"{key}{end}") for name in names]
+                values = [getattr(self.contributions.get(name, nothing), f"{key}{end}") for name in names]
                 beside[f"{key}{end}"] = Column(np.array(values), "1", meaning)
         provenance = {
             "software": SOFTWARE, "body": repr(self.body), "verdict": self.verdict,

@@ -95,7 +95,7 @@ def _count(prediction: Prediction) -> str:
 
 def _shares(prediction: Prediction) -> ReportTable:
     note = "Sobol indices: contributions to the variance of overturning."
-    return answer_table("", prediction.contributions, note=note)
+    return answer_table("", prediction.ranked_contributions, note=note)
 
 
 def _event(event: str, validation: Validation) -> ReportSection:

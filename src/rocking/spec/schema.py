@@ -19,6 +19,7 @@ RENAMED: dict[int, dict[str, str]] = {
         "minimum.levels": "bisections",
         "minimum.lowest": "min_pga",
         "minimum.points": "samples",
+        "predict.shares": "contributions",
         "response.bounce": "normal_restitution",
         "response.bounce_law": "normal_restitution_law",
         "response.free": "initial_rotation",

@@ -138,7 +138,7 @@ class ValidationProblem:
         if not trials:
             why = f"line {refused[0].line}: {refused[0].reason}" if refused else "it has no rows"
             raise InvalidValueError("no row could be taken", hint=why).at(outcomes.source)
-        options = {**options_of(document, body, inputs), "shares": False}
+        options = {**options_of(document, body, inputs), "contributions": False}
         name = files[0].stem
         clusters = tuple(" ".join(records.place(word)["record"] for _, word in trial.files) for trial in trials)
         return cls(body, options, outcomes, tuple(trials), tuple(refused), clusters, motions, name)

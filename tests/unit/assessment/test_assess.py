@@ -206,7 +206,7 @@ def test_what_governs_agrees_with_its_figures():
     assert f"Uplift begins at {0.28 / 0.9:.3g} g, at " in along.governing_factors[0]
     low, high = (f(each.min_factor for each in along.models.values()) for f in (min, max))
     assert (f"{low:.3g}" == f"{high:.3g}") == ("depending on" not in " ".join(along.governing_factors))
-    shares = along.prediction.shares
+    shares = along.prediction.contributions
     if any(share.total > 0.0 for share in shares.values()):
         most = max(shares.values(), key=lambda share: share.total)
         apart = most.total_low > max(each.total_high for each in shares.values() if each is not most)

@@ -14,7 +14,7 @@ from rocking.reports import report
 # nearer to the edge towards -x, which is the only one of its kind
 TOWER = Solid([Part(box(0.5, 0.9, 1.2), 400.0), Part(box(0.2, 0.9, 0.4), 900.0).moved(-0.12, 0.0, 1.2)])
 PULSE = rk.pulses.sine(amplitude=3.2, period=0.9)
-QUICK = {"count": 8, "shares": False}
+QUICK = {"count": 8, "contributions": False}
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,16 @@ import pytest
 
 COMMAND = "assess"
 BODY = ("--width", 0.8, "--height", 2.2, "--depth", 1.2, "--mass", 650, "--centre", "0.52,0.9")
-QUICK = ("--restitution", "ked", "--restitution", 0.85, "--set", "predict.count=8", "--set", "predict.shares=false")
+QUICK = (
+    "--restitution",
+    "ked",
+    "--restitution",
+    0.85,
+    "--set",
+    "predict.count=8",
+    "--set",
+    "predict.contributions=false",
+)
 PULSE = "sine:amplitude=7,period=0.8"
 
 
@@ -62,7 +71,7 @@ def test_a_question_in_a_file(answered, tmp_path):
     file = tmp_path / "cabinet.toml"
     file.write_text(
         'body = { units = "m", width = 0.8, height = 2.2, mass = 650.0, centre = [0.52, 0.9] }\n'
-        f'[[motions]]\npulse = ["{PULSE}"]\n[predict]\ncount = 8\nshares = false\n'
+        f'[[motions]]\npulse = ["{PULSE}"]\n[predict]\ncount = 8\ncontributions = false\n'
         '[assess]\nrestitutions = ["ked"]\nmargin = 1.2\n',
         "utf-8",
     )  # fmt: skip

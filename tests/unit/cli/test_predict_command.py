@@ -17,7 +17,7 @@ DOCS = Path(__file__).parents[3] / "docs" / "how_to" / "assessment.md"
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=4.2,period=0.8"
 FEW = ("--set", "predict.count=16")
-FAST = ("--count", "1", "--set", "motion.pga=5", "--set", "predict.count=4", "--set", "predict.shares=false")
+FAST = ("--count", "1", "--set", "motion.pga=5", "--set", "predict.count=4", "--set", "predict.contributions=false")
 FILE = """
 [body]
 units = "cm"
@@ -113,6 +113,6 @@ def test_reports_say_what_was_said(printed, tmp_path):
     assert out.splitlines()[0] in text
     assert "placement" in text
     assert "16 bodies under each motion" in text
-    found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, shares=False)
+    found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), count=16, contributions=False)
     with pytest.raises(rk.errors.RockingError, match=r"\.pdf or \.html"):
         rk.reports.report(found, tmp_path / "found.docx")

@@ -91,7 +91,7 @@ def test_a_target_chooses_and_scales(run, folder):
 
 def test_other_commands_take_sets(run, printed, folder, tmp_path):
     """Predict takes pairs as one motion, fragility each component, doubled by mirrors; a job file says the same."""
-    few = ["--set", "predict.count=4", "--set", "predict.shares=false"]
+    few = ["--set", "predict.count=4", "--set", "predict.contributions=false"]
     out = printed("predict", *BLOCK, folder, *few, "--json")
     assert len(json.loads(out)["motions"]) == 3
     pattern = str(folder / "RSN*.AT2")
@@ -223,7 +223,7 @@ def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
 @pytest.mark.parametrize("command", ["assess", "code-checks"])
 def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
     """It is left out with its reason as damaged ones are; a folder of nothing else is refused."""
-    quick = ["--set", "predict.count=8", "--set", "predict.shares=false"] if command == "assess" else []
+    quick = ["--set", "predict.count=8", "--set", "predict.contributions=false"] if command == "assess" else []
     still = GroundMotion(np.zeros(400), 0.02, None, "Still", {"component": "000", "station": "Cellar"})
     write_motion(still, folder / "RSN9_A000.AT2", "peer")
     with warnings.catch_warnings():

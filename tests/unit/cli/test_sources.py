@@ -13,8 +13,8 @@ SAID = ("floor 3 of 5 of an elastic shear building", "fundamental period 0.5 s",
         "mean acceleration removed", "stated by the user: unit m/s2")  # fmt: skip
 COMMANDS = {
     "simulate": SIZE,
-    "predict": (*SIZE, "--set", "predict.count=4", "--set", "predict.shares=false"),
-    "assess": (*SIZE, "--restitution", "0.9", "--set", "predict.count=4", "--set", "predict.shares=false"),
+    "predict": (*SIZE, "--set", "predict.count=4", "--set", "predict.contributions=false"),
+    "assess": (*SIZE, "--restitution", "0.9", "--set", "predict.count=4", "--set", "predict.contributions=false"),
     "code-checks": SIZE,
     "map": (*SIZE, "--x", "pga=1,2", "--y", "width=0.4,0.5"),
     "overturning-pga": (*SIZE, "--samples", "8"),
@@ -72,7 +72,7 @@ def test_the_floor_is_in_the_report(run, record, tmp_path, command):
 
 def test_a_level_is_an_option(run, record):
     """`--pga` scales the motions to a level with its unit; other words, and motions of floors, are refused."""
-    few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.shares=false", "--json")
+    few = ("--units", "m/s2", "--set", "predict.count=4", "--set", "predict.contributions=false", "--json")
     _, text, _ = run("predict", *SIZE, record, "--pga", "0.3g", *few)
     motion = json.loads(text)["motions"][0]
     assert motion["peak_ground_acceleration"] == pytest.approx(0.3 * 9.80665, rel=1e-12)

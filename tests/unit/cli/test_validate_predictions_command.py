@@ -66,11 +66,15 @@ def test_json_is_the_python_call(answered, copy):
     found = answered(copy, *FEW)
     record = rk.read_motion(copy / "record_0.txt", units="m/s2")
     options = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": {"mean": 0.88, "deviation": 0.04}}
-    alone = rk.predict(BODY, [record.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
+    alone = rk.predict(
+        BODY, [record.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, contributions=False
+    )
     steps = found["events"]["overturning"]["reliability"]
     assert found["trials"] == sum(step["count"] for step in steps) == 12
     other = rk.read_motion(copy / "record_1.txt", units="m/s2")
-    more = rk.predict(BODY, [other.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, shares=False)
+    more = rk.predict(
+        BODY, [other.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, contributions=False
+    )
     said = [*alone.chances["overturning"].per_motion, *more.chances["overturning"].per_motion]
     mean = sum((16.0 * p + 0.5) / 17.0 for p in said) / 6.0
     assert sum(step["predicted"] * step["count"] for step in steps) / 12.0 == pytest.approx(mean, rel=1e-12)
@@ -99,7 +103,7 @@ def test_components_of_one_file_are_of_one_motion(answered, copy):
     (copy / "both.csv").write_text(f"time,NS [m/s2],EW [m/s2]\n{lines}", "utf-8")
     rows = "motion,overturned\nboth.csv#NS,0\nboth.csv#EW,0\nrecord_0.txt,0\n"
     (copy / "outcomes.csv").write_text(rows, "utf-8")
-    found = answered(copy, *FEW, "--set", "predict.shares=true")
+    found = answered(copy, *FEW, "--set", "predict.contributions=true")
     assert (found["trials"], found["events"]["overturning"]["motions"]) == (3, 2)
 
 

@@ -216,7 +216,7 @@ def test_a_term_holds_the_whole_interval():
 @pytest.mark.verifies("closed form", "1 - 0.025**(1/16)", within="1e-12")
 def test_none_of_sixteen_is_not_almost_certain():
     """0 of 16 histories: the Clopper-Pearson interval ends at 20.6 %, and the word is "unlikely"."""
-    found = rk.predict(BLOCK, WEAK, count=16, shares=False)
+    found = rk.predict(BLOCK, WEAK, count=16, contributions=False)
     chance = found.chances["overturning"]
     assert (chance.low, chance.high) == pytest.approx((0.0, 1.0 - 0.025 ** (1.0 / 16.0)), abs=1e-12)
     assert found.verdict == (
@@ -241,7 +241,7 @@ def test_sentences_of_one_answer_agree():
 
 
 def test_every_probability_has_its_condition():
-    found = rk.predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, shares=False)
+    found = rk.predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, contributions=False)
     assert "PGA 0.204 g, 0.102 to 0.306 g; PGV" in found.verdict
     assert found.condition in found.verdict
     assert found.answer().plain()["condition"] == found.condition
@@ -255,14 +255,14 @@ def test_scaled_to_a_pga():
 
     strong = rk.GroundMotion(np.sin(0.1 * np.arange(200.0)), 0.01)
     weak = strong.scaled(0.4)
-    by_hand = rk.predict(BLOCK, strong.scaled(3.0 / strong.peak), count=16, shares=False)
-    found = rk.predict(BLOCK, strong, pga=3.0, count=16, shares=False)
+    by_hand = rk.predict(BLOCK, strong.scaled(3.0 / strong.peak), count=16, contributions=False)
+    found = rk.predict(BLOCK, strong, pga=3.0, count=16, contributions=False)
     assert found.chances["overturning"].value == by_hand.chances["overturning"].value
     assert found.motions[0].peak == pytest.approx(3.0, rel=1e-12)
     assert "so that PGA is 3 m/s2" in found.motions[0].provenance[-1]
-    pair = rk.predict(BLOCK, {"x": weak, "y": strong}, pga=3.0, count=16, shares=False)
+    pair = rk.predict(BLOCK, {"x": weak, "y": strong}, pga=3.0, count=16, contributions=False)
     assert pair.motions[0].peak == pytest.approx(3.0, rel=1e-12)
-    assert rk.predict(BLOCK, rk.pulses.sine(1.0, 0.8), pga=3.0, count=16, shares=False).motions[0].peak == 3.0
+    assert rk.predict(BLOCK, rk.pulses.sine(1.0, 0.8), pga=3.0, count=16, contributions=False).motions[0].peak == 3.0
     for motion, pga, why in (
         (on_floor(strong, 2, 3, 0.5), 3.0, "floor 2 of 3"), (strong, -1.0, "pga"), (strong, np.nan, "pga"),
         (strong.scaled(0.0), 3.0, "zero throughout"),

@@ -109,7 +109,7 @@ def test_what_is_known_leaves_nothing_to_chance():
     found = predict(BLOCK, rk.pulses.sine(12.0, 0.8), **KNOWN, count=16)
     alone = rk.simulate_many(BLOCK, rk.pulses.sine(12.0, 0.8), 0.9, friction=0.6).squeeze()
     assert found.chances["overturning"].value == float(alone.overturned) == 1.0
-    assert found.shares == {} or set(found.shares) == set()
+    assert found.contributions == {} or set(found.contributions) == set()
     assert [each for each in found.assumed if each.startswith(("friction", "base", "centre", "restitution:"))] == []
 
 
@@ -117,7 +117,7 @@ def test_the_input_that_decides_has_the_share():
     """Where it overturns if the friction holds its foot, and slides if not, friction has all of the variance."""
     found = predict(BLOCK, rk.pulses.sine(12.0, 0.8), **{**KNOWN, "friction": (0.05, 0.8)}, count=64)
     assert 0.1 < found.chances["overturning"].value < 0.9
-    assert found.shares["friction"].first > 0.6
+    assert found.contributions["friction"].first > 0.6
     ends = found.ends["friction"]
     assert ends.low < math.tan(BLOCK.slenderness_angle) < ends.high
     assert (ends.probability_low, ends.probability_high) == (0.0, 1.0)
@@ -141,9 +141,9 @@ def test_spread_between_motions():
 
 
 def test_small_differences_grow_under_a_long_motion_and_not_under_a_pulse():
-    small = predict(BLOCK, rk.pulses.sine(2.6, 0.6), count=16, shares=False).growth
+    small = predict(BLOCK, rk.pulses.sine(2.6, 0.6), count=16, contributions=False).growth
     motions = SyntheticSet("firm-ground", 2, 1, pga=5.0)
-    long = predict(rk.Block(width=0.2, height=0.8), motions, count=16, shares=False).growth
+    long = predict(rk.Block(width=0.2, height=0.8), motions, count=16, contributions=False).growth
     assert small.lost == 0
     assert long.lost > 0
     assert long.sentence != small.sentence
@@ -154,7 +154,7 @@ def test_results_out(tmp_path):
     assert isinstance(found, Prediction)
     facts = json.loads(json.dumps(plain(found.answer().plain())))
     assert facts["probability"]["overturning"]["per_motion"][1] == 0.0
-    assert "motion" in facts["shares"]
+    assert "motion" in facts["contributions"]
     dataset = found.to_xarray()
     assert dataset["overturning"].sizes == {"motion": 2}
     assert dataset["input_total"].attrs["units"] == "1"
@@ -223,16 +223,16 @@ def test_bad_input(given, why):
 def test_ked_and_housner_stand_beside_what_was_measured():
     """Their probabilities are those of the models by themselves; of a model or a coefficient nothing stands beside."""
     motions = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4, 5.0)]
-    found = predict(BLOCK, motions, count=512, shares=False)
+    found = predict(BLOCK, motions, count=512, contributions=False)
     assert list(found.beside) == ["ked", "housner"]
     for name, chance in found.beside.items():
-        alone = predict(BLOCK, motions, restitution=name, count=512, shares=False)
+        alone = predict(BLOCK, motions, restitution=name, count=512, contributions=False)
         assert alone.beside == {}
         assert chance.low <= alone.chances["overturning"].value <= chance.high
         assert f") with {name}" in found.sentences[3]
-    assert predict(BLOCK, motions[0], restitution=0.9, count=16, shares=False).beside == {}
+    assert predict(BLOCK, motions[0], restitution=0.9, count=16, contributions=False).beside == {}
     known = {"friction": 5.0, "base": 0.0, "centre": 1.0, "polarity": 1.0}  # nothing is left to draw
-    fixed = predict(BLOCK, motions, **known, count=16, shares=False)
+    fixed = predict(BLOCK, motions, **known, count=16, contributions=False)
     for name, chance in fixed.beside.items():
-        alone = predict(BLOCK, motions, restitution=name, **known, count=16, shares=False).chances["overturning"]
+        alone = predict(BLOCK, motions, restitution=name, **known, count=16, contributions=False).chances["overturning"]
         assert chance.per_motion.tolist() == alone.per_motion.tolist()

@@ -22,7 +22,7 @@ class PredictTable(JobTable):
     sliding_beyond: Positive = key("distance from which it is said to slide [m]", 0.01)
     pga: Text | None = key("peak ground acceleration to which each motion is scaled: 0.3g, 2.9m/s2")
     count: int = key("bodies drawn for each motion, a power of two", 128, ge=4, le=1 << 20)
-    shares: bool = key("find which input matters how much", True)
+    contributions: bool = key("find which input matters how much", True)
     seed: Seed = key("seed of the draws", 0)
 
 

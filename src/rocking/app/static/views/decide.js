@@ -200,7 +200,7 @@ const Sources = ({ of: { motions, likelihood_scale, not_sampled, repairs } }) =>
 /** @param {Given} given */
 const Forecast = ({ answer, question }) => {
   const { high } = answer.probability.overturning;
-  const shares = Object.entries(answer.shares).sort(([, first], [, other]) => other.total - first.total);
+  const shares = Object.entries(answer.contributions).sort(([, first], [, other]) => other.total - first.total);
   /** @param {number} low @param {number} at @param {number} high */
   const share = (low, at, high) => t("{value} ({low} to {high})", { value: number(at, 2), low: number(low, 2), high: number(high, 2) });
   return html`
