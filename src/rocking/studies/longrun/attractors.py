@@ -208,7 +208,7 @@ def bifurcation(
     import xarray as xr
 
     named = systems if isinstance(systems, dict) else {"": systems}
-    values = checks.finite("values", values, "-", least=1)
+    values = checks.finite("values", values, "-", minimum=1)
     checks.increasing("values", values)
     checks.one_of("memory", memory, ("none", "up", "down"))
     settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
