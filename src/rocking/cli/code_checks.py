@@ -77,6 +77,7 @@ def code_checks(
     friction: options.Friction = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking code-checks`."""
@@ -100,7 +101,7 @@ def code_checks(
             ), problem,
         )  # fmt: skip
     found = replace(found, bodies=_names(problem, Display(arguments.length or "m")))
-    deliver(CodesAnswer(found, others), exports, as_json=as_json)
+    deliver(CodesAnswer(found, others, details), exports, as_json=as_json)
 
 
 def _problem(arguments: "Arguments") -> "StudyProblem":
@@ -159,6 +160,7 @@ class CodesAnswer:
 
     found: "CodeComparison"
     others: dict[str, Any]  # of the compared models
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return what each method gives for each body."""
@@ -181,8 +183,8 @@ class CodesAnswer:
         page.line()
         rows = [_row(found, one.name) for one in found.methods]
         page.rows(rows, _SHOWN, Display(own=_OWN), most=len(rows), dense=False)
-        if len(found.bodies) * len(found.levels) > 1:
-            page.line("\nOverturned of those that are called safe", "bold")
+        if self.details and len(found.bodies) * len(found.levels) > 1:
+            page.line("\nOverturned of those that are rated safe", "bold")
             names = [one.name for one in found.methods]
             for j, level in enumerate(found.levels):
                 page.line(level)
@@ -192,15 +194,17 @@ class CodesAnswer:
                 ], ("body",))  # fmt: skip
         show_limits(page, found.methods, found)
         page.line()
-        page.line(
-            "rated safe: of the histories in the domain of the method. D/C: median of demand over capacity. "
-            "capacity/truth: median of capacity over the smallest intensity that overturns, above 1 where the method "
-            "is unsafe. scatter: that of the logarithm of capacity/truth. Sources, domains and reliability of the "
-            "readings: --json."
-        )
+        page.line("capacity/truth above 1: unsafe")
+        if self.details:
+            page.line("rated safe: fraction of the histories in the domain of the method")
+            page.line("D/C: median of demand / capacity")
+            page.line("capacity/truth: median of capacity / smallest intensity with overturning")
+            page.line("scatter: standard deviation of the logarithm of capacity/truth")
         if found.asymmetric.any():
-            page.line("Where sides differ, the worse one counts, in methods and in histories.")
+            page.line("Asymmetric bodies: the weaker side governs, in methods and histories.")
         show_models(page, self.answer(), Display(), found.restitution, _overturned(found))
+        if not self.details:
+            page.line("Definitions and single bodies: --details    Sources and domains: --json")
 
 
 def _overturned(found: "CodeComparison") -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """The default restitution model compared with others: the same study with each of them, as a table."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -57,3 +57,25 @@ def overturned(modes: "np.ndarray") -> dict[str, Any]:
     """Return the number and the fraction of histories with overturning, of those that could be computed."""
     known, fell = int((modes > -3).sum()), int((modes >= 0).sum())
     return {"overturned": fell, "share": fell / known if known else None}
+
+
+def grouped(rows: dict[str, tuple[str, ...]], shown: set[str]) -> dict[str, tuple[str, ...]]:
+    """Return rows in which models that are not shown have one row per outcome, the third cell, with ranges."""
+    kept = {label: row for label, row in rows.items() if label in shown}
+    groups: dict[str, list[tuple[str, ...]]] = {}
+    for label, row in rows.items():
+        if label not in shown:
+            groups.setdefault(row[2], []).append(row)
+    for outcome, group in groups.items():
+        if len(group) == 1:
+            kept[group[0][0]] = group[0]
+            continue
+        label = f"{len(group)} other models"
+        others = [outcome if k == 2 else _range([row[k] for row in group]) for k in range(1, len(group[0]))]
+        kept[f"{label}: {outcome}"] = (label, *others)
+    return kept
+
+
+def _range(cells: Sequence[str]) -> str:
+    ordered = sorted(set(cells), key=lambda cell: (cell == "-", len(cell.partition(".")[0]), cell))
+    return ordered[0] if len(ordered) == 1 else f"{ordered[0]}-{ordered[-1]}"

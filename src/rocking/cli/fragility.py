@@ -101,6 +101,7 @@ def fragility(
         ),
     ] = ExportTable.model_fields["crossing_curves"].default,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:  # fmt: skip
     """Run `rocking fragility`."""
@@ -125,7 +126,7 @@ def fragility(
     _check(problem, exports)
     with bar("histories", histories_in(problem), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
-    answer.name, answer.crossing_curves = name, crossing_curves
+    answer.name, answer.crossing_curves, answer.details = name, crossing_curves, details
     # the numbers are shown even if a file cannot be made of them
     deliver(answer, as_json=as_json)
     if {"p58", "pelicun", "nrml"} & exports.names:

@@ -38,6 +38,7 @@ class FragilityAnswer:
     name: str | None = None  # of the body, in files
     crossing_curves: Any = "keep-uplift"  # treatment of curves that cross
     others: dict[str, Any] = field(default_factory=dict)  # analyses of the compared models
+    details: bool = False
 
     @classmethod
     def of(
@@ -200,14 +201,20 @@ class FragilityAnswer:
             ("measure", f"{first.subject.measure.name}, {first.subject.measure_words}"),
             ("rocking", self._uplift(display)),
         ])  # fmt: skip
-        page.line(sentence(first.definition))
+        if self.details:
+            page.line(sentence(first.definition))
         page.line()
         for label, result in self.results.items():
             page.rows(self._curve_rows(label if self.compared is not None else "state", result), (), display)
             page.line()
-        for line in self._sentences(display):
+        for line in self._sentences(display) if self.details else ():
             page.line(line)
+        page.warn(self._warnings())
+        if self.compared is not None:
+            page.line(self.compared.told(self.unit))
         show_models(page, answer, display, ", ".join(self.results), _of_model(first))
+        if not self.details:
+            page.line("Definitions, intervals and comparison: --details    Files: -o curves.csv, -o picture.png")
 
     def _uplift(self, display: Display) -> str:
         check, lowest = self.first.uplift, self.first.subject.lowest_uplift
@@ -250,16 +257,20 @@ class FragilityAnswer:
         for label, result in self.results.items():
             before = f"{label}, " if self.compared is not None else ""
             lines += [f"{before}{text}" for text in _verdicts(result)]
-            failed = result.failed
-            if failed:
-                lines.append(f"! {before}{failed} histories could not be computed; they count at no level")
-            if contact := result.responses.contact:
-                lines.append(f"! {before}{contact}")
         lines += [_regression(self.first)] if self.kind == "cloud" else self._intervals()
         if isinstance(self.first, IncrementalDynamicAnalysis):
             lines += self._transitions(self.first, display)
-        if self.compared is not None:
-            lines.append(self.compared.told(self.unit))
+        return lines
+
+    def _warnings(self) -> list[str]:
+        """Return histories without a result, and what is said of the contact."""
+        lines = []
+        for label, result in self.results.items():
+            before = f"{label}, " if self.compared is not None else ""
+            if failed := result.failed:
+                lines.append(f"{before}{failed} histories have no result and are ignored at every level")
+            if contact := result.responses.contact:
+                lines.append(f"{before}{contact}")
         return lines
 
     def _intervals(self) -> list[str]:

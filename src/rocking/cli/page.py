@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Facts = Iterable[tuple[str, str]]
 _LEAST_WIDTH = 24  # to which columns of text are folded
 MOST_ROWS = 12  # rows of a table of an answer that are printed
+MOST_MODELS = 8  # rows of a table of models; more are grouped by outcome
 
 
 class CommandAnswer(Protocol):

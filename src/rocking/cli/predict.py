@@ -11,9 +11,10 @@ import typer
 from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.code_checks import show_limits
+from rocking.cli.compared import grouped
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
-from rocking.cli.page import Page, bar, deliver
+from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
 from rocking.cli.study import source_lines
 from rocking.errors import located
 from rocking.prediction.likelihood import scale_words
@@ -33,6 +34,7 @@ COUNT, SEED = 20, 1
 
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 _R = Display(own=closely(coefficient=".3f"))
+_NAMED = ("calibrated", "housner", "ked")  # cases with their own row
 
 
 @options.takes(options.SIZES)
@@ -50,6 +52,7 @@ def predict(
     sets: options.Set = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking predict`."""
@@ -67,7 +70,7 @@ def predict(
         problem = PredictionProblem.of(document, inputs)
     with bar("motions", len(problem.motions), quiet=as_json) as progress:
         found = problem.answer(lambda done: progress(1), threads)
-    deliver(PredictionAnswer(found, Path(body or "").stem), exports, as_json=as_json)
+    deliver(PredictionAnswer(found, Path(body or "").stem, details), exports, as_json=as_json)
 
 
 def in_file(
@@ -110,6 +113,7 @@ class PredictionAnswer:
 
     found: "Prediction"
     name: str = ""  # of the body
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return what is predicted."""
@@ -128,8 +132,9 @@ class PredictionAnswer:
         for line in found.sentences[1:]:
             page.line(line)
         page.line()
-        page.reported(motion_table(found))
-        page.line()
+        if self.details or 1 < len(found.motions) <= MOST_ROWS:
+            page.reported(motion_table(found))
+            page.line()
         if found.decides:
             page.line(found.decides)
             page.line()
@@ -137,6 +142,10 @@ class PredictionAnswer:
             page.rows(found.ranked_contributions)
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
+        if not self.details:
+            _show_assumed(page, found)
+            page.line("Reasons, sources and likelihood terms: --details    Files: -o report.pdf, -o table.csv")
+            return
         told = found.assumptions.keys() | found.fixed.keys()
         page.facts([(name, words) for name, words in found.inputs.items() if name not in told])
         page.facts([("assumed", each) for each in found.assumed])
@@ -144,6 +153,19 @@ class PredictionAnswer:
         page.facts(source_lines(found.motions))
         page.line(scale_words())
         page.warn(found.repairs)
+
+
+def _model_cells(row: dict[str, Any]) -> tuple[str, ...]:
+    """Return the name, coefficients, number of overturning motions and margin of a restitution case."""
+    r = dict.fromkeys(_R.cell("coefficient", row[name]) for name in ("coefficient_left", "coefficient_right"))
+    return row["restitution"], " / ".join(r), row["overturned"], _R.cell("min_factor", row["min_factor"])
+
+
+def _show_assumed(page: Page, found: "Prediction") -> None:
+    """Write the assumed inputs with their values in one line, and the repairs of a mesh."""
+    assumed = (f"{name} {found.inputs[name]}" for name in found.assumptions if name in found.inputs)
+    page.line(f"Assumed: {'; '.join(assumed)} (all inputs: --details)")
+    page.warn(found.repairs)
 
 
 @options.takes(options.SIZES)
@@ -163,6 +185,7 @@ def assess(
     sets: options.Set = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(REPORTED)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking assess`."""
@@ -181,7 +204,7 @@ def assess(
     with bar("histories", quiet=as_json) as progress:
         found = problem.assessed(document.assess, inputs, progress, threads)
     name = Path(body).stem if body and is_body(body) else ""
-    deliver(AssessmentAnswer(found, document.assess, name), exports, as_json=as_json)
+    deliver(AssessmentAnswer(found, document.assess, name, details), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
@@ -191,6 +214,7 @@ class AssessmentAnswer:
     found: "BodyAssessment"
     told: "AssessTable"
     name: str = ""  # of the body
+    details: bool = False
 
     @property
     def signed(self) -> dict[str, str]:
@@ -209,27 +233,47 @@ class AssessmentAnswer:
         return assessment_picture(self.found)
 
     def show(self, page: Page) -> None:
+        found = self.found
+        for text, style in zip(found.sentences[:3], ("bold", "bold", None), strict=True):
+            page.line(text, style=style)
+        page.line()
+        if self.details:
+            self._show_details(page)
+            return
+        rows = {row["restitution"]: _model_cells(row) for row in found.model_rows[: len(found.models)]}
+        shown = {name for name in rows if name.partition(",")[0] in _NAMED}
+        if len(rows) > MOST_MODELS:
+            rows = grouped(rows, shown)
+        head = ("restitution model", "r", "overturned", "margin")
+        page.table(head, list(rows.values()), head[:1])
+        page.warn(f"{name}: {why}" for name, why in found.refused.items())
+        page.line()
+        page.line(found.governing_factors[-1])
+        for text in found.measures:
+            page.line(text)
+        page.line()
+        _show_assumed(page, found.prediction)
+        page.line("Causes, code methods, sliding and sources: --details    Report: -o report.pdf")
+
+    def _show_details(self, page: Page) -> None:
         from rocking.studies.code_methods import CODE_METHODS
 
         found = self.found
-        for words, style in zip(found.sentences[:3], ("bold", "bold", None), strict=True):
-            page.line(words, style=style)
-        page.line()
         page.rows(found.model_rows, (), _R, most=len(found.models) + 1, dense=False)
         page.warn(f"{name}: {why}" for name, why in found.refused.items())
         page.line()
         if found.standing is not None:
-            page.line("Code methods: of the plane body")
+            page.line("Code methods: plane body")
         page.rows(found.code_rows, (), most=len(found.capacities), dense=False)
         show_limits(page, (CODE_METHODS[name] for name in found.capacities), found)
-        for title, sentences in (("What governs", found.governing_factors), ("What to do", found.measures)):
+        for title, sentences in (("Causes", found.governing_factors), ("Retrofit measures", found.measures)):
             page.line()
             page.line(title, "bold")
-            for words in sentences:
-                page.line(words)
+            for text in sentences:
+                page.line(text)
         page.line()
         page.facts(source_lines(found.prediction.motions))
         page.line(scale_words())
         assumed = "; ".join(found.prediction.assumed_values)
-        page.line(f"Assumed: {assumed}. Reasons and all references: --output report.pdf, or --json.")
+        page.line(f"Assumed: {assumed}. Reasons and all references: -o report.pdf, or --json.")
         page.warn(found.prediction.repairs)

@@ -1,11 +1,12 @@
 """What `rocking simulate` shows of a response: body and motion, outcome, peaks, and the same with other models."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from rocking.answers import Answer, Display
 from rocking.bodies import Body
+from rocking.cli.compared import grouped
 from rocking.cli.page import Page, sentence
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
 from rocking.dynamics import SpatialStart
@@ -189,13 +190,20 @@ class ResponseAnswer:
         responses = {self.response.parameters.label: self.response, **self.others}
         rows = {label: self._compared(label, one) for label, one in responses.items()}
         if not self.details:
-            rows = _grouped(rows, {self.response.parameters.label, *_NAMED})
+            rows = grouped(rows, {self.response.parameters.label, *_NAMED})
         page.line("\nCompare restitution models", "bold")
         head = [self.display.heading(name) for name in _COMPARED]
         page.table(head, list(rows.values()), ("model", "outcome"), bold={0}, dense=True)
         page.warn(f"{name}: {other}" for name, other in self.others.items() if isinstance(other, str))
         known = {name: one for name, one in responses.items() if not isinstance(one, str)}
-        page.line(ModelAgreement.of(known).sentence)
+        agreement = ModelAgreement.of(known)
+        if self.details or not agreement.models_differ:
+            page.line(agreement.sentence)
+            return
+        fell = sum(one.outcome is Outcome.OVERTURNED for one in known.values())
+        page.line(f"The result depends on the restitution model: overturning with {fell} of {len(known)} models.")
+        for doubt in agreement.doubts:
+            page.line(doubt)
 
     def _compare_outcomes(self, page: Page, answer: Answer) -> None:
         """Write the outcome with each model."""
@@ -229,27 +237,6 @@ def _facts(response: Any) -> Answer:
     peak = "peak_tilt" if hasattr(response, "peak_tilt") else "peak_rotation"
     facts = {"outcome": response.outcome.name.lower(), peak: getattr(response, peak), "impacts": len(response.impacts)}
     return Answer({**facts, "still_rocking": response.still_rocking})
-
-
-def _grouped(rows: dict[str, tuple[str, ...]], shown: set[str]) -> dict[str, tuple[str, ...]]:
-    """Return rows of which those of some models with one outcome have one row, with the range of their values."""
-    kept = {label: row for label, row in rows.items() if label in shown}
-    groups: dict[str, list[tuple[str, ...]]] = {}
-    for label, row in rows.items():
-        if label not in shown:
-            groups.setdefault(row[2], []).append(row)
-    for outcome, group in groups.items():
-        if len(group) == 1:
-            kept[group[0][0]] = group[0]
-            continue
-        r, ratio, impacts = (_range([row[k] for row in group]) for k in (1, 3, 4))
-        kept[f"{len(group)} other models"] = f"{len(group)} other models", r, outcome, ratio, impacts
-    return kept
-
-
-def _range(cells: Sequence[str]) -> str:
-    ordered = sorted(set(cells), key=lambda cell: (cell == "-", len(cell.partition(".")[0]), cell))
-    return ordered[0] if len(ordered) == 1 else f"{ordered[0]}-{ordered[-1]}"
 
 
 def _motion_words(axis: str, motion: Any, answer: Answer, display: Display) -> str:

@@ -16,6 +16,7 @@ from rocking.cli.numbers import SIDE, body_line, recommendation_values, show_rec
 from rocking.cli.page import Page, deliver
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, located
+from rocking.quantities import closely
 from rocking.spec.bodies import body_moved
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
@@ -24,7 +25,8 @@ from rocking.spec.settings_tables import SettingsTable
 if TYPE_CHECKING:
     from rocking.reports.body_facts import ImpactAnswer
 
-_SHOWN = ("model", "coefficient", "impulse_ratio", "energy_loss", "friction_demand")
+_DETAILS = ("model", "coefficient", "impulse_ratio", "energy_loss", "friction_demand")
+_SHOWN = ("model", "coefficient", "energy_loss", "friction_demand")
 
 
 class BodyDocument(JobTable):
@@ -69,6 +71,7 @@ def restitution(
     recommend: Annotated[bool, typer.Option("--recommend", help="Recommended model and its evidence.")] = False,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking restitution`."""
@@ -85,7 +88,7 @@ def restitution(
 
         models = None if restitution is None else [_model(text) for text in restitution]
         impact = ImpactAnswer.of(subject, models, foot=foot, gravity=gravity, identities=check_identities)
-        answer: Any = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None)
+        answer: Any = PlaneAnswer(impact, length, _recommended(subject, models) if recommend else None, details)
     else:
         from rocking.cli.solids import SolidAnswer
 
@@ -150,6 +153,7 @@ class PlaneAnswer:
     impact: "ImpactAnswer"
     length: str  # unit of lengths
     recommendation: Any = None  # which model to use, where that was asked
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return the body and every model's coefficient."""
@@ -170,7 +174,8 @@ class PlaneAnswer:
         from rocking.evidence._coefficient_table import outside_evidence
 
         body, answer = self.impact.body, self.answer()
-        display = Display(self.length, own=answer.quantities)
+        own = answer.quantities if self.details else {**answer.quantities, **closely(coefficient=".3f")}
+        display = Display(self.length, own=own)
         names = ("slenderness_ratio", *SIDE, "uplift_acceleration")
         page.line(body_line(body, answer["body"], display, ("centre", *(names if body.is_symmetric else ()))))
         for foot, side in {} if body.is_symmetric else answer["body"]["sides"].items():
@@ -184,19 +189,24 @@ class PlaneAnswer:
             where = f" (landing on the {foot} foot)" if len(answer["coefficients"]) > 1 else ""
             page.line(f"Coefficient of restitution, velocity after / velocity before{where}", "bold")
             records = [row.values for row in rows]
-            page.rows(records, _SHOWN, display, bold=_bold(records), most=len(rows), dense=False)
+            page.rows(
+                records, _DETAILS if self.details else _SHOWN, display, bold=_bold(records), most=len(rows), dense=False
+            )
             page.warn(dict.fromkeys(f"{row['model']}: {warning}" for row in rows for warning in row["warnings"]))
-        page.line("95 %: interval of one measured body, from each model's misfit to 39 published measurements;")
-        page.line("k: implied impulse position over half base; friction demand: at the impact.")
-        for foot, shares in answer["ked_energy_shares"].items():
-            kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
-            page.line(f"KED's kinetic energy onto the {foot} foot: {kept}.")
+        page.line("95 %: interval for one measured body (39 published measurements)")
+        if self.details:
+            page.line("k: impulse position / half base; friction demand: at the impact")
+            for foot, shares in answer["ked_energy_shares"].items():
+                kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
+                page.line(f"KED, kinetic energy at the {foot} foot: {kept}.")
         for name, report in self.impact.identities.items():
             broken = [check for check in report if not check.holds]
             page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")
             for check in broken:
                 page.line(f"  {check.sentence}")
         show_recommendation(page, self.recommendation)
+        if not self.details:
+            page.line("Recommended model: --recommend    Impulse position and energy: --details")
 
 
 def _bold(records: list[dict[str, Any]]) -> set[int]:

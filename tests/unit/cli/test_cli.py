@@ -45,7 +45,7 @@ def test_cor_options(run, own, tmp_path):
     """Unit, angle, one foot, chosen models, interface factor, identities, own model and picture all do their work."""
     picture = tmp_path / "body.svg"
     words = ["--restitution", f"{own}:Mine", "--restitution", "0.9*ked", "--check-identities", "--output", picture]
-    words += ["--output", f"stages={tmp_path / 'stages.png'}"]
+    words += ["--output", f"stages={tmp_path / 'stages.png'}", "--details"]
     code, out, err = run("restitution", "--width", 100, "--height", 400, "--units", "cm", "--foot", "left", *words)
     assert (code, err) == (0, "")
     assert "0.500000" in out

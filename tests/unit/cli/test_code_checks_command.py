@@ -15,7 +15,7 @@ GRID = ("--height", "60,400", "--slenderness", 5, "--units", "cm")
 def test_a_grid_of_bodies(printed, answered, tmp_path):
     """Every method has a line, and every body one of shares; JSON and CSV say the same, sources and readings too."""
     file = tmp_path / "codes.csv"
-    page = printed(*GRID, *FAMILY, "--levels", "1.5,2", "--output", file)
+    page = printed(*GRID, *FAMILY, "--levels", "1.5,2", "--output", file, "--details")
     assert "bodies:       12 x 60 cm; 80 x 400 cm" in page
     assert "pga/(g tan alpha) = 1.5\n" in page
     found = answered(*GRID, *FAMILY, "--levels", "1.5,2")
@@ -43,7 +43,7 @@ def test_one_body_under_one_motion(printed, answered):
     body = ("--width", 0.8, "--height", 2.2, "--centre", "0.52,0.9", "--mass", 650, "--depth", 1.2)
     page = printed(*body, "sine:amplitude=3.5,period=0.5")
     assert "0 of 1 overturned" in page
-    assert "the worse one counts" in page
+    assert "the weaker side governs" in page
     rows = {line.split()[0]: line.split()[1] for line in page.splitlines() if line.split()[:1]}
     assert (rows["static"], rows["italian-linear"]) == ("no", "yes")
     assert (rows["asce-43"], rows["kaneko-hayashi"], rows["housner-pulse"]) == ("outside", "outside", "yes")

@@ -62,7 +62,7 @@ def test_a_file_says_everything(printed, tmp_path):
 def test_what_is_printed_and_written(printed, tmp_path):
     picture, table = tmp_path / "found.png", tmp_path / "found.csv"
     out = printed(
-        *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "--output", str(picture), "--output", str(table)
+        *SIZE, PULSE, "--motion", "sine:amplitude=1,period=0.8", *FEW, "-o", picture, "-o", table, "--details"
     )
     assert out.startswith("Overturning is ")
     assert "not sampled:  placement" in out
