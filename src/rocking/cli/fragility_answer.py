@@ -207,7 +207,7 @@ class FragilityAnswer:
         for label, result in self.results.items():
             page.rows(self._curve_rows(label if self.compared is not None else "state", result), (), display)
             page.line()
-        for line in self._sentences(display) if self.details else ():
+        for line in self._sentences(display):
             page.line(line)
         page.warn(self._warnings())
         if self.compared is not None:
@@ -244,7 +244,7 @@ class FragilityAnswer:
         if self.shown is None or not self.shown.adjusted:
             return []
         lines = [str(self.shown.adjusted)]
-        for name in self._adjusted():
+        for name in self._adjusted() if self.details else ():
             summary, texts = self.first.fits[name].summary(), []
             for each in _OF_CURVES[:2]:
                 ends = display.table([summary], [each])[-1]
@@ -257,6 +257,8 @@ class FragilityAnswer:
         for label, result in self.results.items():
             before = f"{label}, " if self.compared is not None else ""
             lines += [f"{before}{text}" for text in _verdicts(result)]
+        if not self.details:
+            return lines
         lines += [_regression(self.first)] if self.kind == "cloud" else self._intervals()
         if isinstance(self.first, IncrementalDynamicAnalysis):
             lines += self._transitions(self.first, display)
@@ -278,23 +280,22 @@ class FragilityAnswer:
         fits = [(name, fit) for result in self.results.values() for name, fit in result.fits.items() if fit.exists]
         whys = {_too_few(fit): name for name, fit in fits}
         lines = [
-            f"No interval of {name}: motions serve at every level, and there are too few of them ({why})."
+            f"No interval of {name}: each motion is used at every level, and there are too few motions ({why})."
             for why, name in whys.items()
             if why
         ]
         if "" not in whys:
             return lines
         how = (
-            "the values of the parameter under which so few, or so many, failures as these are no rarity, each motion "
-            "with one capacity"
+            "parameter values consistent with the number of failures; one capacity per motion"
             if any(fit.counts.draws_capacities for _, fit in fits)
-            else "whole motions drawn anew"
+            else "bootstrap of whole motions"
         )
-        return [*lines, f"Intervals: {how}, since a motion serves at every level."]
+        return [*lines, f"95 % intervals: {how}."]
 
     def _transitions(self, analysis: IncrementalDynamicAnalysis, display: Display) -> list[str]:
         first = analysis.first_crossing_fit
-        curve = "too few motions overturn it for a curve"
+        curve = "too few motions with overturning"
         if first is not None:
             median, spread = display.text("median", first.median), display.text("dispersion", first.dispersion)
             curve = f"median {median}, dispersion {spread}"

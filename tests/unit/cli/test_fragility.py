@@ -104,7 +104,7 @@ def test_incremental(printed, answered):
     assert result["first_crossings"] == found.first_crossings.tolist()
     # the second ceases to overturn it at 8.667 m/s2
     assert result["resurrected_motions"] == found.resurrected() == [1]
-    out = printed(*words, "--analysis", "incremental")
+    out = printed(*words, "--analysis", "incremental", "--details")
     assert "First crossing: " in out
     assert "Fraction: " in out
 
@@ -124,7 +124,7 @@ def test_resurrection_is_said(run, answered):
     assert low["interval"][1] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
     assert high["interval"][0] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
     assert result["resurrected_motions_over_1_percent"] == [0]
-    assert "1 of 1 motion left it standing at levels above one that overturns it" in run(*words)[1]
+    assert "1 of 1 motion left it standing at levels above one that overturns it" in run(*words, "--details")[1]
 
 
 def test_cloud(run, answered, motions):
@@ -136,7 +136,7 @@ def test_cloud(run, answered, motions):
     assert sum(result["trials"]) == 16
     assert result["regression"]["slope"] == found.regression.slope
     assert answer["uplift_threshold"] is None
-    page = run(*SIZE, *FAMILY, "--analysis", "cloud", "--scale", "4", "--im", "pgv")[1]
+    page = run(*SIZE, *FAMILY, "--analysis", "cloud", "--scale", "4", "--im", "pgv", "--details")[1]
     assert f"slope {found.regression.slope:.3g} over ln(pgv)" in page
     assert "no level of this measure alone decides" in page
 
@@ -190,18 +190,18 @@ def test_few_motions_have_no_interval(run, answered):
     """Two motions at many levels give a curve, but no interval: drawn anew they would look certain."""
     words = (*SIZE, *SINES, "--levels", "1.5:6:19", "--restitution", "0.9")
     median = answered(*words)["results"][0]["curves"]["overturned"]["median"]
-    out = run(*words)[1]
+    out = run(*words, "--details")[1]
     row = next(line for line in out.splitlines() if line.startswith("overturned "))
     # median and dispersion alone
     assert (" to " in row, row.split()[1]) == (False, f"{median:.4g}")
-    assert "No interval of overturned: motions serve at every level, and there are too few of them (2 " in out
+    assert "No interval of overturned: each motion is used at every level, and there are too few motions (2 " in out
 
 
 def test_the_method_of_the_intervals_is_said(run):
     """16 motions have one capacity each; of 30 whole ones are drawn anew."""
-    few, many = (run(*SIZE, *FAMILY[:3], count, *LEVELS)[1] for count in ("16", "30"))
-    assert "each motion with one capacity, since a motion serves at every level" in few
-    assert "Intervals: whole motions drawn anew, since" in many
+    few, many = (run(*SIZE, *FAMILY[:3], count, *LEVELS, "--details")[1] for count in ("16", "30"))
+    assert "one capacity per motion" in few
+    assert "bootstrap of whole motions" in many
 
 
 def test_levels_that_serve(answered):
@@ -261,7 +261,7 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
     assert (worst["method"], worst["median_95"]) == ("common-dispersion", [None, None])
     reason = answer["crossing_curves"]["adjusted"]
     assert reason.startswith("Fitted alone, curves cross: at ")
-    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--output", f"p58={tmp_path / 'p.csv'}")
+    code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--output", f"p58={tmp_path / 'p.csv'}", "--details")
     assert (code, err) == (0, "")
     words = " ".join(out.split())
     assert reason in words
