@@ -62,8 +62,8 @@ CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
         "levels",
         "limit_states",
         "scale",
-        levels=": FIRST:LAST:COUNT or A,B,C",
-        limit_states=": 0.2,0.5 or 0.5,overturning",
+        levels=": 0.05g:1g:20",
+        limit_states=": 0.2,0.5",
     ),
     before="restitution",
 )
