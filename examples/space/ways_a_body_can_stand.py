@@ -48,7 +48,7 @@ for row in base_tolerances(found, standing):
 # %%
 # The height of the centre of mass around this pose, the support polygon, and the bust on it.
 
-write(equilibria_picture(bust, standing, found=found), "ways_a_body_can_stand.png")
+write(equilibria_picture(bust, standing, equilibria=found), "ways_a_body_can_stand.png")
 
 # %%
 # In its lowest pose the bust is a usual body for a simulation.

@@ -93,7 +93,7 @@ def test_slices_are_drawn_where_the_body_stands():
     result, ((left, front, _), (right, back, _)) = over(solid), solid.box
     axes = slices_picture(result, np.array([1.0]), divisions=6).axes[0]
     assert axes.images[0].get_extent() == pytest.approx((left, right, front, back))
-    assert "1 m over the ground" in axes.get_title(loc="left")
+    assert "1 m above the ground" in axes.get_title(loc="left")
     drawn = np.ma.masked_invalid(axes.images[0].get_array())
     # the section at 1 m of 3 m is two thirds of the base wide
     assert 1.0 - np.ma.getmaskarray(drawn).mean() == pytest.approx(2.0 / 3.0, abs=0.05)

@@ -126,13 +126,13 @@ class EquilibriaAnswer:
     def draw(self) -> "Figure":
         from rocking.plots import equilibria_picture
 
-        return equilibria_picture(self.solid, self.pose, found=self.found)
+        return equilibria_picture(self.solid, self.pose, equilibria=self.found)
 
     def write_glb(self, path: Path) -> None:
         from rocking.plots.space_glb import GltfFile
 
         file = GltfFile(self.solid)
-        file.stands(self.found, self.pose)
+        file.add_equilibria(self.found, self.pose)
         file.write(path)
 
     def show(self, page: Page) -> None:

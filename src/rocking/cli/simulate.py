@@ -41,7 +41,7 @@ def _animate(answer: Any, path: Path) -> None:
         from rocking.plots.space_glb import GltfFile
 
         file = GltfFile(answer.problem.body)
-        file.moves(answer.response)
+        file.add_motion(answer.response)
         file.write(path)
         return
     if path.suffix.lower() == ".html":

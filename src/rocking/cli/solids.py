@@ -90,7 +90,7 @@ class SolidAnswer:
         from rocking.plots.space_glb import GltfFile
 
         file = GltfFile(self.solid)
-        file.edges(self.edges)
+        file.add_edges(self.edges)
         file.write(path)
 
     def write_csv(self, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Pictures: bodies, models against measurements, motions, responses, animations, studies, the paper's figures."""
+"""Pictures: bodies, models and measurements, motions, responses, animations, studies, the paper's figures."""
 
 from lazy_loader import attach_stub
 

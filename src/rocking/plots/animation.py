@@ -1,4 +1,4 @@
-"""A response in motion: one web page that needs nothing else, or a GIF of the body on its ground."""
+"""Animations of a response: a self-contained web page, or a GIF."""
 
 import base64
 import hashlib
@@ -18,7 +18,7 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.plots.animation_hull import HullScene, HullStage, InSpace, until, words_of
+from rocking.plots.animation_hull import HullScene, HullStage, InSpace, description_of, end_of
 from rocking.plots.animation_scene import DrawnShape, Scene, scene_of, scene_until
 from rocking.plots.body import closed
 from rocking.plots.response import motion_curves, over_slenderness
@@ -30,50 +30,49 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
     from matplotlib.transforms import Affine2D
 
-NOT_MOVED = "an animation is of what simulate or free_rocking returned"
-MOST_FRAMES = 500  # frames of a GIF: more would make a file that no page wants to carry
+NOT_MOVED = "an animation requires a result of simulate or free_rocking"
+MOST_FRAMES = 500  # maximum number of frames of a GIF, for files of moderate size
 
-_LIFTED = "The vertical motion of the ground counts in the forces but is not drawn."
+_LIFTED = "The forces include the vertical ground motion; the animation does not show this motion."
 _FALLS = (
-    "The fall is computed by the same equation until a corner meets the ground; there the body is left lying, since a "
-    "landing on a side is not computed."
+    "The fall is computed by the same equation until a corner reaches the ground. The impact on a side is not computed."
 )
 _FOLDER = Path(__file__).parent
 
 _DOTS, _WIDTH, _LINE = 100, 4.8, 80
-"""Dots in an inch of a GIF, its width [in], and the characters that fit into one line of its title."""
+"""Dots per inch of a GIF, its width [in], and the number of characters in a line of its title."""
 
 _HEAD, _CURVE, _LEAST, _MOST = 0.42, 1.35, 1.4, 3.4
 _HATCHES = 40
 _ROTATION, _IMPACT = "#0070B2", "#D96C00"
-_FLASH = 0.3  # how long an impact is seen, in seconds of playing
+_FLASH = 0.3  # duration of the mark of an impact in the animation [s]
 
 
 def animate_html(response: Response | InSpace, path: str | Path) -> Path:
-    """Write a web page in which the body rocks: play, slow down, step, drag to any instant.
+    """Write a web page with an animation of the body: play, slow down, step, drag to any instant.
 
-    The page is one file: no network, no other script; it declares and keeps a content security policy that allows
-    nothing but its own script and style. It opens at an instant if ``#t=1.5`` is added to its address.
+    The page is one file without network access. Its content security policy allows only its own script and style.
+    With ``#t=1.5`` at the end of the address, the page opens at this time.
 
     Parameters
     ----------
     response : Response, ContactResponse, SpatialResponse or HullResponse
-        What `simulate` or `free_rocking` returned; of bodies in space, and of plane ones that slide, the convex hull.
+        Result of `simulate` or `free_rocking`. 3D bodies, and plane bodies with sliding, appear as their convex hull.
     path : str or Path
-        File ending in .html.
+        File with extension .html.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Raises
     ------
     RockingError
-        If the name does not end in .html, or the file cannot be written.
+        If the extension is not .html, or the file cannot be written.
     """
     target = target_of(path, ".html")
-    _until(response)
+    _shown_until(response)
     with writing(target):
         target.write_text(page(response), encoding="utf-8")
     return target
@@ -100,7 +99,7 @@ def page(response: Response | InSpace) -> str:
         picture=html.escape(f"Animation of a {type(response.body).__name__} on moving ground: {response.summary}."),
         count=response.impacts.size,
         note=" ".join(
-            [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # both, one, or nothing to add
+            [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # both, one or none
         ),
     )
 
@@ -119,15 +118,15 @@ def _page_in_space(response: InSpace) -> str:
         "turned": scene.turned,
     }
     picture = html.escape(f"Animation of a body in space on its ground: {response.summary}.")
-    script, about = _part("animation_hull.js"), words_of(response)
+    script, about = _part("animation_hull.js"), description_of(response)
     return _assembled("animation_hull.html", script, response.summary, about, data, picture=picture)
 
 
 def _assembled(form: str, script: str, summary: str, about: list[str], data: dict[str, Any], **texts: Any) -> str:
-    """Return a page of a form, which declares what it may run and show."""
+    """Return a page from a template, with its content security policy."""
     style = _part("animation_page.css")
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
-    # "<" cannot end the script element early, whatever a motion is called
+    # escaped "<": the name of a motion cannot end the script element
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     return Template(_part(form)).substitute(
         policy=html.escape(policy, quote=False), title=html.escape(summary[:1].upper() + summary[1:]),
@@ -136,9 +135,9 @@ def _assembled(form: str, script: str, summary: str, about: list[str], data: dic
 
 
 def page_data(response: Response) -> dict[str, Any]:
-    """Return what the page draws, in SI units: histories as little-endian float32 in base64, events to the last digit.
+    """Return the data of the page in SI units: histories as little-endian float32 in base64, events in full precision.
 
-    `rotation`, `velocity`, `ground` and `acceleration` are at equal steps from 0 to `end`, both included.
+    `rotation`, `velocity`, `ground` and `acceleration` have equal steps from 0 to `end`, both included.
     """
     scene = scene_of(response)
     parameters, fall = response.parameters, response.overturning_time
@@ -173,43 +172,43 @@ def animate_gif(
     speed: float = 1.0,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
-    """Write a GIF in which the body rocks, with the rotation below it.
+    """Write a GIF of the rocking body, with its rotation below.
 
     Parameters
     ----------
     response : Response, ContactResponse, SpatialResponse or HullResponse
-        What `simulate` or `free_rocking` returned; of bodies in space, and of plane ones that slide, the convex hull.
+        Result of `simulate` or `free_rocking`. 3D bodies, and plane bodies with sliding, appear as their convex hull.
     path : str or Path
-        File ending in .gif.
+        File with extension .gif.
     fps : float
-        Frames in a second of playing, from 1 to 50; rounded so that a frame lasts whole hundredths of a second.
+        Frames per second, from 1 to 50; rounded to a duration of whole hundredths of a second.
     speed : float
-        Seconds of the response in a second of playing, from 0.01 to 100 [-].
+        Seconds of the response per second of the animation, from 0.01 to 100 [-].
     progress : callable, optional
-        Called after each frame with the frames done and all frames.
+        Called after each frame with the number of completed frames and the total number.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Raises
     ------
     RockingError
-        If the name does not end in .gif, or the file cannot be written.
+        If the extension is not .gif, or the file cannot be written.
     InvalidValueError
-        If a value is outside its range, or there would be more than 500 frames.
+        If a value is outside its range, or there are more than 500 frames.
     """
     target = target_of(path, ".gif")
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     speed = checks.within("speed", speed, 0.01, 100.0)
-    end = _until(response)
+    end = _shown_until(response)
     count = int(np.ceil(end / (lasts * speed))) + 1
     if count > MOST_FRAMES:
         raise InvalidValueError(
             "a GIF has at most {limit} frames, got {count}: {end:.3g} s of response at fps = {fps:g}",
             limit=MOST_FRAMES, count=count, end=end, fps=fps,
-            hint=f"speed = {slowest_speed(response, fps):.3g} would do, or a web page",
+            hint=f"use speed = {slowest_speed(response, fps):.3g}, or a web page",
         )  # fmt: skip
     with writing(target):
         _film(response, target, lasts, lasts * speed, progress)
@@ -217,25 +216,27 @@ def animate_gif(
 
 
 def slowest_speed(response: Response | InSpace, fps: float = 25.0) -> float:
-    """Return the slowest speed, to two digits, at which a GIF of a response has few enough frames; at least 1 [-]."""
+    """Return the slowest speed, to two digits, with an allowed number of frames of a GIF; 1 or more [-]."""
     lasts = round(100.0 / fps) / 100.0
-    return max(1.0, float(np.ceil(100.0 * _until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
+    return max(1.0, float(np.ceil(100.0 * _shown_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
 
-def _until(response: Response | InSpace) -> float:
-    """Return the time up to which a response is shown [s], refusing those of which nothing moves in pictures yet."""
+def _shown_until(response: Response | InSpace) -> float:
+    """Return the end of the animation [s]; raise an error for objects without animation."""
     if isinstance(response, InSpace):
-        return until(response)
+        return end_of(response)
     if not isinstance(response, Response):
         raise InvalidValueError(NOT_MOVED)
     return scene_until(response)
 
 
 def target_of(path: str | Path, suffix: str) -> Path:
-    """Return where an animation is written, if its name ends as it must."""
+    """Return the path of an animation; raise an error for another extension."""
     target = Path(path)
     if target.suffix.lower() != suffix:
-        raise RockingError("this animation is a {suffix} file, got {file!r}", suffix=suffix, file=target.name)
+        raise RockingError(
+            "the file of this animation must end in {suffix}, got {file!r}", suffix=suffix, file=target.name
+        )
     return target
 
 
@@ -243,8 +244,8 @@ def _part(name: str) -> str:
     return (_FOLDER / name).read_text(encoding="utf-8")
 
 
-def _hash(words: str) -> str:
-    return f"'sha256-{base64.b64encode(hashlib.sha256(words.encode()).digest()).decode()}'"
+def _hash(script: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
 
 def _packed(values: FloatArray) -> str:
@@ -252,7 +253,7 @@ def _packed(values: FloatArray) -> str:
 
 
 def _short(points: FloatArray) -> list[list[float]]:
-    # a tenth of a millionth of the body is below anything that can be seen
+    # 1e-7 of the body size is invisible
     unit = 10.0 ** np.floor(np.log10(np.abs(points).max(initial=0.0) or 1.0) - 6.0)
     return [[float(f"{value:.7g}") for value in row] for row in (np.round(points / unit) * unit).tolist()]
 
@@ -265,13 +266,13 @@ def _film(
     step: float,
     progress: Callable[[int, int], object] | None = None,
 ) -> None:
-    """Write frames that are shown for whole hundredths of a second [s], a step [s] of the response apart."""
+    """Write frames of a duration of whole hundredths of a second [s], with a step [s] of the response between them."""
     from matplotlib.animation import PillowWriter
 
     stage: Any = (
         HullStage(response, step) if isinstance(response, InSpace) else _Stage(response, scene_of(response, step))
     )
-    # the writer cuts 1000 / fps down to whole milliseconds; it takes any number, though it is declared for whole ones
+    # the writer truncates 1000 / fps to whole milliseconds; it accepts any number, although it declares integers
     rate: Any = (1.0 - 1e-9) / lasts
     writer = PillowWriter(fps=rate)
     with writer.saving(stage.figure, str(path), _DOTS):
@@ -283,7 +284,7 @@ def _film(
 
 
 class _Stage:
-    """The figure of a film, and what moves in it."""
+    """The figure of an animation and its moving artists."""
 
     def __init__(self, response: Response, scene: Scene) -> None:
         from matplotlib.figure import Figure
@@ -291,21 +292,21 @@ class _Stage:
 
         self.response, self.scene, self.time = response, scene, scene.time
         x0, y0, x1, y1 = scene.window
-        tall = min(max(_WIDTH * (y1 - y0) / (x1 - x0), _LEAST), _MOST)
+        view_height = min(max(_WIDTH * (y1 - y0) / (x1 - x0), _LEAST), _MOST)
         lines = _title(response)
-        whole = _HEAD + 0.125 * max(len(lines) - 2, 0) + tall + _CURVE
-        self.figure = Figure(figsize=(_WIDTH, whole), facecolor="white")
-        self.figure.text(0.02, 1.0 - 0.06 / whole, "\n".join(lines), va="top", fontsize=7.5)
-        self.view = view = self.figure.add_axes((0.0, _CURVE / whole, 1.0, tall / whole))
+        total_height = _HEAD + 0.125 * max(len(lines) - 2, 0) + view_height + _CURVE
+        self.figure = Figure(figsize=(_WIDTH, total_height), facecolor="white")
+        self.figure.text(0.02, 1.0 - 0.06 / total_height, "\n".join(lines), va="top", fontsize=7.5)
+        self.view = view = self.figure.add_axes((0.0, _CURVE / total_height, 1.0, view_height / total_height))
         view.set_axis_off()
-        unit = max((x1 - x0) / _WIDTH, (y1 - y0) / tall)  # the scale is the same in both directions
-        wide, high, middle = unit * _WIDTH, unit * tall, 0.5 * (x0 + x1)
+        unit = max((x1 - x0) / _WIDTH, (y1 - y0) / view_height)  # the scale is the same in both directions
+        wide, high, middle = unit * _WIDTH, unit * view_height, 0.5 * (x0 + x1)
         view.set_xlim(middle - 0.5 * wide, middle + 0.5 * wide)
         view.set_ylim(y0, y0 + high)
         self.body, self.ground = Affine2D(), Affine2D()
         self.period = draw_ground(view, scene, self.ground)
         draw_body(view, scene.shape, self.body)
-        curve = self.figure.add_axes((0.11, 0.42 / whole, 0.86, (_CURVE - 0.55) / whole))
+        curve = self.figure.add_axes((0.11, 0.42 / total_height, 0.86, (_CURVE - 0.55) / total_height))
         self.mark = _draw_curve(curve, response, scene)
         ring: dict[str, Any] = {"markersize": 16, "markerfacecolor": "none", "markeredgewidth": 2, "color": _IMPACT}
         (self.flash,) = view.plot([], [], marker="o", **ring)
@@ -314,7 +315,7 @@ class _Stage:
         self.coefficient = view.text(0.98, 0.98, "", ha="right", fontsize=9, color=_IMPACT, **corner)
 
     def show(self, k: int, window: float) -> None:
-        """Show a frame, and an impact that lies within a window before it [s]."""
+        """Show a frame, and an impact within a window before it [s]."""
         response, scene = self.response, self.scene
         time, rotation, ground = (float(values[k]) for values in (scene.time, scene.rotation, scene.ground))
         foot = scene.shape.feet[1] if rotation > 0.0 else scene.shape.feet[0]
@@ -337,12 +338,12 @@ class _Stage:
 
 def _title(response: Response) -> list[str]:
     title = response.summary[:1].upper() + response.summary[1:]
-    first, _, rest = title.partition(": ")
-    return [first, *wrap(rest, _LINE)] if rest else first.replace(", past", ",\npast").split("\n")
+    first, _, details = title.partition(": ")
+    return [first, *wrap(details, _LINE)] if details else first.replace(", past", ",\npast").split("\n")
 
 
 def draw_ground(view: "Axes", scene: Scene, moved: "Affine2D") -> float:
-    """Draw the ground, which a transformation moves, and return after which distance it looks the same [m]."""
+    """Draw the ground, moved by a transformation, and return its spatial period [m]."""
     from matplotlib.collections import LineCollection
 
     left, right = view.get_xlim()
@@ -352,34 +353,34 @@ def draw_ground(view: "Axes", scene: Scene, moved: "Affine2D") -> float:
     feet = np.arange(left - wide, right + wide, gap)
     strokes = [[(x, 0.0), (x - 0.6 * gap, -0.6 * gap)] for x in feet.tolist()]
     if scene.follows:
-        # the window moves with the ground, so the world behind it is what moves
+        # the window moves with the ground, so the background moves in the picture
         view.add_collection(LineCollection(strokes, colors=GREY, linewidths=0.7))
         strokes = [[(x, 0.0), (x, 4.0 * wide)] for x in feet[::8].tolist()]
     look: dict[str, Any] = {"colors": PALE if scene.follows else GREY, "linewidths": 0.7, "zorder": 0}
     view.add_collection(LineCollection(strokes, transform=moved + view.transData, **look))
-    # hatches and lines repeat, so that the ground may move as far as it likes
+    # hatches and lines repeat, which allows any displacement of the ground
     return gap * (8.0 if scene.follows else 1.0)
 
 
 def draw_body(view: "Axes", shape: DrawnShape, turned: "Affine2D") -> None:
-    """Draw a body that a transformation turns and moves."""
+    """Draw a body, rotated and moved by a transformation."""
     from matplotlib.patches import PathPatch
 
-    place: Any = turned + view.transData
+    transform: Any = turned + view.transData
     for shade, rings in shape.regions:
         look: dict[str, Any] = {"facecolor": [1.0 - 0.35 * shade] * 3, "edgecolor": INK, "linewidth": 1.0}
-        view.add_patch(PathPatch(closed(rings), transform=place, zorder=3, **look))
+        view.add_patch(PathPatch(closed(rings), transform=transform, zorder=3, **look))
     if shape.points.size:
         sizes = 20.0 + 60.0 * shape.points[:, 2]
         left, right = shape.feet
         x, y = shape.centre
-        view.plot([left, x, right, left], [0.0, y, 0.0, 0.0], color=GREY, linewidth=0.8, transform=place, zorder=2)
-        view.scatter(shape.points[:, 0], shape.points[:, 1], s=sizes, color=INK, transform=place, zorder=3)
-    view.plot(*([value] for value in shape.centre), "+", color=_ROTATION, markersize=7, transform=place, zorder=4)
+        view.plot([left, x, right, left], [0.0, y, 0.0, 0.0], color=GREY, linewidth=0.8, transform=transform, zorder=2)
+        view.scatter(shape.points[:, 0], shape.points[:, 1], s=sizes, color=INK, transform=transform, zorder=3)
+    view.plot(*([value] for value in shape.centre), "+", color=_ROTATION, markersize=7, transform=transform, zorder=4)
 
 
 def _draw_curve(axes: "Axes", response: Response, scene: Scene) -> "Line2D":
-    """Draw the rotation, and return the mark that moves along it."""
+    """Draw the rotation, and return its moving mark."""
     time, rotation, _ = motion_curves(response)
     values = over_slenderness(response, rotation)
     axes.axhline(0.0, color=PALE, linewidth=0.6)

@@ -29,30 +29,30 @@ function drawScene() {
   const [pen, w, h] = sized(canvas, height);
   const floor = 46, scale = Math.min(w / (x1 - x0), (h - floor) / (y1 - Math.max(y0, 0)));
   const moved = at("ground", now), camera = (x0 + x1) / 2 + (data.follows ? moved : 0);
-  const place = (x, y) => [w / 2 + (x - camera) * scale, h - floor - y * scale];
-  drawGround(pen, w, h, h - floor, scale, place, moved, camera);
+  const project = (x, y) => [w / 2 + (x - camera) * scale, h - floor - y * scale];
+  drawGround(pen, w, h, h - floor, scale, project, moved, camera);
   const theta = at("rotation", now), pivot = theta > 0 ? data.feet[1] : data.feet[0];
   const c = Math.cos(theta), s = Math.sin(theta);
-  const turned = ([x, y]) => place(pivot + c * (x - pivot) + s * y + moved, -s * (x - pivot) + c * y);
+  const turned = ([x, y]) => project(pivot + c * (x - pivot) + s * y + moved, -s * (x - pivot) + c * y);
   drawBody(pen, turned);
-  drawFlash(pen, place, moved);
+  drawFlash(pen, project, moved);
 }
 
-function drawGround(pen, w, h, level, scale, place, moved, camera) {
+function drawGround(pen, w, h, level, scale, project, moved, camera) {
   line(pen, [[0, level], [w, level]], colours.ink, 1.5);
   // hatches belong to the ground and move with it
   const gap = 16 / scale, first = Math.floor((camera - w / 2 / scale - moved) / gap);
   for (let k = first; k * gap < camera - moved + w / 2 / scale + gap; k++) {
-    const [x] = place(k * gap + moved, 0);
+    const [x] = project(k * gap + moved, 0);
     line(pen, [[x, level], [x - 8, level + 8]], colours.soft, 1);
   }
-  // the ruler stands still
+  // the ruler is fixed
   const step = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]
-    .find((one) => one * scale > 70) || 5000;
+    .find((length) => length * scale > 70) || 5000;
   pen.fillStyle = colours.soft;
   pen.textAlign = "center";
   for (let k = Math.ceil((camera - w / 2 / scale) / step); k * step < camera + w / 2 / scale; k++) {
-    const [x] = place(k * step, 0);
+    const [x] = project(k * step, 0);
     line(pen, [[x, level + 14], [x, level + 20]], colours.soft, 1);
     if (x > 25 && x < w - 25) pen.fillText(fixed(k * step, step < 0.01 ? 3 : step < 0.1 ? 2 : step < 1 ? 1 : 0) + " m", x, level + 35);
   }
@@ -99,13 +99,13 @@ function drawBody(pen, turned) {
   line(pen, [[x, y - 6], [x, y + 6]], colour, 1.5);
 }
 
-function drawFlash(pen, place, moved) {
-  // as long for the eye at any speed
+function drawFlash(pen, project, moved) {
+  // equal duration at any speed
   const lasts = Math.max(0.4 * speed(), 0.02);
   const recent = data.impacts.filter((impact) => impact[0] <= now && now < impact[0] + lasts);
   if (!recent.length) return;
   const [time, , , r, onto] = recent[recent.length - 1], age = (now - time) / lasts;
-  const [x, y] = place(data.feet[onto > 0 ? 1 : 0] + moved, 0);
+  const [x, y] = project(data.feet[onto > 0 ? 1 : 0] + moved, 0);
   pen.globalAlpha = 1 - 0.7 * age;
   pen.beginPath();
   pen.arc(x, y, 6 + 22 * age, Math.PI, 2 * Math.PI);
@@ -114,11 +114,11 @@ function drawFlash(pen, place, moved) {
   pen.stroke();
   pen.globalAlpha = 1;
   pen.font = "bold 14px system-ui, 'DejaVu Sans', sans-serif";
-  const words = "r = " + r.toFixed(3), wide = pen.measureText(words).width;
-  // beside the ring, on the other side where the picture ends
+  const text = "r = " + r.toFixed(3), wide = pen.measureText(text).width;
+  // next to the ring, on the other side near the edge of the picture
   const right = onto > 0 ? x + 34 + wide < pen.canvas.clientWidth : x - 34 - wide < 0;
   pen.textAlign = right ? "left" : "right";
-  pen.fillText(words, right ? x + 34 : x - 34, y - 10);
+  pen.fillText(text, right ? x + 34 : x - 34, y - 10);
   pen.textAlign = "left";
 }
 

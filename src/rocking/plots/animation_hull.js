@@ -3,15 +3,15 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const unpacked = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 const [attitude, centre, tilt] = [data.quaternion, data.centre, data.tilt].map(unpacked);
 const last = tilt.length - 1;
-const part = (name) => document.getElementById(name);
-const [canvas, slider, play, speed] = ["scene", "time", "play", "speed"].map(part);
+const element = (name) => document.getElementById(name);
+const [canvas, slider, play, speed] = ["scene", "time", "play", "speed"].map(element);
 let time = 0, before = null, turned = data.turned, raised = 0.35;
 slider.max = data.end;
 
 function pose() {
-  const place = last * Math.min(time / data.end, 1), k = Math.min(Math.floor(place), last - 1), share = place - k;
+  const position = last * Math.min(time / data.end, 1), k = Math.min(Math.floor(position), last - 1), fraction = position - k;
   const between = (row, width) => Array.from({ length: width },
-    (_, i) => row[width * k + i] * (1 - share) + row[width * (k + 1) + i] * share);
+    (_, i) => row[width * k + i] * (1 - fraction) + row[width * (k + 1) + i] * fraction);
   let [s, x, y, z] = between(attitude, 4);
   const length = Math.hypot(s, x, y, z);
   [s, x, y, z] = [s / length, x / length, y / length, z / length];
@@ -44,13 +44,13 @@ function draw() {
   pen.strokeStyle = colour("--ink"); pen.lineJoin = "round";
   data.facets.forEach((facet, k) => {
     const n = at(data.normals[k]);
-    if (n[0] * ce * c + n[1] * ce * s + n[2] * se <= 0) return; // of a convex body none of the others is seen
+    if (n[0] * ce * c + n[1] * ce * s + n[2] * se <= 0) return; // hidden facet of a convex body
     const shade = Math.max(0, 0.35 * n[0] - 0.25 * n[1] + 0.9 * n[2]);
     pen.fillStyle = colour("--body"); path(facet.map((i) => points[i])); pen.closePath(); pen.fill();
     pen.fillStyle = `rgba(0, 0, 0, ${0.35 * (1 - Math.min(1, shade))})`; pen.fill(); pen.stroke();
   });
-  part("now").textContent = time.toFixed(2) + " s";
-  part("tilt").textContent = (now.tilt * 180 / Math.PI).toFixed(2) + " deg";
+  element("now").textContent = time.toFixed(2) + " s";
+  element("tilt").textContent = (now.tilt * 180 / Math.PI).toFixed(2) + " deg";
   slider.value = time;
 }
 

@@ -1,4 +1,4 @@
-"""What an animation shows of a body in space, or of a plane one that slides: its convex hull, seen from a side."""
+"""Animations of 3D bodies, and of plane bodies with sliding: the convex hull in parallel projection."""
 
 import math
 from dataclasses import dataclass
@@ -19,38 +19,38 @@ from rocking.errors import InvalidValueError
 from rocking.plots.style import GREY, INK, PALE
 
 _RATE, _MOST = 60.0, 6000
-"""Poses in a second, and in all."""
+"""Poses per second, and maximum number of poses."""
 
 _TURNED, _PLANE, _RAISED = 0.6, -1.35, 0.35
-"""From where it is seen: from x towards y, one that moves in the plane of x; and above the ground [rad]."""
+"""Direction of view: azimuth from x towards y, azimuth for motion in the plane of x, and elevation [rad]."""
 
 _LIGHT = np.array([0.35, -0.25, 0.9])
 _ROTATION = "#0070B2"
 _DARK, _LINE = 0.35, 80
-_SUNK = 1e-3  # how far below the ground a corner is drawn at most, over the size
+_SUNK = 1e-3  # largest plotted depth of a corner below the ground, over the size
 
 
 InSpace = HullResponse | SpatialResponse | ContactResponse
 
 
 def hull_of(response: InSpace) -> HullBody:
-    """Return the body on its hull; a plane one is as deep as it says."""
+    """Return the body on its hull; a plane body has its own depth."""
     body: Any = response.body
     if isinstance(response, ContactResponse):
         if not isinstance(body, (Block, Section)):
-            raise InvalidValueError("an animation of sliding shows a Block or Section: mass points have no outline")
+            raise InvalidValueError("an animation of sliding requires a Block or Section; mass points have no outline")
         body = Solid.from_section(body)
     return HullBody.of(body)
 
 
-def places_of(response: InSpace, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return attitudes [-] and places of the centre of mass over the ground [m]."""
+def positions_of(response: InSpace, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return attitudes [-] and positions of the centre of mass relative to the ground [m]."""
     if isinstance(response, HullResponse):
         states = response.at(time)
         return states.quaternion, states.centre
     if isinstance(response, SpatialResponse):
-        found = response.at(time)
-        return found.quaternion, found.point(response.body.centre)
+        sampled = response.at(time)
+        return sampled.quaternion, sampled.point(response.body.centre)
     x, rise, theta = response.at(time).T
     nought = np.zeros(theta.size)
     upright = response.base.height + rise
@@ -60,17 +60,17 @@ def places_of(response: InSpace, time: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def tilt_of(response: InSpace) -> FloatArray:
-    """Return the angle from the pose at the start at the samples [rad]."""
+    """Return the angle from the initial pose at the samples [rad]."""
     return np.abs(response.rotation) if isinstance(response, ContactResponse) else response.tilt
 
 
-def until(response: InSpace) -> float:
-    """Return when a response ends [s]."""
+def end_of(response: InSpace) -> float:
+    """Return the end of a response [s]."""
     return response.trajectory.end if isinstance(response, ContactResponse) else response.end
 
 
-def words_of(response: InSpace) -> list[str]:
-    """Return what moves the body, and what holds and stops it."""
+def description_of(response: InSpace) -> list[str]:
+    """Return texts on motion, scale, restitution and friction."""
     if isinstance(response, ContactResponse):
         motion = response.motion
         shaken = "free rocking, the ground at rest" if motion is None else motion.name
@@ -92,31 +92,31 @@ def _times(scale: float) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class HullScene:
-    """The hull of a body from its centre of mass, and where it is at equal steps of time."""
+    """The hull of a body relative to its centre of mass, and its pose at equal steps of time."""
 
     time: FloatArray  # [s]
     quaternion: FloatArray  # attitude (s, x, y, z) [-]; shape (n, 4)
-    centre: FloatArray  # place of the centre of mass over the ground [m]; shape (n, 3)
-    tilt: FloatArray  # angle from the pose at the start [rad]
+    centre: FloatArray  # position of the centre of mass relative to the ground [m]; shape (n, 3)
+    tilt: FloatArray  # angle from the initial pose [rad]
     points: FloatArray  # vertices of the hull [m]; shape (k, 3)
     facets: list[list[int]]  # their vertices, counter-clockwise seen from outside
     normals: FloatArray  # of the facets, outward [-]
-    middle: FloatArray  # of all that is shown [m]
-    reach: float  # how far from there anything goes [m]
-    turned: float  # from where it is seen, from x towards y [rad]
+    middle: FloatArray  # centre of the scene [m]
+    reach: float  # radius of the scene [m]
+    turned: float  # azimuth of the view, from x towards y [rad]
 
     @classmethod
     def of(cls, response: InSpace, step: float | None = None) -> "HullScene":
-        """Return a response at steps of time [s], 60 a second or fewer if not given."""
-        end, body = until(response), hull_of(response)
+        """Return a response at steps of time [s]; default: at most 60 steps per second."""
+        end, body = end_of(response), hull_of(response)
         hull = body.hull
         if step is None:
             time = np.linspace(0.0, end, min(max(2, int(end * _RATE)), _MOST))
         else:
             time = np.append(np.arange(0.0, end, step), end)
-        (attitudes, centre), size = places_of(response, time), body.size
+        (attitudes, centre), size = positions_of(response, time), body.size
         in_plane = isinstance(response, ContactResponse)
-        if in_plane:  # what falls is followed until it has turned by a quarter, and lies before
+        if in_plane:  # the scene ends when a corner of the overturning body reaches the ground
             lowest = [float((hull.vertices @ matrix(q)[2]).min()) for q in attitudes] + centre[:, 2]
             lies = int(np.append(np.flatnonzero(lowest < -_SUNK * size), time.size)[0])
             time, attitudes, centre = time[:lies], attitudes[:lies], centre[:lies]
@@ -127,21 +127,22 @@ class HullScene:
             follows[left][start], follows[right][stop] = stop, start
         return cls(
             time, attitudes, centre, np.interp(time, response.time, tilt_of(response)), hull.vertices,
-            [_loop(each) for each in follows], hull.normals, 0.5 * (low + high), 0.5 * float((high - low).max()),
+            [_loop(successors) for successors in follows], hull.normals, 0.5 * (low + high),
+            0.5 * float((high - low).max()),
             _PLANE if in_plane else _TURNED,
         )  # fmt: skip
 
 
-def _loop(after: dict[int, int]) -> list[int]:
-    """Return the vertices of a facet in order, of which each says which one follows."""
-    found = [next(iter(after))]
-    while len(found) < len(after):
-        found.append(after[found[-1]])
-    return found
+def _loop(successors: dict[int, int]) -> list[int]:
+    """Return the vertices of a facet in order, from the successor of each vertex."""
+    loop = [next(iter(successors))]
+    while len(loop) < len(successors):
+        loop.append(successors[loop[-1]])
+    return loop
 
 
 class HullStage:
-    """The figure of a film, and what moves in it."""
+    """The figure of an animation and its moving artists."""
 
     def __init__(self, response: InSpace, step: float) -> None:
         from matplotlib.collections import LineCollection, PolyCollection
@@ -175,14 +176,14 @@ class HullStage:
         self.mark = curve.axvline(0.0, color=GREY, linewidth=0.8)
 
     def _seen(self, points: FloatArray) -> FloatArray:
-        """Return where points are in the picture."""
+        """Return the positions of points in the picture."""
         c, s = math.cos(self.scene.turned), math.sin(self.scene.turned)
         x, y, z = np.moveaxis(np.asarray(points), -1, 0)
         upright = math.cos(_RAISED) * z - math.sin(_RAISED) * (c * x + s * y)
         return np.stack([c * y - s * x, upright], axis=-1)
 
     def show(self, k: int, _: float) -> None:
-        """Show a frame: of a convex body the facets that face the eye, none of which hides another."""
+        """Show a frame: the visible facets; those of a convex body do not overlap."""
         scene = self.scene
         turn = matrix(scene.quaternion[k])
         normals, points = scene.normals @ turn.T, scene.points @ turn.T + scene.centre[k]

@@ -1,8 +1,8 @@
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const element = (id) => document.getElementById(id);
-const unpacked = (words) => {
-  const bytes = Uint8Array.from(atob(words), (letter) => letter.charCodeAt(0));
+const unpacked = (text) => {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const view = new DataView(bytes.buffer);
   return Float32Array.from({ length: bytes.length / 4 }, (_, k) => view.getFloat32(4 * k, true));
 };
@@ -20,7 +20,7 @@ const at = (name, time) => {
   return series[name][k] + (series[name][k + 1] - series[name][k]) * (x - k);
 };
 const speed = () => Number(element("speed").value);
-const share = (theta) => theta / (theta > 0 ? data.alpha[1] : data.alpha[0]);
+const ratio = (theta) => theta / (theta > 0 ? data.alpha[1] : data.alpha[0]);
 // a minus sign, and none before a zero
 const fixed = (value, digits) => {
   const text = Math.abs(value).toFixed(digits);
@@ -31,7 +31,7 @@ function draw() {
   const theta = at("rotation", now);
   element("now").textContent = now.toFixed(3) + " s";
   element("rotation").textContent = fixed(theta * degrees, 3) + "\u00b0";
-  element("share").textContent = fixed(share(theta), 3);
+  element("share").textContent = fixed(ratio(theta), 3);
   element("velocity").textContent = fixed(at("velocity", now), 3) + " rad/s";
   element("time").value = now / data.end;
   element("time").setAttribute("aria-valuetext", now.toFixed(2) + " seconds, " + fixed(theta * degrees, 1) + " degrees");
@@ -50,10 +50,10 @@ function frame(stamp) {
   draw();
 }
 
-function play(wanted) {
-  if (wanted && now >= data.end) now = 0;
-  if (wanted && !playing) requestAnimationFrame(frame);
-  playing = wanted;
+function play(start) {
+  if (start && now >= data.end) now = 0;
+  if (start && !playing) requestAnimationFrame(frame);
+  playing = start;
   before = null;
   element("play").textContent = playing ? "Pause" : "Play";
   if (!playing) speak();
@@ -107,7 +107,7 @@ document.addEventListener("keydown", (event) => {
 window.addEventListener("resize", draw);
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
 paint();
-// page.html#t=1.5 opens at an instant
-const wanted = /^#t=([0-9.]+)$/.exec(window.location.hash);
-if (wanted) seek(Number(wanted[1]));
+// page.html#t=1.5 opens at this time
+const requested = /^#t=([0-9.]+)$/.exec(window.location.hash);
+if (requested) seek(Number(requested[1]));
 else if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);

@@ -1,4 +1,4 @@
-"""What an animation shows at equal steps of time: a body about its feet, or its convex hull in space, to the end."""
+"""Scenes of animations at equal steps of time: a plane body on its feet until it lies on the ground."""
 
 import math
 from dataclasses import dataclass
@@ -10,16 +10,16 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.plane import equations
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
-from rocking.plots.response import ground_place, shown_until, velocity_at
+from rocking.plots.response import ground_displacement_at, shown_until, velocity_at
 
-FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000  # samples in a second, and in all
+FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000  # samples per second, and maximum number of samples
 _MARGIN = 0.10
 _FAR = 1.5
 _POSES = 400
-_LEVEL = 1e-9  # height of a corner that stands on the ground, over its distance from the foot, to rounding
+_LEVEL = 1e-9  # tolerance of the height of a corner on the ground, over its distance from the foot
 
 _STEP = 0.01
-"""Step of the integration of a fall, over 1 / p: what the fourth order leaves out is below 1e-8 of the angle."""
+"""Step of the integration of a fall, over 1 / p; the truncation error is below 1e-8 of the angle."""
 _MOST_STEPS = 20_000
 _HALVINGS = 50
 
@@ -46,25 +46,25 @@ class DrawnShape:
         points = np.empty((0, 3))
         if isinstance(solid, Section):
             densest = max(region.density for region in solid.regions)
-            # a block turned into a section keeps its feet but not its frame
+            # the section of a block has the same feet but another frame
             shift = np.array([0.5 * sum(solid.local_feet), 0.0])
-            regions = [(one.density / densest, [ring - shift for ring in one.rings]) for one in solid.regions]
+            regions = [(item.density / densest, [ring - shift for ring in item.rings]) for item in solid.regions]
         elif isinstance(body, MassPoints):
             points = np.column_stack([body.points - (middle, 0.0), body.masses / body.masses.max()])
         return cls(regions, points, (left - middle, right - middle), (moments.x - middle, moments.y))
 
     @property
     def corners(self) -> FloatArray:
-        """Everything that the body reaches: vertices, points and feet [m]."""
+        """Extreme points of the body: vertices, points and feet [m]."""
         parts = [ring for _, rings in self.regions for ring in rings]
         feet = np.array([[foot, 0.0] for foot in self.feet])
         return np.vstack([*parts, self.points[:, :2], feet, [self.centre]])
 
     @property
     def lying(self) -> tuple[float, float]:
-        """Rotations, below and above zero, at which a corner meets the ground: it lies on its left or right side [rad].
+        """Negative and positive rotations of a body that lies on its left or right side [rad].
 
-        Both are at most a quarter turn and the slenderness angle beyond it, since the centre of mass is no lower.
+        Each is at most a quarter turn plus the slenderness angle.
         """
         angles = []
         for foot, side in zip(self.feet, (-1.0, 1.0), strict=True):
@@ -74,7 +74,7 @@ class DrawnShape:
         return angles[0], angles[1]
 
     def turned(self, corners: FloatArray, rotation: float) -> FloatArray:
-        """Return where points of the body [m] are after it has turned by theta [rad] about the foot it stands on."""
+        """Return points of the body [m] after a rotation by theta [rad] about its foot."""
         pivot = np.array([self.feet[1] if rotation > 0.0 else self.feet[0], 0.0])
         c, s = np.cos(rotation), np.sin(rotation)
         return np.asarray((corners - pivot) @ np.array([[c, -s], [s, c]]) + pivot)
@@ -82,20 +82,20 @@ class DrawnShape:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A response at equal steps of time, and the window through which it is seen."""
+    """A response at equal steps of time, and the window of view."""
 
     shape: DrawnShape
-    time: FloatArray  # from zero to the end of what is shown [s]
+    time: FloatArray  # from zero to the end of the animation [s]
     rotation: FloatArray  # theta [rad]
     velocity: FloatArray  # theta' [rad/s]
     ground: FloatArray  # displacement of the ground [m]
     acceleration: FloatArray  # acceleration of the ground [m/s2]
-    follows: bool  # whether the window moves with the ground, since it moves farther than the body is large
+    follows: bool  # True if the window moves with the ground, for ground displacements larger than the body
     window: tuple[float, float, float, float]  # x_min, y_min, x_max, y_max [m]
 
 
 def scene_of(response: Response, step: float | None = None) -> Scene:
-    """Return a response until nothing happens any more or the body lies; by default at most 120 samples a second."""
+    """Return a response until its last event or until the body lies; default: at most 120 samples per second."""
     shape = DrawnShape.of(response.body)
     fall = fall_of(response, shape.lying)
     end = scene_until(response, fall)
@@ -103,20 +103,20 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
         time = np.linspace(0.0, end, max(2, min(int(end * FASTEST_RATE), MOST_SAMPLES)))
     else:
         time = np.append(np.arange(0.0, end, step), end)
-    known, ends = float(response.dense_output.end[-1]), response.segments.count * response.segments.step
-    rotation, velocity = response.at(np.minimum(time, known)), velocity_at(response, time)
+    response_end, motion_end = float(response.dense_output.end[-1]), response.segments.count * response.segments.step
+    rotation, velocity = response.at(np.minimum(time, response_end)), velocity_at(response, time)
     if fall.time.size:
-        falls = time > known
-        rotation = np.clip(np.where(falls, np.interp(time, fall.time, fall.rotation), rotation), *shape.lying)
-        velocity = np.where(falls, np.interp(time, fall.time, fall.velocity), velocity)
-    ground = ground_place(response, np.minimum(time, ends))
+        is_falling = time > response_end
+        rotation = np.clip(np.where(is_falling, np.interp(time, fall.time, fall.rotation), rotation), *shape.lying)
+        velocity = np.where(is_falling, np.interp(time, fall.time, fall.velocity), velocity)
+    ground = ground_displacement_at(response, np.minimum(time, motion_end))
     follows, window = _window(shape, rotation, ground)
-    acceleration = np.where(time > ends, 0.0, np.interp(time, response.time, response.ground_acceleration))
+    acceleration = np.where(time > motion_end, 0.0, np.interp(time, response.time, response.ground_acceleration))
     return Scene(shape, time, rotation, velocity, ground, acceleration, follows, window)
 
 
 def scene_until(response: Response, fall: "Fall | None" = None) -> float:
-    """Return the time up to which a response is shown in motion [s]: to where the body lies, if it falls."""
+    """Return the end of the animation of a response [s]; an overturning body is shown until it lies."""
     fall = fall_of(response, DrawnShape.of(response.body).lying) if fall is None else fall
     return float(fall.time[-1]) if fall.time.size else shown_until(response)
 
@@ -126,7 +126,7 @@ def _window(
 ) -> tuple[bool, tuple[float, float, float, float]]:
     corners = shape.corners
     poses = np.unique(np.linspace(0, rotation.size - 1, _POSES).astype(np.int64))
-    # with the two ends of the swing, which fall between the poses of a long history
+    # with the two extreme rotations, which may be between the poses of a long history
     poses = np.append(poses, [rotation.argmin(), rotation.argmax()])
     turned = [shape.turned(corners, float(rotation[k])) for k in poses]
     low = np.min([pose.min(axis=0) for pose in turned], axis=0)
@@ -141,11 +141,11 @@ def _window(
 
 @dataclass(frozen=True, eq=False)
 class Fall:
-    """What follows the last state of a response whose body overturned.
+    """Continuation of a response with overturning after its last state.
 
-    The response ends at a quarter turn, or before it where its motion does and only energy decides. From there the
-    equation of motion goes on, with whatever the ground still does, until a corner of the body meets the ground. There
-    the body is taken to lie: what a hard landing on a side does is not part of the model.
+    The response ends at a quarter turn, or earlier with its motion. From there, the equation of motion is integrated
+    under the remaining ground motion until a corner of the body reaches the ground. The animation ends there, because
+    the impact on a side is not part of the model.
     """
 
     time: FloatArray  # from the end of the response; empty if the body does not overturn [s]
@@ -154,7 +154,7 @@ class Fall:
 
 
 def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
-    """Return how the fall of a response goes on after its last state; lying: rotations at which the body lies [rad]."""
+    """Return the continuation of a response after its last state; lying: rotations of the lying body [rad]."""
     if response.outcome is not Outcome.OVERTURNED:
         return Fall(np.empty(0), np.empty(0), np.empty(0))
     last = response.dense_output
@@ -173,7 +173,7 @@ _State = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class _Falling:
-    """A body on its way: (time, theta, theta') from step to step."""
+    """Integration of a fall with states (time, theta, theta')."""
 
     response: Response
     lying: tuple[float, float]
@@ -182,7 +182,7 @@ class _Falling:
         return side * state[1] >= side * self.lying[side > 0.0]
 
     def advanced(self, side: float, state: _State) -> tuple[float, _State]:
-        """Return side and state after a step, or where the body meets the ground or the other foot within it."""
+        """Return side and state after a step, or at contact with the ground or the other foot within the step."""
         step = _STEP / self.response.parameters.side(side).frequency_parameter
         after = self._step(side, state, step)
         lands = side * after[1] < 0.0
@@ -219,16 +219,17 @@ class _Falling:
 
     def _acceleration(self, side: float, time: float, rotation: float) -> float:
         response, segments = self.response, self.response.segments
-        place, k = time / segments.step, math.floor(time / segments.step)
+        position, k = time / segments.step, math.floor(time / segments.step)
         push = weight = 0.0
         if k < segments.count:
-            powers = (place - k) ** np.arange(segments.degree + 1) * response.scale / response.settings.gravity
+            powers = (position - k) ** np.arange(segments.degree + 1) * response.scale / response.settings.gravity
             push = float(segments.horizontal[k] @ powers)
             weight = 0.0 if segments.vertical is None else float(segments.vertical[k] @ powers)
-        on = response.parameters.side(side)
+        side_parameters = response.parameters.side(side)
         return float(
             equations.angular_acceleration(
-                rotation, side, on.slenderness_angle, on.frequency_parameter, push, 1.0 + weight,
+                rotation, side, side_parameters.slenderness_angle, side_parameters.frequency_parameter, push,
+                1.0 + weight,
                 linear=response.settings.linear,
             )
         )  # fmt: skip

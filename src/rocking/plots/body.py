@@ -9,7 +9,7 @@ from rocking.bodies import Block, Body, MassPoints, Section
 from rocking.conventions import FloatArray, Foot
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.measurements import all_measurements
-from rocking.plots.evidence import R, measured, predicted
+from rocking.plots.evidence import R, draw_calibrated, draw_measurements
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, model_styles, new_figure
 
 if TYPE_CHECKING:
@@ -39,14 +39,14 @@ def body_picture(body: Body) -> "Figure":
 
 @in_journal_style
 def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRow]]) -> "Figure":
-    """Draw a body, its coefficient under every model, and where each foot's slenderness lies among the measurements.
+    """Draw a body, its coefficients with all models, and the slenderness of each foot among the measurements.
 
     Parameters
     ----------
     body : Body
         The body.
     tables : dict of {"left", "right"} to sequence of CoefficientRow
-        Its coefficients by the foot on which it lands: one table of a symmetric body, two of another.
+        Coefficients by landing foot: one table for a symmetric body, otherwise two.
 
     Returns
     -------
@@ -58,8 +58,8 @@ def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRo
     markers: dict[Foot, str] = {"left": "<", "right": ">"} if len(tables) > 1 else dict.fromkeys(tables, "D")
     _rows(axes[1], tables, markers)
     ratios = {foot: body.side(foot).slenderness_ratio for foot in tables}
-    predicted(axes[2], low=min(1.2, 0.9 * min(ratios.values())), high=max(10.5, 1.08 * max(ratios.values())))
-    measured(axes[2], all_measurements())
+    draw_calibrated(axes[2], low=min(1.2, 0.9 * min(ratios.values())), high=max(10.5, 1.08 * max(ratios.values())))
+    draw_measurements(axes[2], all_measurements())
     for foot, rows in tables.items():
         for row in rows:
             axes[2].plot([ratios[foot]], [row.coefficient], markers[foot], markersize=4, color=_color(row))
@@ -69,27 +69,27 @@ def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRo
 
 
 def _rows(axes: "Axes", tables: Mapping[Foot, Sequence[CoefficientRow]], markers: dict[Foot, str]) -> None:
-    rows, alone = next(iter(tables.values())), len(tables) == 1
-    place, apart = np.arange(len(rows))[::-1], 0.6 / len(tables)
+    rows, is_single = next(iter(tables.values())), len(tables) == 1
+    rows_y, apart = np.arange(len(rows))[::-1], 0.6 / len(tables)
     for i, (foot, table) in enumerate(tables.items()):
-        for y, row in zip((place + apart * (0.5 * (len(tables) - 1) - i)).tolist(), table, strict=True):
+        for y, row in zip((rows_y + apart * (0.5 * (len(tables) - 1) - i)).tolist(), table, strict=True):
             axes.plot([row.low, row.high], [y, y], color=_color(row), linewidth=1.2)
             axes.plot([row.coefficient], [y], marker=markers[foot], markersize=4, color=_color(row))
-            # over the marker where there is room, else behind the interval
+            # above the marker if there is room, otherwise after the interval
             x, shift, ha, va = (
-                (row.coefficient, (0, 4), "center", "bottom") if alone else (row.high, (3, 0), "left", "center")
+                (row.coefficient, (0, 4), "center", "bottom") if is_single else (row.high, (3, 0), "left", "center")
             )
-            words = f"{row.coefficient:.3f}"
-            axes.annotate(words, (x, y), shift, textcoords="offset points", ha=ha, va=va, fontsize=6)
-    axes.margins(x=0.05 if alone else 0.12)
-    axes.set_yticks(place, [row.name.replace(":", "\n") for row in rows], fontsize=6)
+            text = f"{row.coefficient:.3f}"
+            axes.annotate(text, (x, y), shift, textcoords="offset points", ha=ha, va=va, fontsize=6)
+    axes.margins(x=0.05 if is_single else 0.12)
+    axes.set_yticks(rows_y, [row.name.replace(":", "\n") for row in rows], fontsize=6)
     axes.set_ylim(-0.6, len(rows) - 0.3)
     axes.grid(axis="y", color=PALE, linewidth=0.5)
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel(R)
     left, right = "\N{BLACK LEFT-POINTING TRIANGLE}", "\N{BLACK RIGHT-POINTING TRIANGLE}"
-    both = f"onto the left foot ({left}) and right foot ({right}),\n95 % intervals"
-    axes.set_title(f"onto the {next(iter(tables))} foot, 95 % interval" if alone else both, loc="left")
+    title = f"landing on the left ({left}) and right foot ({right}),\n95 % intervals"
+    axes.set_title(f"landing on the {next(iter(tables))} foot, 95 % interval" if is_single else title, loc="left")
 
 
 def _color(row: CoefficientRow) -> str:
@@ -119,14 +119,14 @@ def _body(axes: "Axes", body: Body) -> None:
 
 
 def outlines(body: Body) -> "list[tuple[Path, float]]":
-    """Return each region with its holes as a path [m], and its density over the largest; none for mass points."""
+    """Return each region with its holes as a path [m], and its density over the largest; empty for mass points."""
     section = body.to_section() if isinstance(body, Block) else body
     if not isinstance(section, Section):
         return []
     densest = max(region.density for region in section.regions)
     shift = np.array([section.origin_x, section.ground])
     rings = [([ring + shift for ring in region.rings], region.density / densest) for region in section.regions]
-    return [(closed(each), shade) for each, shade in rings]
+    return [(closed(region_rings), shade) for region_rings, shade in rings]
 
 
 def closed(rings: Sequence[FloatArray]) -> "Path":

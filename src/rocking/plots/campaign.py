@@ -1,4 +1,4 @@
-"""The picture of a finished campaign: that of its question, or a comparison of restitutions."""
+"""The picture of a finished campaign: the picture of its analysis, or a comparison of restitutions."""
 
 from typing import TYPE_CHECKING
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
 
 def check_picture(folder: JobFolder, restitution: str | None) -> None:
-    """Refuse what has no picture, before anything is read."""
+    """Raise an error for a campaign without a picture, before any result is read."""
     question = folder.job.document
     if type(question).plot is StudyQuestion.plot:
-        question.plot(None, None)  # which refuses
+        question.plot(None, None)  # raises the error
     if restitution is not None or question.one_restitution:
         label_of("picture", restitution, list(folder.job.problem.restitutions))
 
 
 def campaign_picture(folder: JobFolder, restitution: str | None = None) -> "Figure":
-    """Draw a finished campaign: with one restitution, or all of them compared where none is named."""
+    """Draw a finished campaign with one restitution; without a name, compare all restitutions."""
     check_picture(folder, restitution)
     refuse_unfinished(folder)
     if restitution is None and comparable(folder):

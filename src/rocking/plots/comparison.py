@@ -1,4 +1,4 @@
-"""Several responses in motion side by side: the same body with different models, or different bodies."""
+"""Animations of several responses side by side: one body with different models, or different bodies."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 _DOTS, _WIDTH, _HEAD, _CAPTION, _CURVES = 110, 7.4, 0.34, 0.5, 1.45
-"""Dots in an inch, and sizes of what stands above one another [in]."""
+"""Dots per inch, and sizes of the parts from top to bottom [in]."""
 
-_HOLD = 2.0  # how long the last frame stays [s]
+_HOLD = 2.0  # duration of the last frame [s]
 
 _MOST_PANELS, _SHADES, _PAPER = 4, 64, 248
-_VERDICTS = {True: ("overturned", "#A23B00"), False: ("stands", "#00664A")}
+_VERDICTS = {True: ("overturned", "#A23B00"), False: ("did not overturn", "#00664A")}
 
 
 def animate_comparison(
@@ -39,34 +39,34 @@ def animate_comparison(
     speed: float = 1.0,
     until: float | None = None,
 ) -> Path:
-    """Write a GIF in which several responses run side by side, with their rotations below them.
+    """Write a GIF of several responses side by side, with their rotations below.
 
     Parameters
     ----------
     responses : mapping of str to Response
-        Two to four responses under their captions.
+        Two to four responses by caption.
     path : str or Path
-        File ending in .gif.
+        File with extension .gif.
     title : str
-        A line above them.
+        Line above the responses.
     fps : float
-        Frames in a second of playing, from 1 to 50; rounded so that a frame lasts whole hundredths of a second.
+        Frames per second, from 1 to 50; rounded to a duration of whole hundredths of a second.
     speed : float
-        Seconds of the response in a second of playing, from 0.01 to 100 [-].
+        Seconds of the response per second of the animation, from 0.01 to 100 [-].
     until : float, optional
-        Time of the response at which it ends; if not given, where nothing happens any more in any of them [s].
+        Time of the response at the end; default: the end of the longest response [s].
 
     Returns
     -------
     Path
-        The file, which plays again and again; its last frame stays for two seconds.
+        The written file, which repeats; its last frame lasts two seconds.
 
     Raises
     ------
     RockingError
-        If the name does not end in .gif, or the file cannot be written.
+        If the extension is not .gif, or the file cannot be written.
     InvalidValueError
-        If a value is outside its range, or there would be more than 500 frames.
+        If a value is outside its range, or there are more than 500 frames.
 
     Examples
     --------
@@ -78,9 +78,7 @@ def animate_comparison(
     """
     target = target_of(path, ".gif")
     if not 2 <= len(responses) <= _MOST_PANELS:
-        raise InvalidValueError(
-            parameter="responses", allowed=f"2 to {_MOST_PANELS} to stand side by side", value=len(responses)
-        )
+        raise InvalidValueError(parameter="responses", allowed=f"2 to {_MOST_PANELS} responses", value=len(responses))
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     step = lasts * checks.within("speed", speed, 0.01, 100.0)
     scenes = [scene_of(response, step) for response in responses.values()]
@@ -91,7 +89,7 @@ def animate_comparison(
         raise InvalidValueError(
             "a GIF has at most {limit} frames, got {count}: {end:.3g} s of response at fps = {fps:g}",
             limit=MOST_FRAMES, count=count, end=end, fps=fps,
-            hint=f"until, or a higher speed than {speed:g}, makes it shorter",
+            hint=f"use until, or a speed above {speed:g}",
         )  # fmt: skip
     with writing(target):
         _save(_frames(responses, scenes, title, count, end), target, lasts)
@@ -102,7 +100,7 @@ def animate_comparison(
 def _frames(
     responses: Mapping[str, Response], scenes: list[Scene], title: str, count: int, end: float
 ) -> "list[Image]":
-    """Draw what stays once, and over it what moves in each frame."""
+    """Draw the fixed parts once, and the moving parts in each frame."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from PIL import Image
@@ -110,27 +108,27 @@ def _frames(
     window = np.array([scene.window for scene in scenes])
     x0, y0 = window[:, :2].min(axis=0)
     x1, y1 = window[:, 2:].max(axis=0)
-    wide = _WIDTH / len(scenes)
-    tall = wide * (y1 - y0) / (x1 - x0)
-    whole = _HEAD + tall + _CAPTION + _CURVES
-    figure = Figure(figsize=(_WIDTH, whole), facecolor="white")
-    figure.text(0.5, 1.0 - 0.5 * _HEAD / whole, title, ha="center", va="center", fontsize=11, fontweight="bold")
-    curves = figure.add_axes((0.075, 0.4 / whole, 0.905, (_CURVES - 0.5) / whole))
+    view_width = _WIDTH / len(scenes)
+    view_height = view_width * (y1 - y0) / (x1 - x0)
+    total_height = _HEAD + view_height + _CAPTION + _CURVES
+    figure = Figure(figsize=(_WIDTH, total_height), facecolor="white")
+    figure.text(0.5, 1.0 - 0.5 * _HEAD / total_height, title, ha="center", va="center", fontsize=11, fontweight="bold")
+    curves = figure.add_axes((0.075, 0.4 / total_height, 0.905, (_CURVES - 0.5) / total_height))
     _draw_curves(curves, responses, end)
     panels = []
     for k, (caption, response) in enumerate(responses.items()):
-        place = (k / len(scenes), (_CURVES + _CAPTION) / whole, 1.0 / len(scenes), tall / whole)
-        view = figure.add_axes(place, xlim=(x0, x1), ylim=(y0, y1))
+        bounds = (k / len(scenes), (_CURVES + _CAPTION) / total_height, 1.0 / len(scenes), view_height / total_height)
+        view = figure.add_axes(bounds, xlim=(x0, x1), ylim=(y0, y1))
         panels.append(_Panel(view, curves, caption, response, scenes[k], k))
     canvas: Any = FigureCanvasAgg(figure)
     moving = [artist for panel in panels for artist in panel.moving]
     for artist in moving:
         artist.set_animated(True)
     canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
+    background = canvas.copy_from_bbox(figure.bbox)
     frames = []
     for frame in range(count):
-        canvas.restore_region(still)
+        canvas.restore_region(background)
         for panel in panels:
             panel.show(frame, last=frame == count - 1)
         for artist in moving:
@@ -140,7 +138,7 @@ def _frames(
 
 
 def _draw_curves(axes: "Axes", responses: Mapping[str, Response], end: float) -> None:
-    """Draw all rotations, pale: what moves draws them again as far as they have come."""
+    """Draw all rotations pale; the moving curves are plotted over them."""
     for level in (-1.0, 1.0):
         axes.axhline(level, color=GREY, linewidth=0.7, linestyle=DASHED)
     for response in responses.values():
@@ -169,9 +167,9 @@ class _Panel:
         self.period = draw_ground(view, scene, self.ground)
         draw_body(view, scene.shape, self.body)
         color: str = look(number)["color"]
-        under: dict[str, Any] = {"transform": view.transAxes, "ha": "center", "va": "top", "fontsize": 9.5}
-        view.text(0.5, -0.02, caption, color=color, **under)
-        self.verdict = view.text(0.5, -0.14, "", fontweight="bold", **under)
+        text_style: dict[str, Any] = {"transform": view.transAxes, "ha": "center", "va": "top", "fontsize": 9.5}
+        view.text(0.5, -0.02, caption, color=color, **text_style)
+        self.verdict = view.text(0.5, -0.14, "", fontweight="bold", **text_style)
         (self.curve,) = curves.plot([], [], **look(number))
         (self.mark,) = curves.plot([], [], "o", color=color, clip_on=True)
         time, rotation, _ = motion_curves(response)
@@ -179,7 +177,7 @@ class _Panel:
         self.moving: list[Artist] = [*view.collections, *view.patches, *view.lines, self.verdict, self.curve, self.mark]
 
     def show(self, frame: int, *, last: bool) -> None:
-        """Move everything to where it is in a frame."""
+        """Move the artists to their positions in a frame."""
         scene, k = self.scene, min(frame, self.scene.time.size - 1)
         time, rotation, ground = float(scene.time[k]), float(scene.rotation[k]), float(scene.ground[k])
         foot = scene.shape.feet[1] if rotation > 0.0 else scene.shape.feet[0]
@@ -189,14 +187,14 @@ class _Panel:
         passed = int(np.searchsorted(self.known[0], time, side="right"))
         self.curve.set_data(self.known[0][:passed], self.known[1][:passed])
         self.mark.set_data([time], [float(over_slenderness(self.response, np.array([rotation]))[0])])
-        falls = self.response.outcome is Outcome.OVERTURNED
-        words, color = _VERDICTS[falls]
-        known = time >= self.response.overturning_time if falls else last
-        self.verdict.set(text=words if known else "", color=color)
+        overturns = self.response.outcome is Outcome.OVERTURNED
+        verdict, color = _VERDICTS[overturns]
+        is_decided = time >= self.response.overturning_time if overturns else last
+        self.verdict.set(text=verdict if is_decided else "", color=color)
 
 
 def _save(frames: "list[Image]", path: Path, lasts: float) -> None:
-    """Write frames, all in the colours of the first, a middle and the last one."""
+    """Write frames with one palette, from the first, a middle and the last frame."""
     from PIL import Image
 
     few = [frames[k] for k in (0, len(frames) // 2, -1)]

@@ -29,21 +29,21 @@ STAGE_WORDS = {
 
 @in_journal_style
 def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", angular_velocity: float = 1.0) -> "Figure":
-    """Draw energy density and velocities over a body, stage by stage.
+    """Draw energy density and velocities over a body, by stage.
 
     Parameters
     ----------
     body : Body, optional
         Block or Section; by default a pedestal with a hollow.
     foot : {"left", "right"}
-        The foot on which it lands.
+        Landing foot.
     angular_velocity : float
         Angular velocity before the impact [rad/s].
 
     Returns
     -------
     matplotlib.figure.Figure
-        Four panels with one colour scale, and the share of energy in each.
+        Four panels with one colour scale, and the fraction of energy in each.
     """
     body = _pedestal() if body is None else body
     balance = energy_balance(body, foot=foot, angular_velocity=angular_velocity)
@@ -51,7 +51,7 @@ def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", ang
     shape = min(max(height / (x1 - x0), 0.6), 3.0)
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
     x, y = _grid(body)
-    # beyond the outline, which clips the picture, the field goes on: no dark seam along sloping edges
+    # the field extends beyond the clipping outline, to avoid a dark seam along sloping edges
     density = known_density(body, x, y)
     inside = density > 0.0
     density = np.where(inside, density, density.max())
@@ -70,7 +70,7 @@ def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", ang
 
 
 def hero() -> "Figure":
-    """Draw the picture of the README: the stages of KED on a figure standing on a pedestal."""
+    """Draw the picture of the README: the stages of KED on a figure on a pedestal."""
     pedestal = Region([(0.0, 0.0), (1.0, 0.0), (1.0, 0.7), (0.0, 0.7)], density=2700.0)
     figure = Region(
         [(0.2, 0.7), (0.8, 0.7), (0.72, 1.5), (0.78, 2.0), (0.58, 2.3), (0.42, 2.3), (0.22, 2.0), (0.28, 1.5)],
@@ -88,15 +88,15 @@ def _panel(axes: "Axes", body: Body, balance: EnergyBalance, stage: str, image: 
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    whole = Path.make_compound_path(*(path for path, _ in outlines(body)))
-    patch = PathPatch(whole, facecolor="none", edgecolor=INK, linewidth=0.8)
+    outline = Path.make_compound_path(*(path for path, _ in outlines(body)))
+    patch = PathPatch(outline, facecolor="none", edgecolor=INK, linewidth=0.8)
     axes.add_patch(patch)
     image.set_clip_path(patch)
     _arrows(axes, body, balance, stage)
     axes.set_title(f"{STAGE_WORDS[stage]}\n{100.0 * balance.shares[stage]:.1f} % of the kinetic energy", fontsize=7)
-    for foot, at in zip(("O", "O'"), body.feet, strict=True):
-        axes.annotate(foot, (at, body.ground), (0, -9), textcoords="offset points", ha="center", fontsize=7)
-        axes.plot([at], [body.ground], marker="^", color=INK, markersize=4, clip_on=False, zorder=5)
+    for foot, foot_x in zip(("O", "O'"), body.feet, strict=True):
+        axes.annotate(foot, (foot_x, body.ground), (0, -9), textcoords="offset points", ha="center", fontsize=7)
+        axes.plot([foot_x], [body.ground], marker="^", color=INK, markersize=4, clip_on=False, zorder=5)
     x0, _, x1, height = body.local_box
     margin = 0.16 * max(x1 - x0, 0.4 * height)
     axes.set_xlim(body.origin_x + x0 - margin, body.origin_x + x1 + margin)
@@ -121,13 +121,13 @@ def _arrows(axes: "Axes", body: Body, balance: EnergyBalance, stage: str) -> Non
 
 
 def arrow_spacing(body: Body) -> float:
-    """Return how far apart arrows over a body stand [m]."""
+    """Return the spacing of arrows over a body [m]."""
     x0, _, x1, height = body.local_box
     return float(max(x1 - x0, height) / (2.0 * _ARROWS))
 
 
 def arrow_feet(body: Body) -> tuple[FloatArray, FloatArray]:
-    """Return where arrows over the box of a body begin, in rows and columns [m]."""
+    """Return the grid of starting points of arrows over the box of a body [m]."""
     x0, _, x1, height = body.local_box
     step = arrow_spacing(body)
     columns, rows = np.arange(x0 + 0.5 * step, x1, step), np.arange(0.5 * step, height, step)
@@ -137,7 +137,7 @@ def arrow_feet(body: Body) -> tuple[FloatArray, FloatArray]:
 
 def _grid(body: Body) -> tuple[FloatArray, FloatArray]:
     x0, _, x1, height = body.local_box
-    # density is constant within a region: sampling a little inside the box keeps its edge coloured
+    # density is constant within a region; samples slightly inside the box give its edge a colour
     shrink = 1e-6 * max(x1 - x0, height)
     columns = np.linspace(x0 + shrink, x1 - shrink, _GRID) + body.origin_x
     rows = np.linspace(shrink, height - shrink, _GRID) + body.ground

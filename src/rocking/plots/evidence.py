@@ -1,4 +1,4 @@
-"""What was measured beside what the models say: all of them, the league, the calibration, the contact bed."""
+"""Pictures of measurements and models: all models, the league, the calibration, the contact bed."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -32,14 +32,14 @@ HOLLOW: dict[str, Any] = {"linestyle": "none", "color": INK, "markerfacecolor": 
 _LOW, _HIGH = 1.2, 10.5
 
 
-def curve(axes: "Axes", name: str, low: float = _LOW, high: float = _HIGH) -> None:
+def draw_model(axes: "Axes", name: str, low: float = _LOW, high: float = _HIGH) -> None:
     """Draw a model's coefficient over a range of slenderness [-]."""
     ratio = np.linspace(low, high, 400)
     axes.plot(ratio, model(name).of_slenderness(ratio), **model_styles()[name])
 
 
-def measured(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
-    """Draw measured coefficients, or losses of energy, over slenderness, with what rounding leaves open."""
+def draw_measurements(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
+    """Draw measured coefficients, or energy losses, over slenderness, with the intervals of rounding."""
     for group in dict.fromkeys(every.group):
         data = every.rows([name == group for name in every.group])
         style = GROUP_STYLE.get(group, {"marker": "D", "label": group})
@@ -52,7 +52,9 @@ def measured(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
     axes.set(xlabel=SLENDERNESS, ylabel="energy loss $1 - r^2$ [-]" if loss else R)
 
 
-def predicted(axes: "Axes", calibration: Calibration | None = None, low: float = _LOW, high: float = _HIGH) -> None:
+def draw_calibrated(
+    axes: "Axes", calibration: Calibration | None = None, low: float = _LOW, high: float = _HIGH
+) -> None:
     """Draw the calibrated default over a range of slenderness [-], with its 95 % interval."""
     ratio = np.linspace(low, high, 80)
     prediction = (calibration or calibrate_hierarchy()).predict(ratio)
@@ -63,36 +65,36 @@ def predicted(axes: "Axes", calibration: Calibration | None = None, low: float =
 
 @in_journal_style
 def models_and_measurements(calibration: Calibration, data: DataSet) -> "Figure":
-    """Draw every model with all measurements: r, and the energy loss, which tells slender bodies apart."""
+    """Draw all models with all measurements: r, and the energy loss, which distinguishes slender bodies."""
     figure, (left, right) = new_figure(DOUBLE, 3.3, columns=2)
-    predicted(left, calibration)
+    draw_calibrated(left, calibration)
     for name in model_styles():
-        curve(left, name)
-    measured(left, data)
+        draw_model(left, name)
+    draw_measurements(left, data)
     left.set_ylim(0.45, 1.01)
     left.legend(loc="lower right", ncols=2, columnspacing=0.9, handlelength=2.6)
     ratio = np.linspace(_LOW, _HIGH, 400)
     for name, look in model_styles().items():
         right.plot(ratio, 1.0 - model(name).of_slenderness(ratio) ** 2, **{**look, "label": None})
-    measured(right, data, loss=True)
+    draw_measurements(right, data, loss=True)
     right.set_yscale("log")
     return figure
 
 
 @in_journal_style
 def league_figure(rows: Sequence[LeagueRow], count: int) -> "Figure":
-    """Draw the error of every model with its bootstrap interval, and by slenderness band; best first."""
+    """Draw the error of each model with its bootstrap interval, and by slenderness band; best first."""
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.19 * len(rows), columns=2, sharey=True)
-    place = np.arange(len(rows))[::-1]
-    for y, row in zip(place.tolist(), rows, strict=True):
+    rows_y = np.arange(len(rows))[::-1]
+    for y, row in zip(rows_y.tolist(), rows, strict=True):
         color = model_styles()[row.name]["color"] if row.name in ("ked", "housner") else INK
         left.plot([row.rmse_low, row.rmse_high], [y, y], color=color, linewidth=1.0)
         left.plot([row.rmse], [y], marker="o", color=color, markerfacecolor="white" if row.parameters else color)
-    left.set_yticks(place, [f"{row.name}  {row.fitted}".strip() for row in rows])
+    left.set_yticks(rows_y, [f"{row.name}  {row.fitted}".strip() for row in rows])
     left.set_xlabel(f"RMSE of r, {count} measurements;\n95 % bootstrap interval; open: fitted [-]")
     left.set_xlim(left=0.0)
     for marker, band in zip(("v", "o", "^"), rows[0].by_band, strict=True):
-        right.plot([row.by_band[band] for row in rows], place, marker=marker, label=band, **HOLLOW)
+        right.plot([row.by_band[band] for row in rows], rows_y, marker=marker, label=band, **HOLLOW)
     right.set_xscale("log")
     right.set_xlabel("RMSE of r by slenderness [-]")
     right.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, columnspacing=0.6, handletextpad=0.1)
@@ -113,8 +115,8 @@ def calibration_figure(calibration: Calibration, data: DataSet) -> "Figure":
     left.plot([summary["eta"]["mean"]], [summary["k"]["mean"]], marker="+", color=INK, markersize=8)
     left.set(xlabel="interface factor η [-]", ylabel="impulse position k [-]", xlim=(0.974, 0.996), ylim=(0.42, 0.70))
     left.set_title("posterior, relative to its peak", loc="left")
-    predicted(right, calibration)
-    measured(right, data)
+    draw_calibrated(right, calibration)
+    draw_measurements(right, data)
     for edge in CALIBRATED_RANGE:
         right.axvline(edge, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)))
     right.set_ylim(0.45, 1.01)
@@ -146,33 +148,33 @@ def bed_dependence_figure() -> "Figure":
 
 @in_journal_style
 def explanations_figure(explanation: Explanation) -> "Figure":
-    """Draw BIC above the best explanation, and the left-out score above one bed, two standard errors to either side."""
+    """Draw BIC minus the best, and the left-out score minus that of one bed, with two standard errors."""
     ranked = explanation.ranked
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.2 * len(ranked), columns=2, sharey=True)
-    place = np.arange(len(ranked))[::-1]
-    left.barh(place, [each.behind for each in ranked], color=PALE, edgecolor=INK, linewidth=0.6)
-    left.set_yticks(place, [each.name for each in ranked])
-    left.set_xlabel("BIC above the best [-]")
-    for y, each in zip(place.tolist(), ranked, strict=True):
-        right.plot([each.gain - 2.0 * each.gain_error, each.gain + 2.0 * each.gain_error], [y, y], color=INK)
-        right.plot([each.gain], [y], marker="o", color=INK)
+    rows_y = np.arange(len(ranked))[::-1]
+    left.barh(rows_y, [item.behind for item in ranked], color=PALE, edgecolor=INK, linewidth=0.6)
+    left.set_yticks(rows_y, [item.name for item in ranked])
+    left.set_xlabel("BIC minus the best [-]")
+    for y, item in zip(rows_y.tolist(), ranked, strict=True):
+        right.plot([item.gain - 2.0 * item.gain_error, item.gain + 2.0 * item.gain_error], [y, y], color=INK)
+        right.plot([item.gain], [y], marker="o", color=INK)
     right.axvline(0.0, color=GREY, linewidth=0.6)
-    right.set_xlabel("left-out score above one bed [-]")
+    right.set_xlabel("left-out score minus one bed [-]")
     return figure
 
 
 @in_journal_style
 def residuals_figure(explanation: Explanation) -> "Figure":
-    """Draw what one bed and the best explanation leave over, against slenderness."""
+    """Draw the residuals of one bed and of the best explanation over slenderness."""
     figure, (left, right) = new_figure(DOUBLE, 2.8, columns=2, sharey=True)
     data = all_measurements()
-    for axes, each in ((left, explanation.plain), (right, explanation.ranked[0])):
+    for axes, item in ((left, explanation.plain), (right, explanation.ranked[0])):
         axes.axhline(0.0, color=GREY, linewidth=0.6)
-        over = each.fit.predicted - data.coefficient
+        residual = item.fit.predicted - data.coefficient
         for group in GROUPS:
             rows = np.array([name == group for name in data.group])
-            axes.plot(data.slenderness[rows], over[rows], **HOLLOW, **GROUP_STYLE[group])
-        axes.set_title(each.name, loc="left")
+            axes.plot(data.slenderness[rows], residual[rows], **HOLLOW, **GROUP_STYLE[group])
+        axes.set_title(item.name, loc="left")
         axes.set_xlabel(SLENDERNESS)
     left.set_ylabel("bed minus experiment, r [-]")
     left.legend(loc="lower right")

@@ -1,4 +1,4 @@
-"""Which way a body falls: share and direction of overturning by the azimuth of the shaking, by model of restitution."""
+"""Pictures of overturning in 3D: fraction and direction by azimuth of the ground motion and restitution model."""
 
 import warnings
 from typing import TYPE_CHECKING, Any
@@ -22,17 +22,17 @@ _BOTH, _NONE, _UNKNOWN = "#BDBDBD", "white", "#222222"
 
 @in_journal_style
 def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "Figure":
-    """Draw how often a body falls by the direction of the shaking, which way, and where two restitutions differ.
+    """Draw fraction and direction of overturning by azimuth, and the differences between two restitutions.
 
     Parameters
     ----------
     results : xarray.Dataset
-        Of `simulate_many`: one body under one record turned to every azimuth, at ascending scales, with two
+        Result of `simulate_many`: one body under one record rotated to all azimuths, at ascending scales, with two
         restitutions.
     azimuths : array_like
-        Of its motions: direction of their first component, from x towards y, ascending [rad].
+        Direction of the first component of each motion, from x towards y, ascending [rad].
     base : array_like, shape (n, 2), optional
-        Corners of the base, drawn in the middle of the rose for orientation, any scale.
+        Corners of the base at any scale, plotted in the centre of the rose for orientation.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def _compass(axes: "Axes", letter: str, title: str) -> None:
     axes.set_xticks(np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False))
     axes.tick_params(axis="x", pad=-1.0)
     axes.grid(linewidth=0.4, color="#d5d5d5")
-    axes.spines["polar"].set_linewidth(0.6)  # a polar panel has this spine alone
+    axes.spines["polar"].set_linewidth(0.6)  # the only spine of a polar panel
     axes.set_axisbelow(True)
     for label in axes.get_yticklabels():
         label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8})
@@ -100,51 +100,53 @@ def _radial(axes: "Axes", top: float) -> None:
 
 
 def _share(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
-    with warnings.catch_warnings():  # a direction without any result has no share
+    with warnings.catch_warnings():  # a direction without a result has no fraction
         warnings.simplefilter("ignore", RuntimeWarning)
-        over = results["overturned"].mean("scale").values[0, :, :, 0]
+        fractions = results["overturned"].mean("scale").values[0, :, :, 0]
     closed = np.append(angles, angles[0] + 2.0 * np.pi)
     for k in range(2):
         color, line, label = _look(results, k)
-        share = 100.0 * np.append(over[:, k], over[0, k])
-        axes.plot(closed, share, linewidth=1.1, color=color, linestyle=line, label=label)
-    top = max(10.0, 10.0 * np.ceil(10.0 * np.nanmax(over, initial=0.0)))
+        percentages = 100.0 * np.append(fractions[:, k], fractions[0, k])
+        axes.plot(closed, percentages, linewidth=1.1, color=color, linestyle=line, label=label)
+    top = max(10.0, 10.0 * np.ceil(10.0 * np.nanmax(fractions, initial=0.0)))
     _radial(axes, top)
-    _compass(axes, "a", "Scales that overturn it")
-    axes.set_xlabel("by direction of the shaking", labelpad=2.0)
+    _compass(axes, "a", "Scales with overturning")
+    axes.set_xlabel("by azimuth of the motion", labelpad=2.0)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2, borderaxespad=0.0)
 
 
 def _rose(axes: "Axes", results: "xr.Dataset", base: FloatArray | None) -> None:
     edges = (np.arange(_SECTORS + 1) - 0.5) * 2.0 * np.pi / _SECTORS
-    tops = []
+    maxima = []
     for k in range(2):
-        fell = results["overturned"].values[0, :, :, k, 0] == 1.0
-        where = np.mod(results["direction"].values[0, :, :, k, 0][fell] - edges[0], 2.0 * np.pi) + edges[0]
-        part = 100.0 * np.histogram(where, edges)[0] / max(1, fell.sum())
+        overturned = results["overturned"].values[0, :, :, k, 0] == 1.0
+        directions = np.mod(results["direction"].values[0, :, :, k, 0][overturned] - edges[0], 2.0 * np.pi) + edges[0]
+        percentages = 100.0 * np.histogram(directions, edges)[0] / max(1, overturned.sum())
         color, line, _ = _look(results, k)
-        axes.stairs(part, edges, fill=False, linewidth=1.1, color=color, linestyle=line)
-        tops.append(float(part.max()))
-    top = max(5.0, 5.0 * np.ceil(max(tops) / 5.0))
+        axes.stairs(percentages, edges, fill=False, linewidth=1.1, color=color, linestyle=line)
+        maxima.append(float(percentages.max()))
+    top = max(5.0, 5.0 * np.ceil(max(maxima) / 5.0))
     _radial(axes, top)
     if base is not None:
         outline = np.vstack([base, base[:1]])
         size = 0.22 * top / float(np.hypot(*outline.T).max())
         turns = np.arctan2(outline[:, 1], outline[:, 0])
-        walk = np.linspace(0.0, len(base), 40 * len(base) + 1)
-        x, y = (np.interp(walk, np.arange(len(outline)), outline[:, i]) for i in range(2))
+        stations = np.linspace(0.0, len(base), 40 * len(base) + 1)
+        x, y = (np.interp(stations, np.arange(len(outline)), outline[:, i]) for i in range(2))
         axes.fill(np.arctan2(y, x), size * np.hypot(x, y), facecolor="#f0f0f0", edgecolor=GREY, linewidth=0.8, zorder=1)
         axes.plot(turns, size * np.hypot(*outline.T), linestyle="none")
         axes.annotate("base", (0.0, 0.0), ha="center", va="center", fontsize=6.0, color=GREY)
-    axes.set_xlabel("share of all falls, by direction", labelpad=2.0)
-    _compass(axes, "b", "Where it lies, by 10 degrees")
+    axes.set_xlabel("fraction of overturned bodies", labelpad=2.0)
+    _compass(axes, "b", "Direction, 10 degree bins")
 
 
 def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
     from matplotlib.colors import ListedColormap
 
-    over = results["overturned"].values[0, :, :, :, 0]
-    classes = np.nan_to_num(over[..., 0] + 2.0 * over[..., 1], nan=4.0)  # one without a result leaves it open
+    overturned = results["overturned"].values[0, :, :, :, 0]
+    classes = np.nan_to_num(
+        overturned[..., 0] + 2.0 * overturned[..., 1], nan=4.0
+    )  # without a result the class is unknown
     looks = [_look(results, k) for k in range(2)]
     colors = [_NONE, looks[0][0], looks[1][0], _BOTH, _UNKNOWN]
     scales = results["scale"].values
@@ -155,12 +157,12 @@ def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None
     mesh.set_edgecolor("face")
     axes.set_xticks([0, 90, 180, 270, 360])
     axes.set_xlim(np.degrees(angles[0]), np.degrees(angles[-1]))
-    axes.set_xlabel("direction of the shaking [degrees]")
+    axes.set_xlabel("azimuth of the motion [degrees]")
     axes.set_ylabel("scale of the record [-]")
     differ = float(((classes == 1) | (classes == 2)).sum() / max(1, (classes < 4).sum()))
-    axes.set_title(f"c  Verdicts: {100.0 * differ:.1f} % differ", loc="left", pad=12.0)
-    words = ["neither", f"{looks[0][2]} alone", f"{looks[1][2]} alone", "both", "no result"]
-    shown = [k for k in range(5) if (classes == k).any() or k in (1, 2)]
-    handles = [patch(colors[k], words[k], edgecolor=GREY, linewidth=0.5) for k in shown]
-    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.22), "borderaxespad": 0.0}
-    axes.legend(handles=handles, ncols=3, handlelength=1.2, columnspacing=1.0, **place)
+    axes.set_title(f"c  Outcomes: {100.0 * differ:.1f} % differ", loc="left", pad=12.0)
+    labels = ["neither", f"{looks[0][2]} only", f"{looks[1][2]} only", "both", "no result"]
+    present = [k for k in range(5) if (classes == k).any() or k in (1, 2)]
+    handles = [patch(colors[k], labels[k], edgecolor=GREY, linewidth=0.5) for k in present]
+    layout: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.22), "borderaxespad": 0.0}
+    axes.legend(handles=handles, ncols=3, handlelength=1.2, columnspacing=1.0, **layout)

@@ -1,4 +1,4 @@
-"""Fragility: shares with their intervals, fitted curves with a band; incremental curves of each motion."""
+"""Pictures of fragility: observed fractions with intervals, fitted curves with bands, and incremental curves."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -36,34 +36,32 @@ if TYPE_CHECKING:
     from rocking.studies.fragility.curves import FragilityModel
 
 _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
-"""Data of more levels are gathered into groups of neighbouring levels, of as many outcomes at least; stripes stay
-stripes as long as there is room."""
+"""Maximum numbers of points and of stripes, and minimum number of outcomes in a group of neighbouring levels."""
 
 STATES = ("#E3EDF5", "#7FB2D6", "#AC5B2B", "#AC8191", "#7A2E00")
-"""From no rocking, light, to overturned, dark: apart in grey too."""
+"""Colours from no rocking (light) to overturned (dark), distinct also in grey."""
 
-_APART = 2.2  # points of different states are drawn side by side, this far apart [pt]
+_APART = 2.2  # horizontal offset between points of different states [pt]
 
 
 @in_journal_style
 def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityModel | None" = None) -> "Figure":
     """Draw a fragility analysis.
 
-    Above: the share of the motions that reached each state, with exact binomial intervals, and the lognormal curve of
-    each state that has one; levels at which no motion can lift the body are shaded. Where each motion was used at
-    several levels, whose outcomes are not independent, the band of a curve is found from repeated studies: with
-    capacities drawn anew (5 to 29 motions) or whole motions; otherwise by the profile of the likelihood. Below: the
-    shares of the states, which add up to one. Where the outcomes fix no curve, words below the panels say so.
+    Above: fraction of motions that reach each limit state, with exact binomial intervals, and the lognormal curve of
+    each state. Levels without possible uplift are shaded. If each motion is used at several levels, the band of a curve
+    is from a bootstrap of capacities (5 to 29 motions) or of motions; otherwise from the profile likelihood. Below: the
+    fractions of the states, which add up to one. A text below the panels names states without a curve.
 
     Parameters
     ----------
     analysis : MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
-        The analysis.
+        Analysis.
     level : float
-        Confidence of intervals and bands [-].
+        Confidence level of intervals and bands [-].
     curves : FragilityModel, optional
-        Curves from `model_of`. A curve that is not that of its state alone is drawn in its place, without a band, and
-        the reason stands below the panels.
+        Curves from `model_of`. They replace the curves fitted to single states, without a band; the text below the
+        panels contains the reason.
 
     Returns
     -------
@@ -73,15 +71,15 @@ def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityM
     Raises
     ------
     InvalidValueError
-        If it is no such analysis.
+        If the argument has another type.
 
     Examples
     --------
     >>> import rocking as rk
     >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
-    >>> found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
-    >>> fragility_picture(found).axes[1].get_xlabel()
+    >>> analysis = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
+    >>> fragility_picture(analysis).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'
     """
     level = checks.within("level", level, 0.5, 0.999)
@@ -91,15 +89,15 @@ def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityM
     levels = np.asarray(analysis.levels)
     fine = _fine(levels)
     shared = {} if curves is None else curves.shared
-    for place, name in enumerate(analysis.counts):
-        _points(upper, analysis, name, place, level)
+    for index, name in enumerate(analysis.counts):
+        _points(upper, analysis, name, index, level)
         fit = analysis.fits.get(name)
         if name in shared:
-            upper.plot(fine, shared[name].probability(fine), linewidth=1.2, zorder=2, **look(place))
+            upper.plot(fine, shared[name].probability(fine), linewidth=1.2, zorder=2, **look(index))
         elif fit is not None and fit.exists:
-            fitted(upper, fit, fine, place, level)
+            draw_fit(upper, fit, fine, index, level)
         elif fit is None:
-            _step(upper, analysis.subject.uplift_threshold, fine, place)
+            _step(upper, analysis.subject.uplift_threshold, fine, index)
     upper.set_ylim(-0.03, 1.03)
     upper.set_ylabel("probability [-]")
     _stack(lower, analysis)
@@ -115,14 +113,14 @@ def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityM
     return figure
 
 
-def _step(axes: "Axes", threshold: float, fine: FloatArray, place: int) -> None:
-    """Shade the levels at which the ground cannot lift the body."""
-    axes.axvline(threshold, linewidth=1.0, **look(place))
+def _step(axes: "Axes", threshold: float, fine: FloatArray, index: int) -> None:
+    """Shade the levels without possible uplift."""
+    axes.axvline(threshold, linewidth=1.0, **look(index))
     if threshold > fine[0]:
         axes.axvspan(0.5 * fine[0], min(threshold, 2.0 * fine[-1]), color=PALE, linewidth=0, zorder=0)
     if threshold > fine[0] + 0.08 * (fine[-1] - fine[0]):
         axes.text(
-            min(threshold, fine[-1]), 0.5, "not lifted", transform=axes.get_xaxis_transform(), rotation=90,
+            min(threshold, fine[-1]), 0.5, "no uplift", transform=axes.get_xaxis_transform(), rotation=90,
             ha="right", va="center", fontsize=6.5, color=INK,
         )  # fmt: skip
 
@@ -136,9 +134,9 @@ def _fine(levels: FloatArray) -> FloatArray:
     return np.linspace(max(low - 0.06 * (high - low), 1e-3 * low), high + 0.06 * (high - low), 120)
 
 
-def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return increasing levels with their counts [-], neighbours together where there are too many for points."""
-    # the level of a group is the geometric mean, weighted by trials; groups without trials are left out
+def grouped(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return increasing levels with their counts [-]; neighbouring levels are grouped if there are too many."""
+    # the level of a group is the geometric mean, weighted by trials; groups without trials are omitted
     group = np.arange(levels.size)
     stripes = trials.sum() >= _OUTCOMES * levels.size
     if levels.size > (_MOST_STRIPES if stripes else _MOST):
@@ -151,58 +149,58 @@ def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tup
     return mean[good], np.asarray(hits[good], np.float64), np.asarray(total[good], np.float64)
 
 
-def shares_of(analysis: Any, state: str, level: float = 0.95) -> dict[str, FloatArray]:
-    """Return how many motions reach a state at levels that are gathered for points, with intervals of the share [-]."""
+def fractions_of(analysis: Any, state: str, level: float = 0.95) -> dict[str, FloatArray]:
+    """Return numbers and fractions of motions that reach a state at grouped levels, with intervals [-]."""
     from rocking.statistics.counts import share_interval
 
     columns = (analysis.levels, analysis.counts[state], analysis.trials)
-    at, reached, trials = gathered(*(np.asarray(column, dtype=np.float64) for column in columns))
+    at, reached, trials = grouped(*(np.asarray(column, dtype=np.float64) for column in columns))
     share = reached / trials
     ends = [share_interval(s * n, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)]
     low, high = np.array(ends).reshape(-1, 2).T
     return {"x": at, "reached": reached, "trials": trials, "share": share, "low": low, "high": high}
 
 
-def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
+def _points(axes: "Axes", analysis: Any, name: str, index: int, level: float) -> None:
     from matplotlib.transforms import ScaledTranslation
 
-    found = shares_of(analysis, name, level)
-    at, share = found["x"], found["share"]
-    reach = np.abs(np.array([found["low"], found["high"]]) - share)
+    fractions = fractions_of(analysis, name, level)
+    levels, fraction = fractions["x"], fractions["share"]
+    reach = np.abs(np.array([fractions["low"], fractions["high"]]) - fraction)
     figure: Any = axes.figure
-    aside = (place - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0
+    offset = (index - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0
     axes.errorbar(
-        at, share, reach, fmt=MARKS[place % 5], markersize=3.0, color=COLORS[place % len(COLORS)],
+        levels, fraction, reach, fmt=MARKS[index % 5], markersize=3.0, color=COLORS[index % len(COLORS)],
         markerfacecolor="white", markeredgewidth=0.8, linestyle="none", elinewidth=0.7, zorder=3,
-        transform=axes.transData + ScaledTranslation(aside, 0.0, figure.dpi_scale_trans),
+        transform=axes.transData + ScaledTranslation(offset, 0.0, figure.dpi_scale_trans),
     )  # fmt: skip
 
 
-def fitted(axes: "Axes", fit: "LognormalFit", fine: FloatArray, place: int, level: float) -> None:
-    """Draw a curve with its band, where it has one."""
+def draw_fit(axes: "Axes", fit: "LognormalFit", fine: FloatArray, index: int, level: float) -> None:
+    """Draw a curve with its band, if it has one."""
     method: Any = "profile" if fit.counts.cluster_trials is None else "bootstrap"
     try:
         low, high = fit.band(fine, level, method)
-        axes.fill_between(fine, low, high, color=COLORS[place % len(COLORS)], alpha=0.18, linewidth=0)
+        axes.fill_between(fine, low, high, color=COLORS[index % len(COLORS)], alpha=0.18, linewidth=0)
     except InvalidValueError:
-        # a curve of few motions or outcomes has no band: the points show how little is known
+        # a curve from few motions or outcomes has no band
         pass
     penalised = fit.method == "penalised"
-    axes.plot(fine, fit.probability(fine), linewidth=0.7 if penalised else 1.2, zorder=2, **look(place))
+    axes.plot(fine, fit.probability(fine), linewidth=0.7 if penalised else 1.2, zorder=2, **look(index))
 
 
 def _stack(axes: "Axes", analysis: Any) -> None:
-    """Draw the shares of the states as bars that add up to one."""
+    """Draw the fractions of the states as bars that add up to one."""
     levels = np.asarray(analysis.levels)
     trials = np.asarray(analysis.trials, dtype=np.float64)
-    parts = [gathered(levels, np.asarray(counts, dtype=np.float64), trials) for counts in analysis.counts.values()]
+    parts = [grouped(levels, np.asarray(counts, dtype=np.float64), trials) for counts in analysis.counts.values()]
     at, _, total = parts[0]
     reached = [np.ones(at.size), *(hits / total for _, hits, _ in parts), np.zeros(at.size)]
     left, width = _widths(at, geometric(levels))
     for more, less, color in zip(reached[:-1], reached[1:], state_colors(len(parts)), strict=True):
         axes.bar(left, more - less, width, bottom=less, align="edge", color=color, edgecolor="white", linewidth=0.4)
     axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel("share of\nmotions [-]")
+    axes.set_ylabel("fraction of\nmotions [-]")
 
 
 def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
@@ -227,8 +225,8 @@ def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
     curves = [stroke(symbol(name), marker=MARKS[k % 5], **mark, **look(k)) for k, name in enumerate(names)]
     legend_above(upper, 2, handles=curves, **options)
     none = "no rocking" if names[0] == "rocking" else f"not {symbol(names[0])}"
-    words = [none, *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
-    patches = [patch(color, each) for color, each in zip(state_colors(len(names)), words, strict=True)]
+    state_labels = [none, *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
+    patches = [patch(color, label) for color, label in zip(state_colors(len(names)), state_labels, strict=True)]
     legend_above(lower, 2, handles=patches, handlelength=1.2, **options)
 
 
@@ -240,31 +238,30 @@ def symbol(state: str) -> str:
 
 
 def caption(analysis: Any) -> str:
-    """Return what must be said below the picture: the verdicts of states whose outcomes fix no likeliest curve."""
-    return " ".join(f"{', '.join(map(symbol, names))}: {words}" for words, names in analysis.verdicts.items())
+    """Return the text below the picture: verdicts of states without a maximum likelihood curve."""
+    return " ".join(f"{', '.join(map(symbol, names))}: {verdict}" for verdict, names in analysis.verdicts.items())
 
 
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0070B2"
 _FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
 _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
-_OVER = 1.06  # larger rotations of bodies that stood all the same are drawn here
-_FIRST, _LAST = 1.12, 1.72  # where the lanes of the motions begin and end, on the axis of rotation
+_OVER = 1.06  # plotted value of larger rotations without overturning
+_FIRST, _LAST = 1.12, 1.72  # range of the lanes of the motions, on the axis of rotation
 
 
 @in_journal_style
 def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
-    """Draw an incremental analysis, the measure upwards as is usual.
+    """Draw an incremental analysis, with the intensity measure on the vertical axis.
 
-    Left: a grey curve for each motion up to where it first overturns the body; the levels above at which the body
-    stands all the same (resurrection) are blue, joined where they are neighbours. Beside the curves each motion that
-    overturns it has a lane, by first crossing: brown where it overturns the body, blue where that stands again.
-    Right: the fraction of the motions that overturn it at each level, and the share whose first crossing has been
-    passed.
+    Left: one grey curve per motion up to the first overturning. Higher levels without overturning (resurrection) are
+    blue, and neighbours are joined. Each motion with overturning has a lane, sorted by first crossing: brown with
+    overturning, blue without. Right: fraction of motions with overturning at each level, and fraction of motions with
+    a lower first crossing.
 
     Parameters
     ----------
     analysis : IncrementalDynamicAnalysis
-        As of `fragility_analysis`.
+        Result of `fragility_analysis`.
 
     Returns
     -------
@@ -274,7 +271,7 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     Raises
     ------
     InvalidValueError
-        If it is no incremental analysis.
+        If the argument has another type.
 
     Examples
     --------
@@ -282,8 +279,8 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
     >>> block, levels = rk.Block(width=0.4, height=1.6), [3.0, 6.0, 9.0]
-    >>> found = fragility_analysis(block, pulses, levels, restitution=0.9, analysis="incremental")
-    >>> len(incremental_dynamic_analysis_picture(found).axes)
+    >>> analysis = fragility_analysis(block, pulses, levels, restitution=0.9, analysis="incremental")
+    >>> len(incremental_dynamic_analysis_picture(analysis).axes)
     2
     """
     checks.of_kind("analysis", analysis, IncrementalDynamicAnalysis, "incremental")
@@ -291,12 +288,12 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
     for curve in analysis.curves:
         _curve(left, analysis.levels, curve)
     _crossings(left, analysis)
-    known = np.sort(analysis.first_crossings[analysis.complete])
-    if known.size:
-        passed = np.searchsorted(known, analysis.levels, side="right") / known.size
-        right.plot(passed, analysis.levels, **_PASSED)
+    crossings = np.sort(analysis.first_crossings[analysis.complete])
+    if crossings.size:
+        passed_fractions = np.searchsorted(crossings, analysis.levels, side="right") / crossings.size
+        right.plot(passed_fractions, analysis.levels, **_PASSED)
     right.plot(analysis.fractions, analysis.levels, **_FRACTION)
-    right.set(xlim=(-0.03, 1.03), xlabel="share\noverturned [-]")
+    right.set(xlim=(-0.03, 1.03), xlabel="fraction\noverturned [-]")
     right.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
     measure = analysis.subject.measure
     left.set_ylabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
@@ -315,7 +312,7 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
 
 
 def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
-    """Draw one motion: grey up to its first overturning, blue where it stands again."""
+    """Draw one motion: grey up to its first overturning, blue at higher levels without overturning."""
     over = np.isinf(curve)
     first = int(np.argmax(over)) if over.any() else curve.size
     shown = np.where(np.isfinite(curve), np.minimum(curve, _OVER), math.nan)
@@ -325,7 +322,7 @@ def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
 
 
 def _crossings(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
-    """Give every motion that overturns the body a lane, and mark its first crossing there."""
+    """Draw one lane per motion with overturning, and mark its first crossing."""
     starts = analysis.first_crossings
     order = [k for k in np.argsort(starts).tolist() if math.isfinite(starts[k])]
     places = np.linspace(_FIRST, _LAST, 2 * len(order) + 1)[1::2]
@@ -341,14 +338,14 @@ def _crossings(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
 
 
 def _legend(figure: "Figure", analysis: IncrementalDynamicAnalysis) -> None:
-    count, again = int(analysis.complete.sum()), len(analysis.resurrected(WIDE))
+    count, resurrections = int(analysis.complete.sum()), len(analysis.resurrected(WIDE))
     lane: dict[str, Any] = {"color": _FALLEN, "linewidth": 2.5, "markersize": 3.5, "markeredgecolor": _CROSS}
     ring: dict[str, Any] = {"color": _AGAIN, "linewidth": 1.0, "markersize": 3.0, "markerfacecolor": "white"}
-    words = f"stands again: {again} motion{'s' * (again != 1)}"
+    label = f"resurrection: {resurrections} motion{'s' * (resurrections != 1)}"
     rows = [
         stroke(f"{count} motion{'s' * (count != 1)}", color=GREY, linewidth=0.8),
         stroke("overturns, x: first", marker="x", **lane),
-        *([stroke(words, marker="o", **ring)] if again else []),
+        *([stroke(label, marker="o", **ring)] if resurrections else []),
         stroke("fraction at the level", **_FRACTION),
         stroke("first crossing passed", **_PASSED),
     ]

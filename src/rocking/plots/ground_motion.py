@@ -1,4 +1,4 @@
-"""Ground motions: histories with their peaks, response spectra, and sets of motions beside one another."""
+"""Pictures of ground motions: histories with their peaks, response spectra, and comparisons of sets."""
 
 import math
 from collections.abc import Mapping
@@ -53,19 +53,19 @@ _SET_PERIODS = np.geomspace(0.05, 4.0, 60)  # periods of the spectra of sets, un
 
 @in_journal_style
 def ground_motion_picture(motion: GroundMotion | Pulse, spectrum: bool = True) -> "Figure":
-    """Draw a ground motion: acceleration, velocity, displacement, and beside them its response spectrum.
+    """Draw a ground motion: acceleration, velocity, displacement and response spectrum.
 
     Parameters
     ----------
     motion : GroundMotion or Pulse
-        The motion, from rest; a pulse is drawn from its formulas.
+        The motion, from rest; a pulse is plotted from its formulas.
     spectrum : bool
-        Whether to draw the pseudo-acceleration for 5 % damping too.
+        If True, also draw the pseudo-acceleration for 5 % damping.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Three stacked panels, and one beside them if wanted.
+        Three stacked panels, and one to the right for the spectrum.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
     )
     for axes, name, unit, short, color in rows:
         time, values = curves.time, getattr(curves, name)
-        if name == "acceleration":  # before and after the motion there is none
+        if name == "acceleration":  # zero before and after the motion
             time, values = np.pad(time, 1, "edge"), np.pad(values, 1)
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
         axes.plot(time, values, color=color, linewidth=0.8)
@@ -121,9 +121,9 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
 
 def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     low, peaks = max(0.02, 0.2 * motion.time_step), traces(motion).peaks
-    # what is slower than the usual range is shown up to periods well beyond its own, which its peaks tell
-    own = 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
-    high = max(5.0, 2.0 * own, 10.0 * low)
+    # slow motions are plotted up to periods well above their characteristic period
+    characteristic_period = 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
+    high = max(5.0, 2.0 * characteristic_period, 10.0 * low)
     periods = np.geomspace(low, high, 120)
     values = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration / g
     name = peak_name(support_of(motion))
@@ -149,12 +149,12 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
     Parameters
     ----------
     before, after : GroundMotion
-        The record as it was read, grey, and as its steps left it.
+        The record as read (grey), and after its processing steps.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Three stacked panels, and two beside them.
+        Three stacked panels, and two to the right.
 
     Examples
     --------
@@ -168,16 +168,16 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
     grid: Any = cells[0].get_gridspec()
     for axes in cells[1::2]:
         axes.remove()
-    beside = grid[:, 1].subgridspec(2, 1)
-    fourier, spectrum = (figure.add_subplot(beside[k]) for k in range(2))
-    words = ("acceleration [m/s$^2$]", "velocity [m/s]", "displacement [m]")
-    for motion, color, when in ((before, GREY, "before"), (after, INK, "after")):
+    right_grid = grid[:, 1].subgridspec(2, 1)
+    fourier, spectrum = (figure.add_subplot(right_grid[k]) for k in range(2))
+    labels = ("acceleration [m/s$^2$]", "velocity [m/s]", "displacement [m]")
+    for motion, color, stage in ((before, GREY, "before"), (after, INK, "after")):
         rows = (motion.acceleration, ground_velocity(motion), ground_displacement(motion))
-        for axes, values, name in zip(cells[::2], rows, words, strict=True):
-            axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, color=color, label=when)
+        for axes, values, name in zip(cells[::2], rows, labels, strict=True):
+            axes.plot(motion.time + begins_at(motion), values, linewidth=0.7, color=color, label=stage)
             axes.set_ylabel(name)
-        places = np.geomspace(2.0 / motion.duration, 0.49 / motion.time_step, 120)
-        fourier.plot(*fourier_amplitudes(motion, places), linewidth=0.9, color=color)
+        frequencies = np.geomspace(2.0 / motion.duration, 0.49 / motion.time_step, 120)
+        fourier.plot(*fourier_amplitudes(motion, frequencies), linewidth=0.9, color=color)
         response = response_spectrum(motion, _SET_PERIODS, _DAMPING)
         spectrum.plot(response.periods, response.pseudo_acceleration, linewidth=0.9, color=color)
     cells[4].set_xlabel("time [s]")
@@ -190,12 +190,12 @@ def processing_picture(before: GroundMotion, after: GroundMotion) -> "Figure":
 
 @in_journal_style
 def selection_picture(selection: "Selection") -> "Figure":
-    """Draw the spectra of records that were scaled to a target, their mean and the target.
+    """Draw the spectra of records scaled to a target, their mean and the target.
 
     Parameters
     ----------
     selection : Selection
-        As `rocking.motions.selected` returns it.
+        Result of `rocking.motions.selected`.
 
     Returns
     -------
@@ -207,16 +207,16 @@ def selection_picture(selection: "Selection") -> "Figure":
     >>> from rocking.motions import selected
     >>> from rocking.motions.components import Components
     >>> wave = GroundMotion(np.sin(np.linspace(0.0, 60.0, 600)), 0.01, name="wave")
-    >>> found = selected([Components(wave, None, None)], "eurocode8:ag=2m/s2", periods=(0.3, 2.0), most=100.0)
-    >>> len(selection_picture(found).axes[0].lines)
+    >>> selection = selected([Components(wave, None, None)], "eurocode8:ag=2m/s2", periods=(0.3, 2.0), most=100.0)
+    >>> len(selection_picture(selection).axes[0].lines)
     3
     """
     figure, (axes,) = new_figure(1.4 * SINGLE, 2.9)
     periods = selection.periods
     axes.plot(periods, selection.spectra.T / g, color=GREY, linewidth=0.4)
     axes.plot(periods, selection.mean / g, color=INK, linewidth=1.4, label=f"mean of {len(selection.records)}")
-    how: dict[str, Any] = {"color": COLORS[0], "linestyle": DASHED, "label": plain(selection.target.name)}
-    axes.plot(periods, selection.target(periods) / g, **how)
+    target_style: dict[str, Any] = {"color": COLORS[0], "linestyle": DASHED, "label": plain(selection.target.name)}
+    axes.plot(periods, selection.target(periods) / g, **target_style)
     axes.set(xlabel="period [s]", ylabel="spectral acceleration [g]")
     for which in "xy":
         plain_log(axes, which)
@@ -226,12 +226,12 @@ def selection_picture(selection: "Selection") -> "Figure":
 
 @in_journal_style
 def spectra_picture(flatfile: "Flatfile") -> "Figure":
-    """Draw the spectra of many records, with their median and where the middle 68 % are.
+    """Draw the spectra of many records, with their median and the band of the middle 68 %.
 
     Parameters
     ----------
     flatfile : Flatfile
-        As `rocking.motions.flatfile` returns it; RotD50 of two components, else the spectrum of the one.
+        Result of `rocking.motions.flatfile`; RotD50 of two components, or the spectrum of a single one.
 
     Returns
     -------
@@ -247,8 +247,8 @@ def spectra_picture(flatfile: "Flatfile") -> "Figure":
     1
     """
     figure, (axes,) = new_figure(1.4 * SINGLE, 2.9)
-    both, one = flatfile.spectra["sa_rotd50"], flatfile.spectra["sa_x"]
-    values = np.where(np.isfinite(both), both, one) / g
+    both, single = flatfile.spectra["sa_rotd50"], flatfile.spectra["sa_x"]
+    values = np.where(np.isfinite(both), both, single) / g
     values = values[np.isfinite(values).all(axis=1)]
     low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
     axes.plot(flatfile.periods, values.T, color=GREY, linewidth=0.3)
@@ -265,13 +265,13 @@ def spectra_picture(flatfile: "Flatfile") -> "Figure":
 def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> "Figure":
     """Draw sets of motions: peak velocity over peak acceleration, and their spectra.
 
-    Left: a point a motion. Right: of each set the median of the pseudo-spectral acceleration with 5 % damping, and
-    where the middle 68 % of the motions are.
+    Left: one point per motion. Right: for each set the median of the pseudo-spectral acceleration with 5 % damping, and
+    the band of the middle 68 % of the motions.
 
     Parameters
     ----------
     sets : mapping of str to MotionSet or sequence of GroundMotion
-        Up to six sets of at least two motions by what they are called.
+        Up to six sets by name, each of two or more motions.
     periods : array_like
         Periods of the spectra [s].
 
@@ -283,7 +283,7 @@ def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> 
     Raises
     ------
     InvalidValueError
-        If there is no set, or one is not of at least two records.
+        If there is no set, or a set has fewer than two records.
 
     Examples
     --------
@@ -294,23 +294,23 @@ def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> 
     """
     if not 1 <= len(sets) <= len(MARKS):
         raise InvalidValueError(parameter="sets", allowed=f"1 to {len(MARKS)}", value=len(sets))
-    places = checks.positive_array("periods", periods, "s")
+    spectrum_periods = checks.positive_array("periods", periods, "s")
     figure, (left, right) = new_figure(DOUBLE, 2.9, columns=2)
     for number, (name, motions) in enumerate(sets.items()):
         records = [motions[k] for k in range(len(motions))]
-        if len(records) < 2 or not all(isinstance(each, GroundMotion) for each in records):
+        if len(records) < 2 or not all(isinstance(record, GroundMotion) for record in records):
             raise InvalidValueError(
                 "set {name!r:.60} must have two ground motions or more, got {value}", parameter="sets", name=name,
                 value=records,
             )  # fmt: skip
-        pga = [peak_ground_acceleration(each) for each in records]
-        pgv = [peak_ground_velocity(each) for each in records]
+        pga = [peak_ground_acceleration(record) for record in records]
+        pgv = [peak_ground_velocity(record) for record in records]
         mark: dict[str, Any] = {"marker": MARKS[number], "markersize": 3.0, "alpha": 0.7, "markeredgewidth": 0}
         left.plot(pga, pgv, linestyle="none", color=look(number)["color"], **mark)
-        values = np.array([response_spectrum(each, places).pseudo_acceleration for each in records])
+        values = np.array([response_spectrum(record, spectrum_periods).pseudo_acceleration for record in records])
         low, middle, high = np.quantile(values, [0.16, 0.5, 0.84], axis=0)
-        right.fill_between(places, low, high, color=look(number)["color"], alpha=0.15, linewidth=0)
-        right.plot(places, middle, linewidth=1.2, **look(number))
+        right.fill_between(spectrum_periods, low, high, color=look(number)["color"], alpha=0.15, linewidth=0)
+        right.plot(spectrum_periods, middle, linewidth=1.2, **look(number))
     left.set(xlabel="peak ground acceleration [m/s$^2$]", ylabel="peak ground velocity [m/s]")
     right.set(xlabel="period [s]", ylabel="spectral acceleration, 5 % [m/s$^2$]")
     for panel in (left, right):

@@ -1,4 +1,4 @@
-"""What a measurement says of the coefficient of restitution: what was heard or seen, the fit, the models beside it."""
+"""Pictures of identifications: measurement, fit, and coefficient of restitution compared with models."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -34,13 +34,13 @@ _R = "coefficient of restitution r [-]"
 
 
 @in_journal_style
-def identification_picture(found: Identification) -> "Figure":
-    """Draw what was measured with its fit, what is left over, what each impact took, and the models of restitution.
+def identification_picture(identification: Identification) -> "Figure":
+    """Draw the measurement with its fit, residuals, coefficient of each impact, and restitution models.
 
     Parameters
     ----------
-    found : Identification
-        As of `rocking.identification.identify`; of one that was refused there is what was measured alone.
+    identification : Identification
+        Result of `rocking.identification.identify`; a refused identification shows only the measurement.
 
     Returns
     -------
@@ -50,92 +50,104 @@ def identification_picture(found: Identification) -> "Figure":
     Raises
     ------
     InvalidValueError
-        If it is no identification.
+        If the argument has another type.
 
     Examples
     --------
     >>> import rocking as rk
     >>> from rocking.identification import ImpactTimes, identify
     >>> times = [0.0, 1.2158, 2.2432, 3.1403, 3.9387, 4.6583, 5.3126, 5.9119, 6.4634]
-    >>> found = identify(ImpactTimes(times), rk.Block(width=1.0, height=4.0))
-    >>> [panel.get_xlabel() for panel in identification_picture(found).axes]
+    >>> identification = identify(ImpactTimes(times), rk.Block(width=1.0, height=4.0))
+    >>> [panel.get_xlabel() for panel in identification_picture(identification).axes]
     ['', 'coefficient of restitution r [-]', 'time [s]', 'impact']
     """
-    checks.of_kind("found", found, Identification, "an Identification")
+    checks.of_kind("identification", identification, Identification, "an Identification")
     figure, axes = new_figure(DOUBLE, 4.6, rows=2, columns=2, width_ratios=(1.3, 1.0))
     axes[0].sharex(axes[2])
     axes[0].tick_params(labelbottom=False)
-    axes[0].set_title(plain(found.source) or "measured", loc="left", fontsize=7.5)
-    if isinstance(found.measurement, ImpactTimes):
-        _heard(axes[0], found, found.measurement)
+    axes[0].set_title(plain(identification.source) or "measured", loc="left", fontsize=7.5)
+    if isinstance(identification.measurement, ImpactTimes):
+        _heard(axes[0], identification, identification.measurement)
     else:
-        _turned(axes[0], found)
-    for each in found.impacts:
-        axes[0].axvline(each.time, color=_LOOKS[each.foot][0], linewidth=0.6)
-    _residuals(axes[2], found)
-    for axis, words in zip(axes[1:], (_R, "time [s]", "impact"), strict=True):
-        axis.set_xlabel(words)
-    if found.refused:
+        _turned(axes[0], identification)
+    for impact in identification.impacts:
+        axes[0].axvline(impact.time, color=_LOOKS[impact.foot][0], linewidth=0.6)
+    _residuals(axes[2], identification)
+    for axis, label in zip(axes[1:], (_R, "time [s]", "impact"), strict=True):
+        axis.set_xlabel(label)
+    if identification.refused:
         axes[1].set_title("refused: no coefficient", loc="left", fontsize=7.5)
-        for axis in (axes[1], axes[3]):  # scales of nothing would be read as results
+        for axis in (axes[1], axes[3]):  # empty scales could be read as results
             axis.set_axis_off()
     else:
-        _posterior(axes[1], found)
-        _impacts(axes[3], found)
-    handles: list[Any] = [stroke(f"lands {foot}", color=c, marker=m, linestyle="-") for foot, (c, m) in _LOOKS.items()]
-    handles += [stroke("measured, and no impact", color=GREY, marker="x", linestyle="")]
+        _posterior(axes[1], identification)
+        _impacts(axes[3], identification)
+    handles: list[Any] = [
+        stroke(f"landing {foot}", color=c, marker=m, linestyle="-") for foot, (c, m) in _LOOKS.items()
+    ]
+    handles += [stroke("detection without impact", color=GREY, marker="x", linestyle="")]
     handles += [stroke("fitted", color=INK), patch(PALE, "95 % interval")]
     legend_below(figure, handles, 5)
     return figure
 
 
-def _heard(axes: "Axes", found: Identification, measurement: ImpactTimes) -> None:
-    """Draw a sound where there is one, and what is no impact; lines of impacts are drawn by the caller."""
+def _heard(axes: "Axes", identification: Identification, measurement: ImpactTimes) -> None:
+    """Draw the sound, if any, and detections that are not impacts; the caller draws the lines of impacts."""
     axes.set_ylim(0.0, 1.1)
     axes.set_yticks([])
     axes.set_ylabel("impacts heard" if measurement.loudness is None else "loudness [-]")
     if measurement.loudness is not None:
         axes.fill_between(*measurement.loudness.T, color=GREY, linewidth=0.0)
         axes.set_xlim(0.0, float(measurement.loudness[-1, 0]))
-    if found.impacts:  # of the first and the last nothing is known but when they were
-        ends = zip(found.residual_times[[0, -1]], (found.impacts[0], found.impacts[-1]), strict=True)
+    if identification.impacts:  # the first and the last impact have only their time
+        ends = zip(
+            identification.residual_times[[0, -1]], (identification.impacts[0], identification.impacts[-1]), strict=True
+        )
         for time, neighbour in ends:
             axes.axvline(time, color=_LOOKS[opposite(neighbour.foot)][0], linewidth=0.6)
-    other = np.setdiff1d(measurement.times, found.residual_times)
-    axes.plot(other, np.full(other.size, 1.04), "x", color=GREY)
+    other_times = np.setdiff1d(measurement.times, identification.residual_times)
+    axes.plot(other_times, np.full(other_times.size, 1.04), "x", color=GREY)
 
 
-def _turned(axes: "Axes", found: Identification) -> None:
-    name = _quantity(found)
-    time, values = found.measurement.time, getattr(found.measurement, name)  # type: ignore[union-attr]
+def _turned(axes: "Axes", identification: Identification) -> None:
+    name = _quantity(identification)
+    time, values = identification.measurement.time, getattr(identification.measurement, name)  # type: ignore[union-attr]
     axes.plot(time, values, ".", color=GREY, markersize=2.0)
-    # of two quantities, that which is drawn comes first
-    count = int(np.argmax(np.append(np.diff(found.residual_times) < 0.0, True))) + 1
-    at = found.residual_times[:count]
-    fit = np.interp(at, time, values) - found.residuals[:count]
-    fit[np.append(np.diff(at) > _GAP * np.median(np.diff(at)), False)] = np.nan  # what was left out is not drawn
-    axes.plot(at, fit, color=INK, linewidth=0.8)
+    # the plotted quantity is the first of two
+    count = int(np.argmax(np.append(np.diff(identification.residual_times) < 0.0, True))) + 1
+    fit_times = identification.residual_times[:count]
+    fit = np.interp(fit_times, time, values) - identification.residuals[:count]
+    fit[np.append(np.diff(fit_times) > _GAP * np.median(np.diff(fit_times)), False)] = (
+        np.nan
+    )  # omitted samples are not plotted
+    axes.plot(fit_times, fit, color=INK, linewidth=0.8)
     axes.set_ylabel(f"{name.replace('_', ' ')} [{_UNITS[name]}]")
 
 
-def _quantity(found: Identification) -> str:
-    """Return which quantity of a series is drawn, the first of both where there are both."""
-    return next(each for each in _UNITS if getattr(found.measurement, each) is not None)
+def _quantity(identification: Identification) -> str:
+    """Return the plotted quantity of a series, the first of two."""
+    return next(name for name in _UNITS if getattr(identification.measurement, name) is not None)
 
 
-def _residuals(axes: "Axes", found: Identification) -> None:
-    heard = isinstance(found.measurement, ImpactTimes)
-    unit = "s" if heard else _UNITS[_quantity(found)]
-    noise = 1.96e3 * found.noise.value
+def _residuals(axes: "Axes", identification: Identification) -> None:
+    from_sound = isinstance(identification.measurement, ImpactTimes)
+    unit = "s" if from_sound else _UNITS[_quantity(identification)]
+    noise = 1.96e3 * identification.noise.value
     axes.axhspan(-noise, noise, color=PALE, linewidth=0.0)
     axes.axhline(0.0, color=INK, linewidth=0.6)
-    axes.plot(found.residual_times, 1e3 * found.residuals, "o" if heard else ".", color=GREY, markersize=2.5)
-    axes.set_ylabel(f"left over [m{unit}]")
+    axes.plot(
+        identification.residual_times,
+        1e3 * identification.residuals,
+        "o" if from_sound else ".",
+        color=GREY,
+        markersize=2.5,
+    )
+    axes.set_ylabel(f"residual [m{unit}]")
 
 
-def _posterior(axes: "Axes", found: Identification) -> None:
-    """Draw the density of the mean coefficient, the interval of each side, and a row for each model."""
-    r, q = found.mean, found.quantiles
+def _posterior(axes: "Axes", identification: Identification) -> None:
+    """Draw the density of the mean coefficient, the interval of each side, and one row per model."""
+    r, q = identification.mean, identification.quantiles
     density = np.diff(q).min() / np.diff(q)
     axes.axvspan(r.low, r.high, color=PALE, linewidth=0.0)
     axes.fill_between(0.5 * (q[1:] + q[:-1]), 0.5, 0.5 - 1.4 * density, color=INK, alpha=0.6, linewidth=0.0)
@@ -144,15 +156,15 @@ def _posterior(axes: "Axes", found: Identification) -> None:
     names = ["measured"]
     for foot in FEET:
         color, mark = _LOOKS[foot]
-        side = found.coefficients[foot]
+        side = identification.coefficients[foot]
         axes.plot([side.low, side.high], [len(names)] * 2, color=color)
         axes.plot(side.value, len(names), mark, color=color)
         names.append(f"landing {foot}")
     styles = model_styles()
-    for each in found.models:
-        color = styles[each.model]["color"] if each.model in styles else GREY
-        axes.plot(each.coefficient, len(names), "D", color=color)
-        names.append(each.model)
+    for model in identification.models:
+        color = styles[model.model]["color"] if model.model in styles else GREY
+        axes.plot(model.coefficient, len(names), "D", color=color)
+        names.append(model.model)
     axes.set_yticks(range(len(names)), names, fontsize=6)
     axes.set_ylim(len(names) - 0.5, -1.1)
     axes.grid(axis="y", color=PALE, linewidth=0.5)
@@ -160,44 +172,44 @@ def _posterior(axes: "Axes", found: Identification) -> None:
     axes.set_title(f"r = {r}", loc="left", fontsize=7.5)
 
 
-def _impacts(axes: "Axes", found: Identification) -> None:
-    axes.axhspan(found.mean.low, found.mean.high, color=PALE, linewidth=0.0)
-    axes.axhline(found.mean.value, color=INK, linewidth=0.6)
-    for each in found.impacts:
-        color, mark = _LOOKS[each.foot]
-        axes.plot([each.number] * 2, [each.coefficient.low, each.coefficient.high], color=color, linewidth=0.8)
-        axes.plot(each.number, each.coefficient.value, mark, color=color, markersize=3.5)
+def _impacts(axes: "Axes", identification: Identification) -> None:
+    axes.axhspan(identification.mean.low, identification.mean.high, color=PALE, linewidth=0.0)
+    axes.axhline(identification.mean.value, color=INK, linewidth=0.6)
+    for impact in identification.impacts:
+        color, mark = _LOOKS[impact.foot]
+        axes.plot([impact.number] * 2, [impact.coefficient.low, impact.coefficient.high], color=color, linewidth=0.8)
+        axes.plot(impact.number, impact.coefficient.value, mark, color=color, markersize=3.5)
     axes.set_ylabel("r of each impact [-]")
-    axes.set_title(found.scatter_text, loc="left", fontsize=7.5)
+    axes.set_title(identification.scatter_text, loc="left", fontsize=7.5)
 
 
 @in_journal_style
-def trials_picture(found: IdentifiedTrials) -> "Figure":
+def trials_picture(trials: IdentifiedTrials) -> "Figure":
     """Draw the coefficient of every trial of a folder with its interval, and the mean of all.
 
     Parameters
     ----------
-    found : IdentifiedTrials
-        As of `rocking.spec.identification`.
+    trials : IdentifiedTrials
+        Result of the identification of a folder.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One panel; trials without a coefficient have a cross at its edge.
+        One panel; trials without a coefficient have a cross at the left edge.
 
     Raises
     ------
     InvalidValueError
-        If it is none.
+        If the argument has another type.
     """
-    checks.of_kind("found", found, IdentifiedTrials, "trials of a folder")
-    count = len(found.rows)
+    checks.of_kind("trials", trials, IdentifiedTrials, "trials of a folder")
+    count = len(trials.rows)
     figure, (axes,) = new_figure(0.7 * DOUBLE, 1.2 + min(5.0, 0.16 * count))
-    mean = found.mean
+    mean = trials.mean
     if mean is not None:
         axes.axvspan(mean.low, mean.high, color=PALE, linewidth=0.0)
-        axes.set_title(f"r = {mean}, mean of {found.good} trials", loc="left", fontsize=7.5)
-    for k, row in enumerate(found.rows):
+        axes.set_title(f"r = {mean}, mean of {trials.good} trials", loc="left", fontsize=7.5)
+    for k, row in enumerate(trials.rows):
         if row["refused"]:
             axes.plot(0.01, k, "x", color=GREY, transform=axes.get_yaxis_transform())
             continue
@@ -206,7 +218,7 @@ def trials_picture(found: IdentifiedTrials) -> "Figure":
     axes.set_ylim(count - 0.5, -0.5)
     axes.set_xlabel(_R)
     if count <= _MOST_NAMES:
-        axes.set_yticks(range(count), [plain(row["trial"]) for row in found.rows], fontsize=6)
+        axes.set_yticks(range(count), [plain(row["trial"]) for row in trials.rows], fontsize=6)
     else:
         axes.set_ylabel("trial")
     return figure

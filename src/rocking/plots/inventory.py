@@ -1,4 +1,4 @@
-"""An inventory at a glance: each object with its light, how often it falls, and what it takes to lift it."""
+"""Pictures of inventories: rating, fraction of overturning and uplift acceleration of each object."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 _ROW, _MARGIN = 0.235, 1.05
 MOST = 60
-"""Objects of a picture."""
+"""Maximum number of objects in a picture."""
 
 _HEIGHT, _BINS = 2.1, 20  # of the distribution [in, -]
 _LIGHTS = {Light.RED: ("#B2182B", "s"), Light.AMBER: ("#F4A300", "^"), Light.GREEN: ("#1B7F5C", "o")}
-"""Colour and shape: the letter beside it says the same, for who sees no colours."""
+"""Colour and shape of a rating; a letter next to it has the same meaning."""
 
 _RED: dict[str, Any] = {"color": _LIGHTS[Light.RED][0], "linewidth": 0.7, "linestyle": DASHED}
 _PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1))}
@@ -30,18 +30,17 @@ _PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1)
 
 @in_journal_style
 def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
-    """Draw an inventory, or its worst objects, the worst on top.
+    """Draw an inventory, or its worst objects, the worst at the top.
 
-    Left: the share of the motions that overturn each object, with its interval, and the light as a shape with its
-    letter. Right: the level acceleration below which it stays still, beside the peak acceleration of the shaking where
-    the hazard is one.
+    Left: fraction of motions with overturning of each object, with its interval, and the rating as a shape with its
+    letter. Right: horizontal acceleration without uplift, compared with the peak acceleration of the hazard, if stated.
 
     Parameters
     ----------
     assessment : Assessment
-        As of `rocking.studies.inventory.assess`.
+        Result of `rocking.studies.inventory.assess`.
     most : int
-        Number of objects that are drawn, the worst; the title states how many there are [-].
+        Maximum number of plotted objects; the title contains the total number [-].
 
     Returns
     -------
@@ -51,7 +50,7 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
     Raises
     ------
     InvalidValueError
-        If it is no assessment, without an object, or `most` is not 1 to 60.
+        If the argument has another type, has no object, or `most` is not 1 to 60.
 
     Examples
     --------
@@ -61,7 +60,7 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
     >>> vase = InventoryObject(name="vase", width=0.12, depth=0.12, height=0.6)
     >>> figure = inventory_picture(assess(Inventory((vase,)), hazard))
     >>> figure.axes[0].get_xlabel()
-    'share of motions that overturn it [-]'
+    'fraction of motions with overturning [-]'
     """
     checks.of_kind("assessment", assessment, Assessment, "of an inventory")
     verdicts, say = _verdicts(assessment)[: checks.whole("most", most, 1, MOST)], words_of(assessment)
@@ -75,34 +74,34 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
         _share(left, row, verdict, say)
         right.plot(verdict.uplift_acceleration / g, row, "|", color=INK, markersize=7.0, markeredgewidth=1.6)
         right.hlines(row, 0.0, verdict.uplift_acceleration / g, color=GREY, linewidth=1.0)
-    left.set_yticks(range(len(verdicts)), [wrapped(plain(each.item.label), 34, 1) for each in verdicts])
+    left.set_yticks(range(len(verdicts)), [wrapped(plain(item.item.label), 34, 1) for item in verdicts])
     left.set(xlim=(-0.1, 1.03), ylim=(len(verdicts) - 0.5, -0.5), xticks=[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-    left.set_xlabel(say("share of motions that overturn it [-]"))
+    left.set_xlabel(say("fraction of motions with overturning [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
     right.set_xlim(left=0.0)
-    right.set_xlabel(say("stays still up to [g]"))
+    right.set_xlabel(say("no uplift below [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 
 
 @in_journal_style
 def inventory_distribution(assessment: Assessment) -> "Figure":
-    """Draw how many objects of an inventory are overturned how often, and lifted by which acceleration, by light.
+    """Draw the distribution of objects by fraction of overturning and by uplift acceleration, for each rating.
 
     Parameters
     ----------
     assessment : Assessment
-        As of `rocking.studies.inventory.assess`.
+        Result of `rocking.studies.inventory.assess`.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Two panels side by side, two columns wide, of the quantities of `inventory_picture`; all objects are counted.
+        Two panels side by side, two columns wide, for the quantities of `inventory_picture` and all objects.
 
     Raises
     ------
     InvalidValueError
-        If it is no assessment, or without an object.
+        If the argument has another type, or has no object.
 
     Examples
     --------
@@ -117,29 +116,31 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
     checks.of_kind("assessment", assessment, Assessment, "of an inventory")
     verdicts, say = _verdicts(assessment), words_of(assessment)
     figure, (left, right) = new_figure(DOUBLE, _HEIGHT, columns=2, sharey=False, width_ratios=[1.5, 1.0])
-    limits = [each.uplift_acceleration / g for each in verdicts]
-    shares = [each.worse.overturned_share for each in verdicts]
-    for panel, values, most in ((left, shares, 1.0), (right, limits, max(limits))):
-        groups = [[one for one, each in zip(values, verdicts, strict=True) if each.light is light] for light in _LIGHTS]
+    limits = [item.uplift_acceleration / g for item in verdicts]
+    shares = [item.worse.overturned_share for item in verdicts]
+    for panel, values, upper in ((left, shares, 1.0), (right, limits, max(limits))):
+        groups = [
+            [value for value, item in zip(values, verdicts, strict=True) if item.light is light] for light in _LIGHTS
+        ]
         colors = [color for color, _ in _LIGHTS.values()]
-        panel.hist(groups, bins=_BINS, range=(0.0, most), stacked=True, color=colors, edgecolor="white", linewidth=0.4)
+        panel.hist(groups, bins=_BINS, range=(0.0, upper), stacked=True, color=colors, edgecolor="white", linewidth=0.4)
         panel.locator_params(axis="y", integer=True)
         panel.set_ylabel(say("number of objects [-]"))
-    left.set_xlabel(say("share of motions that overturn it [-]"))
+    left.set_xlabel(say("fraction of motions with overturning [-]"))
     left.axvline(assessment.thresholds.overturning_red, **_RED)
-    right.set_xlabel(say("stays still up to [g]"))
+    right.set_xlabel(say("no uplift below [g]"))
     _finish(figure, right, assessment, len(verdicts))
     return figure
 
 
 def _verdicts(assessment: Assessment) -> tuple[Verdict, ...]:
     if not assessment.verdicts:
-        raise InvalidValueError("a picture of an inventory must have an object with a verdict, got none")
+        raise InvalidValueError("the inventory has no assessed object for a picture")
     return assessment.verdicts
 
 
 def _finish(figure: "Figure", right: "Axes", assessment: Assessment, shown: int) -> None:
-    """Draw what both pictures have: the peak of the shaking, the title, the legend."""
+    """Draw the common parts of both pictures: peak of the ground motion, title, legend."""
     level, say = assessment.hazard.level, words_of(assessment)
     if level is not None and level.kind == "PGA":
         right.axvline(level.value / g, **_PEAK)
@@ -161,13 +162,18 @@ def _share(axes: "Axes", row: int, verdict: Verdict, say: Language) -> None:
 
 def _legend(figure: "Figure", assessment: Assessment) -> None:
     counts, level, say = assessment.counts(), assessment.hazard.level, words_of(assessment)
-    said = {light: {"letter": say(LIGHT_LETTERS[light]), "light": say(LIGHT_NAMES[light])} for light in Light}
+    light_texts = {light: {"letter": say(LIGHT_LETTERS[light]), "light": say(LIGHT_NAMES[light])} for light in Light}
     mark: dict[str, Any] = {"linestyle": "none", "markersize": 4.6}
     handles = [
-        stroke(say("{letter}: {light}, {count}", count=counts[light], **said[light]), marker=shape, color=color, **mark)
+        stroke(
+            say("{letter}: {light}, {count}", count=counts[light], **light_texts[light]),
+            marker=shape,
+            color=color,
+            **mark,
+        )
         for light, (color, shape) in _LIGHTS.items()
     ]
-    handles.append(stroke(say("red from here"), **_RED))
+    handles.append(stroke(say("limit of red"), **_RED))
     if level is not None and level.kind == "PGA":
-        handles.append(stroke(say("peak of the shaking"), **_PEAK))
+        handles.append(stroke(say("peak of the ground motion"), **_PEAK))
     legend_below(figure, handles, 5, handlelength=1.6)

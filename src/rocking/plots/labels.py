@@ -1,4 +1,4 @@
-"""Labels, words and scales of axes that pictures share, and curves of a motion with their exact peaks."""
+"""Common labels, texts and scales of axes, and curves of a motion with their exact peaks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ TYPESET = {
     "D5-95": "$D_{5-95}$",
     "D5-75": "$D_{5-75}$",
 }
-"""How parts of the symbols of measures are drawn."""
+"""Typeset form of parts of the symbols of measures."""
 
 _UNITS = {"1": "-", "m/s2": "m/s$^2$", "": "-"}
 
@@ -50,37 +50,37 @@ PEAK = r"peak rotation $\theta\,/\,\alpha$ [-]"
 
 def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
     """Return the label of an axis or a measure, with symbol and unit."""
-    words, one = SYMBOLS.get(name, short_name(name)), MEASURES.get(name)
+    label, measure = SYMBOLS.get(name, short_name(name)), MEASURES.get(name)
     if name not in SYMBOLS:
-        unit = unit if one is None else one.unit
-        # the symbol of a ratio says more than its words
-        words = words if one is None or "/" in words else one.words
-        words = f"{words} [{_UNITS.get(unit, unit)}]"
-    return words.replace(r"\tan\,\alpha", r"\alpha") if linear else words
+        unit = unit if measure is None else measure.unit
+        # a ratio is clearer by its symbol
+        label = label if measure is None or "/" in label else measure.words
+        label = f"{label} [{_UNITS.get(unit, unit)}]"
+    return label.replace(r"\tan\,\alpha", r"\alpha") if linear else label
 
 
 def short_name(name: str) -> str:
     """Return the short name of a measure."""
     if name in MEASURES:
         symbol = MEASURES[name].symbol or plain(name)
-        for part, drawn in TYPESET.items():
-            symbol = symbol.replace(part, drawn)
+        for text, typeset in TYPESET.items():
+            symbol = symbol.replace(text, typeset)
         return symbol
     return f"Sa({name[3:-1]} s)" if name.startswith("sa(") else plain(name)
 
 
-def plain(words: object) -> str:
-    r"""Return words on one line that are drawn as they are: dollar signs start no formula."""
-    return " ".join(str(words).split()).replace("$", r"\$")
+def plain(text: object) -> str:
+    r"""Return a text on one line with dollar signs escaped, so that none starts a formula."""
+    return " ".join(str(text).split()).replace("$", r"\$")
 
 
-def wrapped(words: str, width: int, most: int = 4) -> str:
-    r"""Return words in lines, cut off after the last."""
-    return "\n".join(wrap(words, width, max_lines=most, placeholder=" ..."))
+def wrapped(text: str, width: int, max_lines: int = 4) -> str:
+    r"""Return a text in lines, truncated after the last line."""
+    return "\n".join(wrap(text, width, max_lines=max_lines, placeholder=" ..."))
 
 
 def geometric(values: FloatArray) -> bool:
-    """Return whether numbers grow by equal ratios rather than by equal steps: they are drawn on a log axis."""
+    """Return True if numbers grow by equal ratios rather than by equal steps; they get a log axis."""
     if values.size < 3 or values[0] <= 0.0:
         return False
     ratios, steps = np.diff(np.log(values)), np.diff(values)
@@ -102,20 +102,20 @@ def plain_log(axes: "Axes", which: str) -> None:
 
 
 def plain_numbers(axis: "Axis") -> None:
-    """Write plain numbers at the ticks of an axis that stand out, none at the others."""
+    """Write plain numbers at the major ticks of an axis, none at the minor ticks."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
-def note(axes: "Axes", words: str, width: int = 62) -> None:
+def note(axes: "Axes", text: str, width: int = 62) -> None:
     """Write a small line or two above a panel."""
-    axes.set_title(wrapped(words, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)
+    axes.set_title(wrapped(text, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)
 
 
 def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
-    """Give an axis the numbers of another unit than it was drawn in, round in that unit."""
+    """Label an axis in another unit, with round numbers in that unit."""
     from matplotlib.ticker import FuncFormatter, Locator
 
     axis = axes.xaxis if which == "x" else axes.yaxis
@@ -135,10 +135,10 @@ def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
         axis.set_label_text(f"{head}[{unit}]")
 
 
-_ENOUGH = 2000  # points from which on a curve looks smooth
+_ENOUGH = 2000  # points of a smooth curve
 
 _PER_PERIOD = 1000
-"""Steps in a period of the fastest part of a pulse: straight lines between miss a sine by 5 millionths."""
+"""Steps in the shortest period of a pulse; the error of linear interpolation of a sine is 5e-6."""
 
 _MOST = 400_000
 
@@ -147,18 +147,18 @@ Peak = tuple[float, float]  # time [s] and signed value
 
 @dataclass(frozen=True, eq=False)
 class Traces:
-    """Acceleration, velocity and displacement at many instants, and where each is largest."""
+    """Acceleration, velocity and displacement at many instants, and their peaks."""
 
     time: FloatArray  # instants from the first sample to the last, or over a pulse [s]
     acceleration: FloatArray  # acceleration of the ground [m/s2]
     velocity: FloatArray  # velocity of the ground, from rest [m/s]
     displacement: FloatArray  # displacement of the ground, from zero [m]
-    # time and signed value of the largest of each, exact also between the instants, by its name
+    # time and signed value of each peak by name, exact also between the instants
     peaks: Mapping[str, Peak]
 
 
 def traces(motion: GroundMotion | Pulse) -> Traces:
-    """Return the curves of a motion, fine enough to be drawn, with their exact peaks."""
+    """Return the curves of a motion for plots, with their exact peaks."""
     if isinstance(motion, GroundMotion):
         return _of_samples(motion)
     time = np.linspace(0.0, motion.duration, _steps(motion) + 1)
@@ -173,24 +173,24 @@ def traces(motion: GroundMotion | Pulse) -> Traces:
 
 
 def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as samples: a record as it is, a pulse cut so finely that straight lines between will do."""
-    # the samples of a pulse begin and end with it, so that jumps at its ends stay jumps
+    """Return a motion as samples: a record unchanged, a pulse at steps fine enough for linear interpolation."""
+    # the samples of a pulse begin and end with it, which preserves jumps at its ends
     if isinstance(motion, GroundMotion):
         return motion
     steps = _steps(motion)
     values = motion.acceleration(np.linspace(0.0, motion.duration, steps + 1))
-    told = f"{motion!r} cut into {steps} steps"
-    return GroundMotion(values, motion.duration / steps, name=motion.name, provenance=(told,))
+    provenance_text = f"{motion!r} cut into {steps} steps"
+    return GroundMotion(values, motion.duration / steps, name=motion.name, provenance=(provenance_text,))
 
 
 def _steps(pulse: Pulse) -> int:
     periods = max(1.0, pulse.fastest * pulse.duration / (2.0 * np.pi))
-    wanted = int(max(min(_PER_PERIOD * periods, _MOST), 20.0 * periods))
-    return max(1, min(wanted, int(0.999 * pulse.duration / SHORTEST_STEP)))
+    step_count = int(max(min(_PER_PERIOD * periods, _MOST), 20.0 * periods))
+    return max(1, min(step_count, int(0.999 * pulse.duration / SHORTEST_STEP)))
 
 
 def _zoomed(curve: Callable[[Any], FloatArray], time: FloatArray) -> Peak:
-    # each round narrows the time a hundredfold or more, and the value errs by its square
+    # each round reduces the interval of time by a factor of 100 or more; the error of the value is quadratic
     for _ in range(4):
         values = np.asarray(curve(time))
         k = int(np.abs(values).argmax())
@@ -201,17 +201,17 @@ def _zoomed(curve: Callable[[Any], FloatArray], time: FloatArray) -> Peak:
 
 def _of_samples(motion: GroundMotion) -> Traces:
     a, v, u, h = motion.acceleration, ground_velocity(motion), ground_displacement(motion), motion.time_step
-    parts = max(1, -(-_ENOUGH // len(motion)))
-    tau = np.arange(parts) / parts
-    speed, place = _inside(motion, v, u, tau[:, None])
+    substeps = max(1, -(-_ENOUGH // len(motion)))
+    tau = np.arange(substeps) / substeps
+    velocity, displacement = _inside(motion, v, u, tau[:, None])
     acceleration = a[:-1] + tau[:, None] * np.diff(a)
     start = np.arange(len(motion) - 1)
-    columns = ((tau[:, None] + start) * h, acceleration, speed, place)
+    columns = ((tau[:, None] + start) * h, acceleration, velocity, displacement)
     ends = (motion.duration, a[-1], v[-1], u[-1])
     time, acceleration, v_fine, u_fine = (
         np.append(values.T.ravel(), end) for values, end in zip(columns, ends, strict=True)
     )
-    # velocity turns where the acceleration passes zero, displacement where the velocity does
+    # velocity has its extremes at zeros of the acceleration, displacement at zeros of the velocity
     turns = (a[:-1] < 0.0) != (a[1:] < 0.0)
     turn = np.where(turns, a[:-1] / np.where(turns, a[:-1] - a[1:], 1.0), 0.0)
     speeds = _inside(motion, v, u, turn)[0]

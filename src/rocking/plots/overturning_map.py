@@ -1,4 +1,4 @@
-"""Overturning maps: what overturns how, where it survives, the boundary, the peaks; on a grid, or refined along it."""
+"""Pictures of overturning maps: modes, safe islands, boundary and peaks; on a grid or refined along the boundary."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -28,22 +28,22 @@ _HEIGHT = 3.3
 _RASTER = 700
 _PANEL = (2.95, 2.55)  # width and height of the panel, roughly [in]
 
-FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)  # what is told apart in a map
+FAILED, UNLIFTED, ROCKED, ISLAND, FIRST, SECOND, LATER, FELL = range(8)  # classes of a map
 
 CLASSES: dict[int, tuple[str, str]] = {
     FAILED: ("not computed", "#000000"),
-    UNLIFTED: ("not lifted", "#FFFFFF"),
-    ROCKED: ("rocks, stays standing", "#E4EFF8"),
+    UNLIFTED: ("no uplift", "#FFFFFF"),
+    ROCKED: ("rocks, does not overturn", "#E4EFF8"),
     ISLAND: ("safe island", "#E4EFF8"),
     FIRST: ("overturns without impact", "#A8420A"),
     SECOND: ("overturns after 1 impact", "#E0812F"),
     LATER: ("overturns after 2 or more impacts", "#F0B26B"),
     FELL: ("overturns", "#E0812F"),
 }
-"""Words and colours: light stays standing, dark overturns, in grey too."""
+"""Names and colours of classes: light without overturning, dark with overturning, also in grey."""
 
 _SHORT = {UNLIFTED: "", FIRST: "no impact", SECOND: "after 1 impact", LATER: "after 2 or more"}
-"""Words where those of `CLASSES` do not fit."""
+"""Short names for regions without room for those of `CLASSES`."""
 
 _CONTOURS = (0.1, 0.25, 0.5, 0.75)
 _BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid_joinstyle": "round"}
@@ -51,18 +51,18 @@ _BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid
 
 @in_journal_style
 def overturning_map_picture(
-    found: "xr.Dataset", boundary: Sequence["Polyline"] = (), *, contours: Sequence[float] = _CONTOURS
+    results: "xr.Dataset", boundary: Sequence["Polyline"] = (), *, contours: Sequence[float] = _CONTOURS
 ) -> "Figure":
     r"""Draw an overturning map.
 
     Parameters
     ----------
-    found : xarray.Dataset
-        As of `overturning_map`.
+    results : xarray.Dataset
+        Result of `overturning_map`.
     boundary : sequence of Polyline
-        As of `boundary` along the same axes, drawn over the map.
+        Result of `boundary` along the same axes, plotted over the map.
     contours : sequence of float
-        Peak rotations over alpha that get a line where the body survives [-].
+        Peak rotations over alpha of the contour lines [-].
 
     Returns
     -------
@@ -72,7 +72,7 @@ def overturning_map_picture(
     Raises
     ------
     InvalidValueError
-        If it is no map, or the boundary is of other axes.
+        If the dataset is not a map, or the boundary has other axes.
 
     Examples
     --------
@@ -83,39 +83,41 @@ def overturning_map_picture(
     >>> overturning_map_picture(overturning_map(block, pulse, *axes, 0.9)).axes[0].get_xlabel()
     '$\\omega_p\\,/\\,p$ [-]'
     """
-    names = _axes_of(found)
-    odd = next((line.axes for line in boundary if line.axes != names), None)
-    if odd is not None:
+    names = _axes_of(results)
+    other_axes = next((line.axes for line in boundary if line.axes != names), None)
+    if other_axes is not None:
         raise InvalidValueError(
             "{parameter} must be along {axes}, got {others}", parameter="boundary", axes=" and ".join(names),
-            others=" and ".join(odd),
+            others=" and ".join(other_axes),
         )  # fmt: skip
     figure, (axes,) = new_figure(SINGLE, _HEIGHT)
-    kinds = classes_of(found)
-    draw_map(axes, found, kinds)
-    bands = _contours(axes, found, contours)
+    kinds = classes_of(results)
+    draw_map(axes, results, kinds)
+    bands = _contours(axes, results, contours)
     for line in boundary:
         axes.plot(*line.points.T, **_BOUNDARY)
-    _labels(axes, found, kinds, bands)
-    note(axes, f"{plain(found.attrs.get('motion', ''))}; restitution {plain(found.attrs.get('restitution', ''))}")
+    _labels(axes, results, kinds, bands)
+    note(axes, f"{plain(results.attrs.get('motion', ''))}; restitution {plain(results.attrs.get('restitution', ''))}")
     return figure
 
 
-def _axes_of(found: Any) -> tuple[str, str]:
-    if not hasattr(found, "data_vars") or "mode" not in found or found["mode"].ndim != 2:
-        raise InvalidValueError(parameter="found", allowed="a map, a dataset with a mode over two axes", value=found)
-    y, x = (str(name) for name in found["mode"].dims)
-    if min(found.sizes[x], found.sizes[y]) < 2:
-        raise InvalidValueError("a map must have two values or more along {x} and {y} to be drawn", x=x, y=y)
+def _axes_of(results: Any) -> tuple[str, str]:
+    if not hasattr(results, "data_vars") or "mode" not in results or results["mode"].ndim != 2:
+        raise InvalidValueError(
+            parameter="results", allowed="a map, a dataset with a mode over two axes", value=results
+        )
+    y, x = (str(name) for name in results["mode"].dims)
+    if min(results.sizes[x], results.sizes[y]) < 2:
+        raise InvalidValueError("a map must have two or more values along {x} and {y} for a picture", x=x, y=y)
     return x, y
 
 
-def classes_of(found: "xr.Dataset") -> IntArray:
-    """Return what each point of a map is drawn as."""
+def classes_of(results: "xr.Dataset") -> IntArray:
+    """Return the class of each point of a map."""
     from rocking.studies.islands import safe_islands
 
-    kinds = _kinds(np.asarray(found["mode"].values))
-    islands = safe_islands(found)
+    kinds = _kinds(np.asarray(results["mode"].values))
+    islands = safe_islands(results)
     kinds[islands.labels > 0] = ISLAND
     return kinds
 
@@ -127,8 +129,8 @@ def _kinds(mode: IntArray) -> IntArray:
 
 
 def class_patches(kinds: Iterable[IntArray]) -> "list[Patch]":
-    """Return the legend of all classes that some maps have."""
-    present = sorted({int(kind) for each in kinds for kind in np.unique(each)})
+    """Return the legend of all classes in maps."""
+    present = sorted({int(kind) for classes in kinds for kind in np.unique(classes)})
     return [patch(CLASSES[kind][1], CLASSES[kind][0], edgecolor=INK, linewidth=0.5) for kind in present]
 
 
@@ -139,16 +141,16 @@ def _mesh(axes: "Axes", x: FloatArray, y: FloatArray, kinds: IntArray) -> None:
     axes.pcolormesh(x, y, kinds, cmap=colors, vmin=-0.5, vmax=len(CLASSES) - 0.5, shading="nearest", rasterized=True)
 
 
-def draw_map(axes: "Axes", found: "xr.Dataset", kinds: IntArray) -> None:
-    """Draw the regions of a map, with labelled axes, logarithmic where the values grow by equal ratios."""
-    x, y = _axes_of(found)
-    values = [np.asarray(found[name].values) for name in (x, y)]
+def draw_map(axes: "Axes", results: "xr.Dataset", kinds: IntArray) -> None:
+    """Draw the regions of a map, with labelled axes; axes with equal ratios are logarithmic."""
+    x, y = _axes_of(results)
+    values = [np.asarray(results[name].values) for name in (x, y)]
     _mesh(axes, values[0], values[1], kinds)
-    linear = bool(found.attrs.get("setting_linear", 0))
-    axes.set_xlabel(axis_label(x, found[x].attrs.get("units", "1"), linear=linear))
-    axes.set_ylabel(axis_label(y, found[y].attrs.get("units", "1"), linear=linear))
-    for which, part in zip("xy", values, strict=True):
-        if geometric(part):
+    linear = bool(results.attrs.get("setting_linear", 0))
+    axes.set_xlabel(axis_label(x, results[x].attrs.get("units", "1"), linear=linear))
+    axes.set_ylabel(axis_label(y, results[y].attrs.get("units", "1"), linear=linear))
+    for which, coordinates in zip("xy", values, strict=True):
+        if geometric(coordinates):
             plain_log(axes, which)
     if (kinds == ISLAND).any():
         dots: Any = {"colors": "none", "hatches": ["......"]}
@@ -156,64 +158,64 @@ def draw_map(axes: "Axes", found: "xr.Dataset", kinds: IntArray) -> None:
     axes.spines[["top", "right"]].set_visible(True)
 
 
-def _contours(axes: "Axes", found: "xr.Dataset", levels: Sequence[float]) -> IntArray:
-    """Draw the peak rotation where the body survives; return in which band between the lines each point lies."""
-    x, y = _axes_of(found)
-    peak = np.where(np.isin(found["mode"].values, (-2, -1)), np.asarray(found["peak_ratio"].values), np.nan)
-    known = peak[np.isfinite(peak)]
-    wanted = [level for level in levels if known.size and known.min() < level < known.max()]
-    if wanted:
-        labelled_contours(axes, np.asarray(found[x].values), np.asarray(found[y].values), peak, wanted)
-    return np.asarray(np.digitize(np.nan_to_num(peak, nan=-1.0), [0.0, *wanted]), dtype=np.int64)
+def _contours(axes: "Axes", results: "xr.Dataset", levels: Sequence[float]) -> IntArray:
+    """Draw contours of the peak rotation without overturning; return the band of each point."""
+    x, y = _axes_of(results)
+    peak = np.where(np.isin(results["mode"].values, (-2, -1)), np.asarray(results["peak_ratio"].values), np.nan)
+    finite = peak[np.isfinite(peak)]
+    shown_levels = [level for level in levels if finite.size and finite.min() < level < finite.max()]
+    if shown_levels:
+        labelled_contours(axes, np.asarray(results[x].values), np.asarray(results[y].values), peak, shown_levels)
+    return np.asarray(np.digitize(np.nan_to_num(peak, nan=-1.0), [0.0, *shown_levels]), dtype=np.int64)
 
 
-def _labels(axes: "Axes", found: "xr.Dataset", kinds: IntArray, bands: IntArray) -> None:
-    """Name every region within it; a legend below names those that are too small for words."""
-    x, y = (np.asarray(found[name].values) for name in _axes_of(found))
-    x, y = (np.log(part) if geometric(part) else part for part in (x, y))
-    fine, band = rastered(kinds, x, y), rastered(bands, x, y)
-    small = []
+def _labels(axes: "Axes", results: "xr.Dataset", kinds: IntArray, bands: IntArray) -> None:
+    """Write the names of regions into them; a legend below names small regions."""
+    x, y = (np.asarray(results[name].values) for name in _axes_of(results))
+    x, y = (np.log(coordinates) if geometric(coordinates) else coordinates for coordinates in (x, y))
+    class_raster, band_raster = rastered(kinds, x, y), rastered(bands, x, y)
+    handles = []
     for kind in np.unique(kinds).tolist():
-        parts = np.unique(band[fine == kind]) if kind in {ROCKED, ISLAND} else [None]
-        place = _place([(fine == kind) & ((band == b) | (b is None)) for b in parts], kind)
-        if place is None:
-            words, color = CLASSES[kind]
+        bands_of_class = np.unique(band_raster[class_raster == kind]) if kind in {ROCKED, ISLAND} else [None]
+        label = _place([(class_raster == kind) & ((band_raster == b) | (b is None)) for b in bands_of_class], kind)
+        if label is None:
+            text, color = CLASSES[kind]
             hatch = "......" if kind == ISLAND else None
-            small.append(patch(color, words, edgecolor=INK, linewidth=0.5, hatch=hatch))
+            handles.append(patch(color, text, edgecolor=INK, linewidth=0.5, hatch=hatch))
             continue
         axes.text(
-            place.x, place.y, place.words, transform=axes.transAxes, ha="center", va="center", fontsize=7, zorder=5,
+            label.x, label.y, label.text, transform=axes.transAxes, ha="center", va="center", fontsize=7, zorder=5,
             color="white" if kind in {FIRST, FAILED} else INK,
         )  # fmt: skip
-    if small:
-        legend_below(axes.figure, small, 2)  # type: ignore[arg-type]
+    if handles:
+        legend_below(axes.figure, handles, 2)  # type: ignore[arg-type]
 
 
 def _place(regions: Sequence[BoolArray], kind: int) -> LabelPlace | None:
-    """Return where the words of a class fit best, in one line if they can."""
-    for words in (CLASSES[kind][0], _SHORT.get(kind, "")):
-        found = [place for region in regions if words and (place := place_in(region, words, _PANEL)) is not None]
-        if found:
-            return min(found, key=lambda place: place.words.count("\n"))
+    """Return the best position of the name of a class, preferably on one line."""
+    for text in (CLASSES[kind][0], _SHORT.get(kind, "")):
+        labels = [label for region in regions if text and (label := place_in(region, text, _PANEL)) is not None]
+        if labels:
+            return min(labels, key=lambda label: label.text.count("\n"))
     return None
 
 
 @in_journal_style
 def refined_map_picture(
-    points: "RefinedMap", boundary: "Sequence[Polyline]", *, window: "Window | None" = None, words: str = ""
+    points: "RefinedMap", boundary: "Sequence[Polyline]", *, window: "Window | None" = None, title: str = ""
 ) -> "Figure":
-    r"""Draw a refined map: the regions, the points that were computed in the window, and the boundaries.
+    r"""Draw a refined map: regions, computed points in a window, and boundaries.
 
     Parameters
     ----------
     points : RefinedMap
-        As of `refined_map`.
+        Result of `refined_map`.
     boundary : sequence of Polyline
-        As of `boundary` on the same axes, at least one.
+        Result of `boundary` on the same axes, one or more.
     window : pair of pairs of float, optional
-        Ends along x and along y of what a second panel shows larger, in the units of the axes.
+        Limits along x and along y of an enlarged second panel, in the units of the axes.
     words : str
-        What stands above, such as motion and restitution.
+        Text above the map, such as motion and restitution.
 
     Returns
     -------
@@ -223,7 +225,7 @@ def refined_map_picture(
     Raises
     ------
     InvalidValueError
-        If the points are of no refined map, there is no polyline, or the window is empty.
+        If the points are not from a refined map, there is no polyline, or the window is empty.
 
     Examples
     --------
@@ -231,23 +233,23 @@ def refined_map_picture(
     >>> from rocking.studies import boundary, refined_map
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> axes = ("frequency_ratio", [1.0, 2.0, 3.0]), ("amplitude_ratio", [1.0, 2.0, 3.0])
-    >>> made = refined_map(block, pulse, *axes, 0.9, levels=1), boundary(block, pulse, *axes, 0.9, levels=1)
-    >>> refined_map_picture(*made).axes[0].get_xlabel()
+    >>> refined = refined_map(block, pulse, *axes, 0.9, levels=1), boundary(block, pulse, *axes, 0.9, levels=1)
+    >>> refined_map_picture(*refined).axes[0].get_xlabel()
     '$\\omega_p\\,/\\,p$ [-]'
     """
     from rocking.studies.adaptive_grid import RefinedMap
 
     checks.of_kind("points", points, RefinedMap, "of refined_map")
     if not boundary:
-        raise InvalidValueError("boundary must have at least one polyline; nothing changes over this map")
+        raise InvalidValueError("boundary must have one or more polylines; this map has no boundary")
     if window is not None and not all(low < high for low, high in window):
         raise InvalidValueError(parameter="window", allowed="two increasing pairs", value=window)
     figure, axes = new_figure(SINGLE if window is None else DOUBLE, 3.2, columns=1 if window is None else 2)
-    whole = [(float(v[points.base].min()), float(v[points.base].max())) for v in (points.x, points.y)]
-    _panel(axes[0], points, boundary, (whole[0], whole[1]), dots=False)
-    new = points.modes.size - int(points.base.sum())
-    counts = f"{int(points.base.sum()):,} points of the map, {new:,} along its boundaries"
-    note(axes[0], f"{plain(words)}; {counts}" if words else counts)
+    extent = [(float(v[points.base].min()), float(v[points.base].max())) for v in (points.x, points.y)]
+    _panel(axes[0], points, boundary, (extent[0], extent[1]), dots=False)
+    refined_count = points.modes.size - int(points.base.sum())
+    counts = f"{int(points.base.sum()):,} points of the map, {refined_count:,} along its boundaries"
+    note(axes[0], f"{plain(title)}; {counts}" if title else counts)
     if window is not None:
         _panel(axes[1], points, boundary, window, dots=True)
         _enlarged(axes, window)
@@ -276,26 +278,26 @@ def _panel(axes: "Axes", points: "RefinedMap", boundary: "Sequence[Polyline]", w
 
 
 def _nearest_kinds(points: "RefinedMap", x: FloatArray, y: FloatArray, scales: list[bool]) -> IntArray:
-    """Return the class of the nearest point, distances in spacings of the map: cells as fine as the points are."""
+    """Return the class of the nearest point, with distances in spacings of the map."""
     from scipy.spatial import cKDTree
 
-    known, wanted = [], []
-    for values, at, scale in zip((points.x, points.y), (x, y), scales, strict=True):
-        places, pixels = (np.log(values), np.log(at)) if scale else (values, at)
+    scaled_points, scaled_pixels = [], []
+    for values, pixel_values, scale in zip((points.x, points.y), (x, y), scales, strict=True):
+        coordinates, pixels = (np.log(values), np.log(pixel_values)) if scale else (values, pixel_values)
         base = np.log(values[points.base]) if scale else values[points.base]
         spacing = np.diff(np.unique(base)).mean()
-        known.append(places / spacing)
-        wanted.append(pixels / spacing)
-    grid = np.stack(np.meshgrid(*wanted), axis=-1).reshape(-1, 2)
-    _, place = cKDTree(np.stack(known, axis=1)).query(grid)
-    return np.asarray(_kinds(points.modes)[place].reshape(y.size, x.size))
+        scaled_points.append(coordinates / spacing)
+        scaled_pixels.append(pixels / spacing)
+    grid = np.stack(np.meshgrid(*scaled_pixels), axis=-1).reshape(-1, 2)
+    _, nearest = cKDTree(np.stack(scaled_points, axis=1)).query(grid)
+    return np.asarray(_kinds(points.modes)[nearest].reshape(y.size, x.size))
 
 
 def _enlarged(axes: "list[Axes]", window: "Window") -> None:
-    """Show a part of the first panel in the second, and where it is."""
+    """Mark the window of the second panel in the first."""
     from matplotlib.patches import Rectangle
 
     (left, right), (low, high) = window
     frame: dict[str, Any] = {"fill": False, "edgecolor": INK, "linewidth": 0.8, "linestyle": (0, (3, 2)), "zorder": 5}
     axes[0].add_patch(Rectangle((left, low), right - left, high - low, **frame))
-    note(axes[1], "within the dashed frame; dots: points that were computed")
+    note(axes[1], "within the dashed frame; dots: computed points")

@@ -1,4 +1,4 @@
-"""Every figure of `rocking reproduce`: those of Mao et al. (2024), redrawn from what is printed, and our own."""
+"""Every figure of `rocking reproduce`: those of Mao et al. (2024), redrawn from the printed values, and our own."""
 
 import math
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from rocking.evidence.comparison import relative_error
 from rocking.evidence.measurements import DataSet, all_measurements, datasets
 from rocking.plots import evidence
 from rocking.plots.energy_stages import energy_stages_picture, hero
-from rocking.plots.evidence import GROUP_STYLE, SLENDERNESS, R, curve
+from rocking.plots.evidence import GROUP_STYLE, SLENDERNESS, R, draw_model
 from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, model_styles, new_figure
 from rocking.restitution import model
 
@@ -57,7 +57,7 @@ def paper_figure(name: str) -> "Figure":
 
 
 def paper_figures(data: DataSet | None = None) -> "dict[str, Callable[[], Figure]]":
-    """Return how each figure of the report is drawn, by the name of its file; league and calibration of what data."""
+    """Return the drawing function of each figure of the report by file name; data: of league and calibration."""
     data = all_measurements() if data is None else data
     posterior = calibrate() if data is all_measurements() else calibrate_on(data)
     return {
@@ -118,16 +118,18 @@ def _figure_1() -> "Figure":
     return figure
 
 
-def _text(axes: "Axes", words: str, at: FloatArray, shift: tuple[float, float], align: str = "center") -> None:
-    axes.annotate(words, (float(at[0]), float(at[1])), shift, textcoords="offset points", ha=align, fontsize=8)
+def _text(axes: "Axes", text: str, position: FloatArray, shift: tuple[float, float], align: str = "center") -> None:
+    axes.annotate(
+        text, (float(position[0]), float(position[1])), shift, textcoords="offset points", ha=align, fontsize=8
+    )
 
 
 def _dimension(
-    axes: "Axes", a: FloatArray, b: FloatArray, words: str, outward: float, shift: tuple[float, float]
+    axes: "Axes", a: FloatArray, b: FloatArray, text: str, outward: float, shift: tuple[float, float]
 ) -> None:
-    beside = outward * np.array([-(b - a)[1], (b - a)[0]]) / np.linalg.norm(b - a)
-    axes.annotate("", tuple(a + beside), tuple(b + beside), arrowprops={"arrowstyle": "<->", "linewidth": 0.6})
-    _text(axes, words, 0.5 * (a + b) + beside, shift)
+    offset = outward * np.array([-(b - a)[1], (b - a)[0]]) / np.linalg.norm(b - a)
+    axes.annotate("", tuple(a + offset), tuple(b + offset), arrowprops={"arrowstyle": "<->", "linewidth": 0.6})
+    _text(axes, text, 0.5 * (a + b) + offset, shift)
 
 
 @in_journal_style
@@ -135,7 +137,7 @@ def _figure_3() -> "Figure":
     """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper."""
     figure, (axes,) = new_figure(SINGLE, 2.7)
     for name in _PAIR:
-        curve(axes, name, 1.5, 9.0)
+        draw_model(axes, name, 1.5, 9.0)
     _with_distance_to_ked(axes, datasets()["table2"], "s", "Table 2, means", 0.0)
     axes.set_ylim(0.55, 1.02)
     axes.legend(loc="lower right")
@@ -144,10 +146,10 @@ def _figure_3() -> "Figure":
 
 @in_journal_style
 def _figure_5() -> "Figure":
-    """Draw slenderness against r for S, M and L, S and L a little aside; bars are |r_r - r_e|, as in Figure 3."""
+    """Draw slenderness against r for S, M and L, with an offset of S and L; bars are |r_r - r_e|, as in Figure 3."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name in _PAIR:
-        curve(axes, name, 1.3, 10.2)
+        draw_model(axes, name, 1.3, 10.2)
     for group, aside in (("S", -0.09), ("M", 0.0), ("L", 0.09)):
         _with_distance_to_ked(axes, datasets()[group], str(GROUP_STYLE[group]["marker"]), f"group {group}", aside)
     axes.legend(loc="lower right")
@@ -192,12 +194,12 @@ def _figure_7() -> "Figure":
 def _figure_8() -> "Figure":
     """Draw the absolute errors r_r - r_e and r_e - r_H against mass."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
-    for name, sign, words in (("housner", -1.0, "$r_e - r_H$"), ("ked", 1.0, "$r_r - r_e$")):
+    for name, sign, label in (("housner", -1.0, "$r_e - r_H$"), ("ked", 1.0, "$r_r - r_e$")):
         look = {"linestyle": "none", **_filled(name)}
         for group in "SML":
             data = datasets()[group]
             error = sign * (model(name).of_slenderness(data.slenderness) - data.coefficient)
-            axes.plot(data.mass, error, marker=GROUP_STYLE[group]["marker"], label=f"{words}, {group}", **look)
+            axes.plot(data.mass, error, marker=GROUP_STYLE[group]["marker"], label=f"{label}, {group}", **look)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     axes.set_xscale("log")
     axes.set(xlabel="mass [kg]", ylabel="absolute error of r [-]")
@@ -233,8 +235,8 @@ def _zoned(axes: "Axes", data: DataSet) -> None:
     for low, high, shade in ((0.0, 1.0, "#ececec"), (1.0, 5.0, "#f7f7f7")):
         axes.axhspan(low, high, color=shade, linewidth=0.0, zorder=0)
     for zone, height in (("I", 0.5), ("II", 3.0), ("III", 7.0)):
-        place = axes.get_yaxis_transform()
-        axes.text(1.01, height, zone, transform=place, ha="left", va="center", fontsize=7, color=GREY)
+        transform = axes.get_yaxis_transform()
+        axes.text(1.01, height, zone, transform=transform, ha="left", va="center", fontsize=7, color=GREY)
     for name in _PAIR:
         look = {"linestyle": "none", "marker": _MARKER[name], "label": model_styles()[name]["label"], **_filled(name)}
         axes.plot(data.slenderness, _relative_error(name, data), **look)

@@ -1,4 +1,4 @@
-"""Regimes in pictures: Shenton's map, and a planar response with its regimes coloured."""
+"""Pictures of regimes: Shenton's map, and a planar response with coloured regimes."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -34,14 +34,14 @@ COLOURS = {
     Regime.SLIDE_ROCK: "#8FD6BE",
     Regime.FLIGHT: "#E8BAD3",
 }
-"""One pale colour a regime, after Okabe and Ito."""
+"""One pale colour per regime, after Okabe and Ito."""
 
 _LINE, _IMPACT = "#0070B2", "#D96C00"
 
 
 @in_journal_style
 def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Figure":
-    """Draw what a body at rest starts to do under a sudden ground acceleration: complementarity against boundaries.
+    """Draw the initial regime of a body at rest under a sudden ground acceleration, with the closed-form boundaries.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     largest : float
         Largest acceleration over gravity, and largest friction [-].
     cells : int
-        Cells along each axis, from 2 to 400.
+        Number of cells along each axis, from 2 to 400.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or nothing rocks below the largest acceleration.
+        If a value is outside its range, or there is no rocking below the largest acceleration.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     slender = body.side("left").half_width / body.side("left").centre_height
     if not slender < largest:
         raise InvalidValueError(
-            parameter="largest", allowed=f"above b / h = {slender:g}, where the body is lifted", value=largest
+            parameter="largest", allowed=f"above b / h = {slender:g}, the limit of uplift", value=largest
         )
     figure, (axes,) = new_figure(SINGLE, 0.95 * SINGLE)
     middles = (np.arange(cells) + 0.5) * largest / cells
@@ -114,17 +114,17 @@ def _cells(axes: "Axes", codes: np.ndarray, largest: float) -> None:
 
 @in_journal_style
 def regimes_picture(response: ContactResponse) -> "Figure":
-    """Draw a planar response over its regimes: rotation, place of the centre, energy.
+    """Draw a planar response over its regimes: rotation, position of the centre of mass, energy.
 
     Parameters
     ----------
     response : ContactResponse
-        What `simulate` returned of a plane body with friction.
+        Result of `simulate` for a plane body with friction.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Four panels over one time axis, the regimes as coloured bands.
+        Four panels over one time axis, with regimes as coloured bands.
 
     Examples
     --------
@@ -137,8 +137,8 @@ def regimes_picture(response: ContactResponse) -> "Figure":
     headline(figure, response.summary)
     panels = (
         (np.degrees(response.rotation), "rotation\n[degrees]"),
-        (response.displacement, "centre to\nthe right [m]"),
-        (response.rise, "centre\nraised [m]"),
+        (response.displacement, "displacement\nof centre [m]"),
+        (response.rise, "rise of\ncentre [m]"),
     )
     for panel, (values, label) in zip(axes, panels, strict=False):
         panel.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)

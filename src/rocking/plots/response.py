@@ -1,4 +1,4 @@
-"""A response: the ground, the rotation, the velocity, where the energy goes, the friction it takes; and its curves."""
+"""Picture of a response: ground motion, rotation, velocity, energy and friction demand; and its curves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 _ROTATION, _VELOCITY, _IMPACT, _FALL = "#0070B2", "#009960", "#D96C00", "#AC8191"
 _KINETIC, _POTENTIAL, _LOST, _WORK = "#AC5B2B", "#0070B2", "#D96C00", "#222222"
-_BEYOND = 2.2  # how far a falling body is followed, in slenderness angles: what came before stays visible
-_SMALL = 0.2  # below this share of the slenderness angle the rotation fills its panel and +-1 is left out
+_BEYOND = 2.2  # largest plotted rotation of an overturning body, in slenderness angles
+_SMALL = 0.2  # below this fraction of the slenderness angle the panel omits the lines at +-1
 _LONGEST_LINE = 118  # characters that fit into one line of the small print
 _INSIDE = np.linspace(0.0, 1.0, 5)
-_REST = 0.06  # rest that is shown after the last event, as a share of the time shown
+_REST = 0.06  # plotted time after the last event, as a fraction of the time before
 
 
 @in_journal_style
@@ -31,9 +31,9 @@ def response_picture(response: Response, friction: float = 0.5) -> "Figure":
     Parameters
     ----------
     response : Response
-        What `simulate` or `free_rocking` returned.
+        Result of `simulate` or `free_rocking`.
     friction : float
-        Coefficient of friction between body and ground, drawn beside what the response takes [-].
+        Coefficient of friction between body and ground, compared with the friction demand [-].
 
     Returns
     -------
@@ -107,7 +107,7 @@ def _rotation(axes: "Axes", response: Response, time: FloatArray, values: FloatA
         low, high = max(float(values.min(initial=-1.0)), -most), min(float(values.max(initial=1.0)), most)
         axes.set_ylim(1.15 * low, 1.15 * high)
     if response.outcome is Outcome.OVERTURNED:
-        axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=DASHED, label="past the point of no return")
+        axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=DASHED, label="overturning certain")
     if times.size or response.outcome is Outcome.OVERTURNED:
         legend_above(axes, 2)
     axes.set_ylabel("rotation /\nslenderness\nangle [-]")
@@ -138,44 +138,44 @@ def _energy(axes: "Axes", response: Response) -> None:
 
 
 def _unit(response: Response, histories: list[FloatArray]) -> tuple[str, float]:
-    until = ~(response.energy.time > response.overturning_time)
-    most = max(float(np.abs(values[until]).max()) for values in histories)
+    is_before_overturning = ~(response.energy.time > response.overturning_time)
+    largest = max(float(np.abs(values[is_before_overturning]).max()) for values in histories)
     for unit, factor in (("MJ", 1e-6), ("kJ", 1e-3)):
-        if most * factor >= 1.0:
+        if largest * factor >= 1.0:
             return unit, factor
     return "J", 1.0
 
 
 def _friction(axes: "Axes", response: Response, friction: float) -> None:
     contact = response.contact
-    standing = ~(contact.time > response.overturning_time)
-    touching = standing & (contact.vertical > 0.0)
+    is_before_overturning = ~(contact.time > response.overturning_time)
+    in_contact = is_before_overturning & (contact.vertical > 0.0)
     demand = np.full(contact.time.size, np.nan)
-    demand[touching] = np.abs(contact.horizontal[touching]) / contact.vertical[touching]
-    axes.plot(contact.time, demand, color=INK, linewidth=0.8, label="taken between impacts")
-    most = np.nanmax(demand, initial=friction)
+    demand[in_contact] = np.abs(contact.horizontal[in_contact]) / contact.vertical[in_contact]
+    axes.plot(contact.time, demand, color=INK, linewidth=0.8, label="demand between impacts")
+    largest = np.nanmax(demand, initial=friction)
     if response.impacts.size:
         axes.axhline(contact.friction_of_impacts, color=_IMPACT, linewidth=0.9, linestyle="-.", label="at impacts")
-        most = max(most, contact.friction_of_impacts)
+        largest = max(largest, contact.friction_of_impacts)
     axes.axhline(friction, color=GREY, linewidth=0.9, linestyle=DASHED, label=f"friction {friction:g}")
-    axes.set_ylim(0.0, 1.15 * min(most, 4.0 * friction + contact.friction_of_impacts))
+    axes.set_ylim(0.0, 1.15 * min(largest, 4.0 * friction + contact.friction_of_impacts))
     if response.lost_contact:
-        axes.set_title("the ground would have to pull", loc="right", fontsize=7, color=_IMPACT)
+        axes.set_title("the contact force becomes tensile", loc="right", fontsize=7, color=_IMPACT)
     legend_above(axes, 3)
-    axes.set_ylabel("friction\ntaken [-]")
+    axes.set_ylabel("friction\ndemand [-]")
 
 
 def _limits(axes: "Axes", response: Response, time: FloatArray, values: list[FloatArray]) -> None:
-    """Fit a panel to what happens before the body falls for good."""
-    until = ~(time > response.overturning_time)
-    low = min(float(part[until].min(initial=0.0)) for part in values)
-    high = max(float(part[until].max(initial=0.0)) for part in values)
-    room = 0.12 * (high - low) or 1.0
-    axes.set_ylim(low - room, high + room)
+    """Fit a panel to the values before overturning."""
+    is_before_overturning = ~(time > response.overturning_time)
+    low = min(float(history[is_before_overturning].min(initial=0.0)) for history in values)
+    high = max(float(history[is_before_overturning].max(initial=0.0)) for history in values)
+    margin = 0.12 * (high - low) or 1.0
+    axes.set_ylim(low - margin, high + margin)
 
 
 def motion_curves(response: Response) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times, an impact twice [s], rotations [rad] and velocities [rad/s] with every jump upright."""
+    """Return times [s], rotations [rad] and velocities [rad/s]; times of impacts appear twice, for vertical jumps."""
     dense_output = response.dense_output
     rotation, velocity = dense_output.evaluated(_INSIDE)
     time = dense_output.start[:, None] + _INSIDE * dense_output.length[:, None]
@@ -183,7 +183,7 @@ def motion_curves(response: Response) -> tuple[FloatArray, FloatArray, FloatArra
 
 
 def velocity_at(response: Response, time: Any) -> FloatArray:
-    """Return the angular velocity [rad/s] at any times [s] within a response; at an impact the one after it."""
+    """Return the angular velocity [rad/s] at times [s] within a response; at an impact, the velocity after it."""
     dense_output = response.dense_output
     t = np.clip(np.asarray(time, dtype=np.float64), 0.0, dense_output.end[-1])
     k = np.clip(np.searchsorted(dense_output.start, t, side="right") - 1, 0, dense_output.start.size - 1)
@@ -193,14 +193,14 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
 
 
 def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
-    """Return rotations [rad] over the slenderness angle of the side they stand on; from one on past the foot [-]."""
+    """Return rotations [rad] over the slenderness angle of their side; above 1 the centre is past the foot [-]."""
     parameters = response.parameters
     return rotation / np.where(rotation > 0.0, parameters.right.slenderness_angle, parameters.left.slenderness_angle)
 
 
 def shown_until(response: Response) -> float:
-    """Return the time up to which there is something to see: the motion, the last event, and a little rest [s]."""
-    end = float(response.time[-1]) or float(response.dense_output.end[-1])  # it may lie before the second sample
+    """Return the end of the plotted time: after the motion and the last event [s]."""
+    end = float(response.time[-1]) or float(response.dense_output.end[-1])  # the end may be before the second sample
     motion = float(response.time[-1]) if response.motion is None else response.motion.duration
     if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
         return min(end, motion) if response.outcome is Outcome.NO_UPLIFT else end
@@ -211,7 +211,7 @@ def shown_until(response: Response) -> float:
 
 
 def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
-    """Return times [s] and horizontal accelerations [m/s2] of the ground, jumps at the ends of the motion upright."""
+    """Return times [s] and horizontal accelerations [m/s2] of the ground, with vertical jumps at the ends."""
     segments = response.segments
     parts = np.arange(1 if isinstance(response.motion, GroundMotion) else 3)
     tau = np.append(parts / parts.size, 1.0)
@@ -221,16 +221,16 @@ def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
     return np.append(0.0, time), np.append(0.0, values)
 
 
-def ground_place(response: Response, time: FloatArray) -> FloatArray:
-    """Return the horizontal displacement of the ground [m] at some times [s], from rest, integrated exactly."""
+def ground_displacement_at(response: Response, time: FloatArray) -> FloatArray:
+    """Return the horizontal displacement of the ground [m] at times [s], from rest, integrated exactly."""
     segments = response.segments
     h, order = segments.step, np.arange(segments.degree + 1)
     c = response.scale * segments.horizontal
-    faster = h * (c / (order + 1)).sum(axis=1)
-    velocity = np.concatenate([[0.0], np.cumsum(faster)])
-    farther = h * velocity[:-1] + h * h * (c / ((order + 1) * (order + 2))).sum(axis=1)
-    place = np.concatenate([[0.0], np.cumsum(farther)])
+    velocity_steps = h * (c / (order + 1)).sum(axis=1)
+    velocity = np.concatenate([[0.0], np.cumsum(velocity_steps)])
+    displacement_steps = h * velocity[:-1] + h * h * (c / ((order + 1) * (order + 2))).sum(axis=1)
+    displacement = np.concatenate([[0.0], np.cumsum(displacement_steps)])
     k = np.clip((time / h).astype(np.int64), 0, segments.count - 1)
     tau = time / h - k
-    inside = (c[k] / ((order + 1) * (order + 2)) * tau[:, None] ** (order + 2)).sum(axis=1)
-    return np.asarray(place[k] + h * velocity[k] * tau + h * h * inside)
+    within_step = (c[k] / ((order + 1) * (order + 2)) * tau[:, None] ** (order + 2)).sum(axis=1)
+    return np.asarray(displacement[k] + h * velocity[k] * tau + h * h * within_step)

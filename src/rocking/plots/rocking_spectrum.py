@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation over the size of blocks, a curve for each slenderness, and what overturns."""
+"""Pictures of rocking spectra: peak rotation over the size of blocks, one curve per slenderness, and overturning."""
 
 import math
 from typing import TYPE_CHECKING
@@ -21,16 +21,16 @@ _BEYOND = 1e3
 
 
 @in_journal_style
-def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
-    r"""Draw rocking spectra: of one motion its curves, of several the median and the 16 % to 84 % band.
+def rocking_spectrum_picture(results: "xr.Dataset") -> "Figure":
+    r"""Draw rocking spectra: the curves of one motion, or the median and the 16 % to 84 % band of several.
 
-    Below the curves a strip shows the sizes at which a block overturns: as bars for one motion, as the share of the
-    motions for several. A curve has a gap where the block, or half of the motions, overturned.
+    A strip below the curves shows overturning by size: bars for one motion, the fraction of motions for several. A
+    curve has a gap at overturning of the block, or of half of the motions.
 
     Parameters
     ----------
-    found : xarray.Dataset
-        As of `rocking_spectrum`.
+    results : xarray.Dataset
+        Result of `rocking_spectrum`.
 
     Returns
     -------
@@ -40,99 +40,99 @@ def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
     Raises
     ------
     InvalidValueError
-        If these are no spectra.
+        If the dataset contains no spectra.
 
     Examples
     --------
     >>> import rocking as rk
     >>> from rocking.studies._rocking_spectrum import rocking_spectrum
-    >>> found = rocking_spectrum(rk.pulses.sine(amplitude=4.0, period=0.8), [0.2, 0.3], [2.0, 4.0, 8.0], 0.9)
-    >>> rocking_spectrum_picture(found).axes[1].get_xlabel()
+    >>> results = rocking_spectrum(rk.pulses.sine(amplitude=4.0, period=0.8), [0.2, 0.3], [2.0, 4.0, 8.0], 0.9)
+    >>> rocking_spectrum_picture(results).axes[1].get_xlabel()
     '$2\\pi\\,/\\,p$ [s]'
     """
-    if not hasattr(found, "data_vars") or set(found.sizes) < {"motion", "slenderness_angle", "period"}:
-        raise InvalidValueError(parameter="found", allowed="of rocking_spectrum", value=found)
+    if not hasattr(results, "data_vars") or set(results.sizes) < {"motion", "slenderness_angle", "period"}:
+        raise InvalidValueError(parameter="results", allowed="of rocking_spectrum", value=results)
     figure, (upper, lower) = new_figure(SINGLE, 3.4, rows=2, sharex=True, height_ratios=[3.2, 1.0])
-    for place, alpha in enumerate(found["slenderness_angle"].values.tolist()):
-        _curve(upper, found, place, float(alpha))
+    for index, alpha in enumerate(results["slenderness_angle"].values.tolist()):
+        _curve(upper, results, index, float(alpha))
     upper.set_ylabel(PEAK)
-    # the highest point of the curves and of what is known of the bands
-    parts = [part for place in range(found.sizes["slenderness_angle"]) for part in fractiles(found, place)]
-    highest = max([0.05, *(float(np.nanmax(part)) for part in parts if np.isfinite(part).any())])
+    # the highest point of the curves and of the finite parts of the bands
+    curves = [curve for index in range(results.sizes["slenderness_angle"]) for curve in fractiles(results, index)]
+    highest = max([0.05, *(float(np.nanmax(curve)) for curve in curves if np.isfinite(curve).any())])
     upper.set_ylim(0.0, 1.08 * highest)
     upper.legend(loc="upper right", title=r"$\alpha$ [rad]", title_fontsize=7, handlelength=2.4)
-    _overturning(lower, found)
+    _overturning(lower, results)
     lower.set_xlabel(r"$2\pi\,/\,p$ [s]")
-    _sizes(upper, found)
-    figure.suptitle(_words(found), x=0.01, ha="left", fontsize=7)
+    _sizes(upper, results)
+    figure.suptitle(_words(results), x=0.01, ha="left", fontsize=7)
     return figure
 
 
-def _words(found: "xr.Dataset") -> str:
-    names = found["motion"].values.tolist()
-    what = plain(names[0]) if len(names) == 1 else f"{len(names)} motions: median, and 16 % to 84 %"
-    scale = float(found.attrs.get("scale", 1.0))
+def _words(results: "xr.Dataset") -> str:
+    names = results["motion"].values.tolist()
+    motions_text = plain(names[0]) if len(names) == 1 else f"{len(names)} motions: median, and 16 % to 84 %"
+    scale = float(results.attrs.get("scale", 1.0))
     factor = "" if scale == 1.0 else f"{scale:g} times "
-    return f"{factor}{what}; restitution {plain(found.attrs.get('restitution', ''))}"
+    return f"{factor}{motions_text}; restitution {plain(results.attrs.get('restitution', ''))}"
 
 
-def _curve(axes: "Axes", found: "xr.Dataset", place: int, alpha: float) -> None:
-    period = np.asarray(found["period"].values)
-    low, middle, high = fractiles(found, place)
+def _curve(axes: "Axes", results: "xr.Dataset", index: int, alpha: float) -> None:
+    period = np.asarray(results["period"].values)
+    low, middle, high = fractiles(results, index)
     label = f"{alpha:.3g}"
-    if found.sizes["motion"] > 1:
-        # where 84 % overturned the band goes on beyond the panel
+    if results.sizes["motion"] > 1:
+        # the band extends beyond the panel if 84 % overturned
         high = np.where(np.isfinite(low) & np.isnan(high), _BEYOND, high)
-        axes.fill_between(period, low, high, color=look(place)["color"], alpha=0.15, linewidth=0)
-    axes.plot(period, middle, label=label, linewidth=1.0, **look(place))
-    known = np.pad(np.isfinite(middle), 1)
-    alone = known[1:-1] & ~known[:-2] & ~known[2:]
-    axes.plot(period[alone], middle[alone], linestyle="none", marker=".", color=look(place)["color"])
+        axes.fill_between(period, low, high, color=look(index)["color"], alpha=0.15, linewidth=0)
+    axes.plot(period, middle, label=label, linewidth=1.0, **look(index))
+    finite = np.pad(np.isfinite(middle), 1)
+    isolated = finite[1:-1] & ~finite[:-2] & ~finite[2:]
+    axes.plot(period[isolated], middle[isolated], linestyle="none", marker=".", color=look(index)["color"])
 
 
-def fractiles(found: "xr.Dataset", place: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return 16 %, 50 % and 84 % of the peak rotation by period [-]; NaN where that overturned or is unknown."""
-    part = found.isel(slenderness_angle=place)
-    mode = np.asarray(part["mode"].values)
-    peak = np.where(mode >= 0, math.inf, np.asarray(part["peak_ratio"].values))
+def fractiles(results: "xr.Dataset", index: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return quantiles (16 %, 50 %, 84 %) of the peak rotation by period [-]; NaN for overturning or no result."""
+    selected = results.isel(slenderness_angle=index)
+    mode = np.asarray(selected["mode"].values)
+    peak = np.where(mode >= 0, math.inf, np.asarray(selected["peak_ratio"].values))
     low, middle, high = quantiles(np.where(mode == -3, np.nan, peak), (0.16, 0.5, 0.84))
-    return tuple(np.where(np.isfinite(part), part, np.nan) for part in (low, middle, high))  # type: ignore[return-value]
+    return tuple(np.where(np.isfinite(curve), curve, np.nan) for curve in (low, middle, high))  # type: ignore[return-value]
 
 
-def _overturning(axes: "Axes", found: "xr.Dataset") -> None:
-    """Draw what overturns: bars for one motion, shares for several."""
-    period = np.asarray(found["period"].values)
-    mode = np.asarray(found["mode"].values)
-    angles = found["slenderness_angle"].values
-    if found.sizes["motion"] == 1:
+def _overturning(axes: "Axes", results: "xr.Dataset") -> None:
+    """Draw overturning: bars for one motion, fractions for several."""
+    period = np.asarray(results["period"].values)
+    mode = np.asarray(results["mode"].values)
+    angles = results["slenderness_angle"].values
+    if results.sizes["motion"] == 1:
         edges = np.concatenate([period[:1], np.sqrt(period[1:] * period[:-1]), period[-1:]])
         bars = np.column_stack([edges[:-1], np.diff(edges)])
-        for place in range(angles.size):
-            axes.axhline(place, color=PALE, linewidth=0.6, zorder=0)
-            spans = bars[mode[0, place] >= 0].tolist()
-            axes.broken_barh(spans, (place - 0.3, 0.6), facecolor=look(place)["color"], linewidth=0)
+        for index in range(angles.size):
+            axes.axhline(index, color=PALE, linewidth=0.6, zorder=0)
+            spans = bars[mode[0, index] >= 0].tolist()
+            axes.broken_barh(spans, (index - 0.3, 0.6), facecolor=look(index)["color"], linewidth=0)
         axes.set_ylim(angles.size - 0.4, -0.6)
         axes.set_yticks(range(angles.size), [f"{alpha:.3g}" for alpha in angles])
         axes.set_ylabel("overturns,\n" + r"$\alpha$ [rad]")
         return
-    with np.errstate(invalid="ignore"):  # where nothing could be computed there is no share
-        shares = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
-    for place, share in enumerate(shares):
-        axes.plot(period, share, linewidth=1.0, **look(place))
+    with np.errstate(invalid="ignore"):  # sizes without a result have no fraction
+        fractions = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
+    for index, fraction in enumerate(fractions):
+        axes.plot(period, fraction, linewidth=1.0, **look(index))
     axes.set_ylim(-0.03, 1.03)
-    axes.set_ylabel("share over-\nturned [-]")
+    axes.set_ylabel("fraction over-\nturned [-]")
 
 
-def _sizes(axes: "Axes", found: "xr.Dataset") -> None:
+def _sizes(axes: "Axes", results: "xr.Dataset") -> None:
     """Scale the axes, and show the semi-diagonal above."""
-    period = np.asarray(found["period"].values)
+    period = np.asarray(results["period"].values)
     if period.size > 1:
         axes.set_xlim(period[0], period[-1])
-    gravity = float(found.attrs.get("setting_gravity", conventions.g))
+    gravity = float(results.attrs.get("setting_gravity", conventions.g))
     per = 0.75 * gravity / (4.0 * math.pi**2)
     pair = (lambda t: per * np.square(t), lambda size: np.sqrt(np.maximum(size, 0.0) / per))
     if geometric(period):
-        plain_log(axes, "x")  # before the axis above is made, which takes its scale from here
+        plain_log(axes, "x")  # before the upper axis, which copies this scale
     above = axes.secondary_xaxis("top", functions=pair)
     above.set_xlabel("semi-diagonal R [m]")
     if geometric(period):

@@ -1,4 +1,4 @@
-"""A figure that a notebook shows by itself: without pyplot, IPython does not know how to."""
+"""A figure that a notebook displays without pyplot."""
 
 from collections.abc import Mapping
 from io import BytesIO
@@ -11,7 +11,7 @@ _DOTS, _PIXELS = 144.0, 96.0  # dots of the image, and pixels of a page, per inc
 
 
 class ShownFigure(Figure):
-    """A matplotlib figure that is an image wherever IPython displays it, in a style of its own."""
+    """A matplotlib figure that IPython displays as an image, in its own style."""
 
     def __init__(self, style: Mapping[str, Any], **options: Any) -> None:
         super().__init__(**options)

@@ -1,4 +1,4 @@
-"""Bodies in space: where they lose energy, in which ways they can stand, and how high the centre is between."""
+"""Pictures of 3D bodies: energy loss, stable poses, and height of the centre of mass between them."""
 
 import math
 from typing import TYPE_CHECKING, Any, cast
@@ -40,14 +40,14 @@ _MOST_TRIANGLES = 60_000
 
 @in_journal_style
 def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18.0) -> "Figure":
-    """Draw a body on its base, seen along parallel rays.
+    """Draw a body on its base in parallel projection.
 
     Parameters
     ----------
     solid : Solid
         The body.
     azimuth, elevation : float
-        Direction it is seen from [degree].
+        Direction of view [degree].
 
     Returns
     -------
@@ -64,21 +64,22 @@ def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18
 def energy_picture(
     result: SpatialRestitution, *, divisions: int = 16, azimuth: float = -60.0, elevation: float = 18.0
 ) -> "Figure":
-    """Draw where a body loses its energy in an impact: unit by unit, in an upright slice, and over the height.
+    """Draw the energy loss of a body in an impact: by unit, in a vertical slice, and over the height.
 
     Parameters
     ----------
     result : SpatialRestitution
         The impact.
     divisions : int
-        Cubes along the longest side of the body [-].
+        Number of cubes along the longest side of the body [-].
     azimuth, elevation : float
-        Direction it is seen from [degree].
+        Direction of view [degree].
 
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels: J/m3 of the units and in the slice through the centre across the axis, J/m over the height.
+        Three panels: loss of the units and in the slice through the centre across the axis [J/m3], and over the height
+        [J/m].
     """
     impact = result.impact
     figure, axes = new_figure(DOUBLE, 3.4, columns=3, width_ratios=[1.0, 1.0, 0.7])
@@ -95,21 +96,21 @@ def energy_picture(
 
 @in_journal_style
 def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions: int = 24) -> "Figure":
-    """Draw the energy lost in level slices of a body.
+    """Draw the energy loss in horizontal slices of a body.
 
     Parameters
     ----------
     result : SpatialRestitution
         The impact.
     heights : ndarray, shape (n,)
-        Heights of the slices over the ground [m].
+        Heights of the slices above the ground [m].
     divisions : int
-        Points along each side of a slice, times four [-].
+        A quarter of the number of points along each side of a slice [-].
 
     Returns
     -------
     matplotlib.figure.Figure
-        One panel a slice, one colour bar [J/m3].
+        One panel per slice, one colour bar [J/m3].
 
     Raises
     ------
@@ -126,7 +127,7 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
     top = max(float(np.nanmax(field)) for _, field, _ in fields)
     for panel, (height, field, extent) in zip(axes, fields, strict=True):
         image = panel.imshow(field.T, origin="lower", extent=extent, cmap=_COLOURS, vmin=0.0, vmax=top)
-        panel.set_title(f"{height:.3g} m over the ground", loc="left")
+        panel.set_title(f"{height:.3g} m above the ground", loc="left")
         panel.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
     figure.colorbar(image, ax=axes, label="energy lost [J/m$^3$]", shrink=0.8)
@@ -134,15 +135,15 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
 
 
 def shaded_solid(axes: "Axes", solid: Solid, azimuth: float = -60.0, elevation: float = 18.0) -> None:
-    """Draw a body and its base into a panel, seen along parallel rays [degree]."""
+    """Draw a body and its base into a panel in parallel projection; angles of view [degree]."""
     _shaded(axes, _surface(solid, 8), None, _frame(azimuth, elevation))
     _base(axes, solid, _frame(azimuth, elevation))
 
 
 def _surface(solid: Solid, divisions: int) -> FloatArray:
     pieces = []
-    for part in solid.local_parts:
-        for surface in part.surfaces():
+    for solid_part in solid.local_parts:
+        for surface in solid_part.surfaces():
             fine = isinstance(surface, TriangleSurface) and len(surface.corners) * divisions**2 > _MOST_TRIANGLES
             pieces.append(surface.triangles(1 if fine else divisions))
     return np.concatenate(pieces)
@@ -192,13 +193,13 @@ def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
 def _cubes(solid: Solid, energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
     cube = box(side, side, side).corners - np.array([0.0, 0.0, 0.5 * side])
     triangles = (energies.units.centre[:, None, None] + cube).reshape(-1, 3, 3)
-    # a unit at the surface is a part of a cube: what counts is the loss over its own volume
-    density = np.array([part.density for part in solid.local_parts])[energies.units.part]
+    # a unit at the surface is a fraction of a cube: the loss is relative to its own volume
+    density = np.array([solid_part.density for solid_part in solid.local_parts])[energies.units.part]
     return triangles, np.repeat(energies.density * density, len(cube))
 
 
 def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
-    # the upright plane through the centre, across the axis that the body turns about
+    # the vertical plane through the centre, across the axis of rotation of the body
     along = impact.onto.direction if isinstance(impact.onto, Edge) else impact.velocity / impact.speed
     across = np.array([along[1], -along[0], 0.0])
     across /= max(float(np.linalg.norm(across)), 1e-300)
@@ -215,7 +216,7 @@ def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
     image = axes.imshow(field.T, origin="lower", extent=(-reach, reach, 0.0, top), cmap=_COLOURS, vmin=0.0)
     axes.set_xlabel("across the axis [m]")
     axes.set_ylabel("height [m]")
-    axes.set_title("upright slice through the centre", loc="left")
+    axes.set_title("vertical slice through the centre", loc="left")
     return image
 
 
@@ -235,9 +236,9 @@ def _profile(axes: "Axes", result: SpatialRestitution, count: int) -> None:
 
 def _field(impact: SpatialImpact, points: FloatArray) -> FloatArray:
     field = np.full(len(points), np.nan)
-    for part in impact.solid.parts:
-        held = part.contains(points)
-        field[held] = lost_density(impact, part, points[held])
+    for solid_part in impact.solid.parts:
+        is_inside = solid_part.contains(points)
+        field[is_inside] = lost_density(impact, solid_part, points[is_inside])
     return field
 
 
@@ -255,59 +256,67 @@ _TILTS, _AZIMUTHS, _FEW, _MANY = 91, 181, 40, 24
 
 
 @in_journal_style
-def equilibria_picture(solid: Solid, pose: StablePose | None = None, *, found: Equilibria | None = None) -> "Figure":
-    """Draw how high a body's centre of mass is, whichever way it leans, and the body on its support polygon.
+def equilibria_picture(
+    solid: Solid, pose: StablePose | None = None, *, equilibria: Equilibria | None = None
+) -> "Figure":
+    """Draw the height of a body's centre of mass in all orientations, and the body on its support polygon.
 
     Parameters
     ----------
     solid : Solid
         The body.
     pose : StablePose, optional
-        In which it stands, in the middle of the map; by default the one into which it settles from its way up.
-    found : Equilibria, optional
-        Its equilibria, if they are known already.
+        Pose in the centre of the map; default: the stable pose nearest to the orientation of the solid.
+    equilibria : Equilibria, optional
+        Equilibria of the solid, if computed before.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A polar map, the rise of the centre by tilt and azimuth [mm], with stable poses, saddles and summits; the
-        base from above, with the plumb line; the body as it stands in the pose.
+        Polar map of the rise of the centre of mass by tilt and azimuth [mm], with stable poses, saddles and summits;
+        the base in plan, with the projection of the centre of mass; the body in the pose.
     """
-    known = solid.equilibria() if found is None else found
-    start = known.settling((0.0, 0.0, -1.0)) if pose is None else pose
+    computed = solid.equilibria() if equilibria is None else equilibria
+    start = computed.settling((0.0, 0.0, -1.0)) if pose is None else pose
     figure, axes = new_figure(DOUBLE, 3.1, columns=3, width_ratios=[1.25, 0.9, 0.9])
-    place: Any = axes[0].get_subplotspec()
+    subplot: Any = axes[0].get_subplotspec()
     axes[0].remove()
-    _landscape(figure, cast("PolarAxes", figure.add_subplot(place, projection="polar")), known, start)
+    _landscape(figure, cast("PolarAxes", figure.add_subplot(subplot, projection="polar")), computed, start)
     _support(axes[1], start)
     shaded_solid(axes[2], solid.settled(start))
-    axes[2].set_title(f"{known.mass:.4g} kg,\ncentre {start.height:.4g} m high", loc="left")
+    axes[2].set_title(f"{computed.mass:.4g} kg,\ncentre {start.height:.4g} m high", loc="left")
     return figure
 
 
-def _landscape(figure: "Figure", axes: "PolarAxes", found: Equilibria, pose: StablePose) -> None:
+def _landscape(figure: "Figure", axes: "PolarAxes", equilibria: Equilibria, pose: StablePose) -> None:
     tilt, azimuth = np.linspace(0.0, math.pi, _TILTS), np.linspace(0.0, 2.0 * math.pi, _AZIMUTHS)
-    lean = np.sin(tilt)[:, None] * np.stack([np.cos(azimuth), np.sin(azimuth)])[:, None, :]
-    downward = np.stack([*lean, np.broadcast_to(-np.cos(tilt)[:, None], lean[0].shape)], axis=-1)
-    rise = 1e3 * (found.height(downward @ pose.rotation) - pose.height)
+    horizontal = np.sin(tilt)[:, None] * np.stack([np.cos(azimuth), np.sin(azimuth)])[:, None, :]
+    downward = np.stack([*horizontal, np.broadcast_to(-np.cos(tilt)[:, None], horizontal[0].shape)], axis=-1)
+    rise = 1e3 * (equilibria.height(downward @ pose.rotation) - pose.height)
     image = axes.contourf(azimuth, np.rad2deg(tilt), rise, levels=24, cmap="cividis")
     axes.contour(azimuth, np.rad2deg(tilt), rise, levels=12, colors="white", linewidths=0.25, linestyles="solid")
     handles = []
-    for kind, members in (("summit", found.summits), ("saddle", found.saddles), ("stable", found.stable)):
+    for kind, members in (
+        ("summit", equilibria.summits),
+        ("saddle", equilibria.saddles),
+        ("stable", equilibria.stable),
+    ):
         mark, color = _MARKS[kind]
-        places = np.array([tilt_towards(pose, one.down) for one in members]).reshape(-1, 2)
+        positions = np.array([tilt_towards(pose, member.down) for member in members]).reshape(-1, 2)
         edge: dict[str, Any] = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
-        size = 22.0 * min(1.0, _MANY / max(len(members), 1))  # many marks do not cover one another, nor the pose
+        size = 22.0 * min(1.0, _MANY / max(len(members), 1))  # small marks if there are many
         level = 5 if kind == "stable" else 4
-        axes.scatter(places[:, 1], np.rad2deg(places[:, 0]), s=size, marker=mark, color=color, zorder=level, **edge)
-        # white on white paper cannot be seen in a legend
+        axes.scatter(
+            positions[:, 1], np.rad2deg(positions[:, 0]), s=size, marker=mark, color=color, zorder=level, **edge
+        )
+        # white marks are invisible in a legend on white paper
         shown = INK if color == "white" else color
         name = kind if len(members) == 1 or kind == "stable" else f"{kind}s"
         handles.append(stroke(f"{len(members)} {name}", marker=mark, color=shown, linestyle="none"))
     axes.scatter([0.0], [0.0], s=22, marker=_MARKS["stable"][0], color=_MARKS["stable"][1], zorder=6,
                  edgecolors="white", linewidths=0.5)  # fmt: skip
-    if found.rings:
-        handles.insert(0, stroke(f"{len(found.rings)} rings, not marked", linestyle="none"))
+    if equilibria.rings:
+        handles.insert(0, stroke(f"{len(equilibria.rings)} rings, not marked", linestyle="none"))
     axes.set_rlim(0.0, 180.0)
     axes.set_rgrids([60.0, 120.0], labels=["60°", "120°"], color="white")
     axes.set_thetagrids([0.0, 90.0, 180.0, 270.0], labels=["x", "y", "\N{MINUS SIGN}x", "\N{MINUS SIGN}y"])
@@ -332,4 +341,4 @@ def _support(axes: "Axes", pose: StablePose) -> None:
     axes.margins(0.1)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
-    axes.set_title(f"support polygon,\nnearest edge {1e3 * pose.edge_distances[nearest]:.3g} mm off", loc="left")
+    axes.set_title(f"support polygon,\nnearest edge at {1e3 * pose.edge_distances[nearest]:.3g} mm", loc="left")

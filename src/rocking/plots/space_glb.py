@@ -1,4 +1,4 @@
-"""A body in space as glTF (.glb): its surface, how it can stand, and how it moves, for 3D programs and for the page."""
+"""A 3D body as glTF (.glb): surface, stable poses and motion, for 3D programs and for the page."""
 
 import json
 import struct
@@ -18,15 +18,15 @@ from rocking.version import SOFTWARE
 
 _TYPES = {np.dtype(np.float32): 5126, np.dtype(np.uint32): 5125, np.dtype(np.uint8): 5121}
 _SHAPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
-_Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # turns z up, as here, into y up, as glTF has it
-_ROUND = 90  # corners by which a round base is drawn
-_FEW, _DIVISIONS = 10_000, 8  # fewer flat faces are split, so that colours change within them; pieces of what is round
+_Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # rotates z up into y up, the convention of glTF
+_ROUND = 90  # number of corners of a round base
+_FEW, _DIVISIONS = 10_000, 8  # minimum number of flat faces, by splitting, for colours; divisions of round surfaces
 
 
 class GltfFile:
-    """A body in space and what was found about it, as one file of glTF."""
+    """A 3D body and its results as one glTF file."""
 
-    # what glTF has no word for stands in `extras`, in m and s, z up, from the centre of mass in the axes of the body
+    # quantities without a place in glTF are in `extras`: m and s, z up, from the centre of mass in the body's axes
     def __init__(self, solid: Solid) -> None:
         self.solid = solid
         self.binary = bytearray()
@@ -41,62 +41,65 @@ class GltfFile:
         self.attributes = {"POSITION": self._add(self.points.astype(np.float32), bounds=True)}
         indices = self._add(faces.astype(np.uint32).ravel())
         self.document["meshes"] = [{"primitives": [{"attributes": self.attributes, "indices": indices}]}]
-        name, place = solid.name or "body", moments.centre
-        self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(place[2])]})
-        corners = corners_of(solid) - place
-        self.extras: dict[str, Any] = {"height": float(place[2]), "base": corners.tolist()}
+        name, centre = solid.name or "body", moments.centre
+        self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(centre[2])]})
+        corners = corners_of(solid) - centre
+        self.extras: dict[str, Any] = {"height": float(centre[2]), "base": corners.tolist()}
         if len(mended := _mended(solid)):
-            self.extras["mended"] = self._add((mended - place).reshape(-1, 3).astype(np.float32))
+            self.extras["mended"] = self._add((mended - centre).reshape(-1, 3).astype(np.float32))
 
-    def stands(self, found: Equilibria, pose: StablePose) -> None:
-        """Add the poses, what lies between them, and how high its centre is where each point of it is the lowest."""
-        heights = found.height(self.points)
-        low, high = found.stable[0].height, float(heights.max())
+    def add_equilibria(self, equilibria: Equilibria, pose: StablePose) -> None:
+        """Add stable poses, saddles and summits, and the height of the centre of mass above each lowest point."""
+        heights = equilibria.height(self.points)
+        low, high = equilibria.stable[0].height, float(heights.max())
         self.attributes["COLOR_0"] = self._add(_coloured((heights - low) / (high - low)))
         self.extras |= {
             "stands_in": pose.number, "landscape": [low, high],
             "poses": [
                 {
-                    "turn": _quaternion(each.rotation), "height": each.height, "energy": each.energy,
-                    "barrier": each.barrier if np.isfinite(each.barrier) else None, "support": each.support.tolist(),
-                    "up_in_file": (-self.solid.turn.T @ each.down).tolist(),
+                    "turn": _quaternion(member.rotation), "height": member.height, "energy": member.energy,
+                    "barrier": member.barrier if np.isfinite(member.barrier) else None,
+                    "support": member.support.tolist(),
+                    "up_in_file": (-self.solid.turn.T @ member.down).tolist(),
                 }
-                for each in found.stable
+                for member in equilibria.stable
             ],
             "marks": [
                 {
-                    "kind": each.kind, "place": (each.points.mean(axis=0) - found.centre).tolist(),
-                    "height": each.height, "energy": each.energy,
+                    "kind": member.kind, "place": (member.points.mean(axis=0) - equilibria.centre).tolist(),
+                    "height": member.height, "energy": member.energy,
                 }
-                for each in (*found.stable, *found.saddles, *found.summits)
+                for member in (*equilibria.stable, *equilibria.saddles, *equilibria.summits)
             ],
         }  # fmt: skip
 
-    def edges(self, edges: list[dict[str, Any]]) -> None:
-        """Add edges of the base, as `rocking restitution` numbers them."""
+    def add_edges(self, edges: list[dict[str, Any]]) -> None:
+        """Add edges of the base, with the numbers of `rocking restitution`."""
         from_centre = np.array([*self.solid.centre[:2], 0.0])
         height = -self.extras["height"]
 
-        def place(corner: list[float]) -> list[float]:
+        def vertex(corner: list[float]) -> list[float]:
             return (np.array([*corner, height]) - from_centre).tolist()  # type: ignore[no-any-return]
 
         self.extras["edges"] = [
-            {"name": each["edge"], "from": place(each["edge_start"]), "to": place(each["edge_end"])} for each in edges
+            {"name": edge["edge"], "from": vertex(edge["edge_start"]), "to": vertex(edge["edge_end"])} for edge in edges
         ]
 
-    def moves(self, response: HullResponse) -> None:
-        """Add the motion as an animation, the tilt, and the vertices by whose numbers contacts are told."""
+    def add_motion(self, response: HullResponse) -> None:
+        """Add the motion as an animation, the tilt, and the vertices of the hull."""
         scene = HullScene.of(response)
-        turn = np.roll(scene.quaternion, -1, axis=1)  # the scalar last, as glTF has it
-        turn[1:] *= np.cumprod(np.where((turn[1:] * turn[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
+        quaternion = np.roll(scene.quaternion, -1, axis=1)  # scalar last, the convention of glTF
+        quaternion[1:] *= np.cumprod(np.where((quaternion[1:] * quaternion[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
         time = self._add(scene.time.astype(np.float32), bounds=True)
-        samplers = [{"input": time, "output": self._add(each.astype(np.float32))} for each in (turn, scene.centre)]
+        samplers = [
+            {"input": time, "output": self._add(values.astype(np.float32))} for values in (quaternion, scene.centre)
+        ]
         channels = [
             {"sampler": k, "target": {"node": 1, "path": path}} for k, path in enumerate(("rotation", "translation"))
         ]
         self.document["animations"] = [{"samplers": samplers, "channels": channels}]
         node = self.document["nodes"][1]
-        node["rotation"], node["translation"] = turn[0].tolist(), scene.centre[0].tolist()
+        node["rotation"], node["translation"] = quaternion[0].tolist(), scene.centre[0].tolist()
         self.extras["tilt"] = self._add(scene.tilt.astype(np.float32))
         self.extras["hull"] = self._add(scene.points.astype(np.float32))
 
@@ -105,12 +108,12 @@ class GltfFile:
         self.document |= {"buffers": [{"byteLength": len(self.binary)}], "extras": {"rocking": self.extras}}
         text = json.dumps(self.document, allow_nan=False, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
-        whole = 28 + len(text) + len(self.binary)
-        head = struct.pack("<4sII I4s", b"glTF", 2, whole, len(text), b"JSON")
+        length = 28 + len(text) + len(self.binary)
+        head = struct.pack("<4sII I4s", b"glTF", 2, length, len(text), b"JSON")
         path.write_bytes(head + text + struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary)
 
     def _add(self, values: np.ndarray, *, bounds: bool = False) -> int:
-        """Put an array into the file, a row an element; return the number of its accessor."""
+        """Add an array to the file, one row per element; return the index of its accessor."""
         data, kind = np.ascontiguousarray(values), _TYPES[values.dtype]
         view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": data.nbytes}
         accessor: dict[str, Any] = {
@@ -129,7 +132,7 @@ class GltfFile:
 
 def _triangles(solid: Solid) -> FloatArray:
     pieces = []
-    for surface in (surface for part in solid.local_parts for surface in part.surfaces()):
+    for surface in (surface for solid_part in solid.local_parts for surface in solid_part.surfaces()):
         if not isinstance(surface, TriangleSurface):
             pieces.append(surface.triangles(_DIVISIONS))
             continue
@@ -141,10 +144,10 @@ def _triangles(solid: Solid) -> FloatArray:
 
 
 def _mended(solid: Solid) -> FloatArray:
-    """Return the triangles that closed holes, in place."""
+    """Return the triangles of closed holes, in the frame of the body."""
     return np.concatenate([
-        placed_points(part.shape.mended, part.rotation, part.translation)
-        for part in solid.local_parts if isinstance(part.shape, Polyhedron)
+        placed_points(solid_part.shape.mended, solid_part.rotation, solid_part.translation)
+        for solid_part in solid.local_parts if isinstance(solid_part.shape, Polyhedron)
     ] or [np.empty((0, 3, 3))])  # fmt: skip
 
 
@@ -160,7 +163,7 @@ def corners_of(solid: Solid) -> FloatArray:
 
 
 def _coloured(share: FloatArray) -> np.ndarray:
-    """Return the colours that the picture of the equilibria has, as glTF wants them: linear, not as on a screen."""
+    """Return the colours of the picture of the equilibria in linear RGB, the convention of glTF."""
     from matplotlib import colormaps
 
     seen = colormaps["cividis"](np.clip(share, 0.0, 1.0))
@@ -170,11 +173,11 @@ def _coloured(share: FloatArray) -> np.ndarray:
 
 
 def _quaternion(turn: FloatArray) -> list[float]:
-    """Return a shortest rotation onto -z, the scalar last."""
-    # about the horizontal axis (t12 - t21, ...) / (2 s) with s^2 = (1 + trace) / 4; by half a turn about x at last
+    """Return the quaternion of a rotation, scalar last."""
+    # about the horizontal axis (t12 - t21, ...) / (2 s) with s^2 = (1 + trace) / 4; half a turn about x in the limit
     scalar = 0.5 * np.sqrt(max(0.0, 1.0 + float(np.trace(turn))))
     if scalar < 1e-9:
         return [1.0, 0.0, 0.0, 0.0]
     axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / (4.0 * scalar)
-    whole = np.array([*axis, scalar])
-    return (whole / np.linalg.norm(whole)).tolist()  # type: ignore[no-any-return]
+    quaternion = np.array([*axis, scalar])
+    return (quaternion / np.linalg.norm(quaternion)).tolist()  # type: ignore[no-any-return]

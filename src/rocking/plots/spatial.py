@@ -1,4 +1,4 @@
-"""A response in space: path of the top seen from above, on what the body stands, tilt and direction over time."""
+"""Picture of a 3D response: path of the top in plan, contact, tilt and its azimuth over time."""
 
 from typing import TYPE_CHECKING
 
@@ -24,22 +24,22 @@ _COLOURS = {
 _SLIDES = "#AC8191"
 _ON = {"face": PALE, "edge": "#0070B2", "vertex": "#AC5B2B", "flight": "#008FE6"}
 _IMPACT, _TOP = "#D96C00", "#0070B2"
-_SMALL = 1e-3  # below this share of the largest tilt the body leans nowhere in particular
+_SMALL = 1e-3  # below this fraction of the largest tilt, the azimuth has no meaning
 
 
 @in_journal_style
 def spatial_picture(response: SpatialResponse | HullResponse) -> "Figure":
-    """Draw a response in space.
+    """Draw a 3D response.
 
     Parameters
     ----------
     response : SpatialResponse or HullResponse
-        What `simulate` or `free_rocking` returned of a body in space, without or with friction.
+        Result of `simulate` or `free_rocking` for a 3D body, without or with friction.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The path of the top, or of the centre of mass, in plan; tilt, direction of leaning and contact over time.
+        Path of the top, or of the centre of mass, in plan; tilt, azimuth of the tilt and contact over time.
 
     Examples
     --------
@@ -98,11 +98,11 @@ def _picture(
     return figure
 
 
-def _plan(axes: "Axes", outline: FloatArray, top: FloatArray, words: str) -> None:
+def _plan(axes: "Axes", outline: FloatArray, path: FloatArray, path_label: str) -> None:
     axes.fill(outline[:, 0], outline[:, 1], facecolor="none", edgecolor=GREY, linewidth=0.8, label="base at the start")
-    axes.plot(top[:, 0], top[:, 1], color=_TOP, linewidth=0.8, label=words)
-    axes.plot(top[:1, 0], top[:1, 1], marker="o", markersize=3.5, color=INK, linestyle="none", label="start")
-    axes.plot(top[-1:, 0], top[-1:, 1], marker="s", markersize=3.5, color=_IMPACT, linestyle="none", label="end")
+    axes.plot(path[:, 0], path[:, 1], color=_TOP, linewidth=0.8, label=path_label)
+    axes.plot(path[:1, 0], path[:1, 1], marker="o", markersize=3.5, color=INK, linestyle="none", label="start")
+    axes.plot(path[-1:, 0], path[-1:, 1], marker="s", markersize=3.5, color=_IMPACT, linestyle="none", label="end")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x [m]", ylabel="y [m]")
     legend_above(axes, 2)
@@ -119,7 +119,7 @@ def _tilt(axes: "Axes", response: SpatialResponse | HullResponse, reach: float |
             label=f"impacts ({times.size})",
         )  # fmt: skip
     if reach is not None and (response.outcome is Outcome.OVERTURNED or np.degrees(response.tilt).max() > 0.3 * reach):
-        axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=DASHED, label="least slenderness angle")
+        axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=DASHED, label="smallest slenderness angle")
     axes.set_ylim(bottom=0.0)
     if axes.get_legend_handles_labels()[0]:
         legend_above(axes, 2)
@@ -133,7 +133,7 @@ def _direction(axes: "Axes", response: SpatialResponse | HullResponse) -> None:
     axes.set_ylim(-190.0, 190.0)
     axes.set_yticks([-180, -90, 0, 90, 180])
     axes.grid(axis="y", color=PALE, linewidth=0.5)
-    axes.set_ylabel("leans towards\n[degrees]")
+    axes.set_ylabel("azimuth of tilt\n[degrees]")
 
 
 def _contact(axes: "Axes", regimes: list[tuple[float, float, str, str]], until: float) -> None:

@@ -1,4 +1,4 @@
-"""One journal style for every picture: sizes, colours, and files that come out the same every time."""
+"""One journal style for all pictures: sizes, colours and reproducible files."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -30,10 +30,10 @@ INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 COLORS = ("#0070B2", "#D96C00", "#009960", "#AC8191", "#AC5B2B", "#008FE6")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 MARKS = "osv^D<"
-"""Colours that every kind of sight tells apart, with a line and a mark for each, so that grey print does too."""
+"""Colours for all types of colour vision, each with its line and mark for print in grey."""
 
 _OVERHANG = 12.0  # dots by which a label may be longer than its axis
-DASHED = (0, (4, 2))  # how limits are drawn
+DASHED = (0, (4, 2))  # line style of limits
 
 _SETTINGS: Any = {
     "font.family": "sans-serif",
@@ -68,7 +68,7 @@ def model_styles() -> dict[str, dict[str, Any]]:
 
 
 def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
-    """Let a drawing function run in the journal style, refusing with `MissingExtraError` without matplotlib."""
+    """Return a drawing function that runs in the journal style; it raises `MissingExtraError` without matplotlib."""
 
     @wraps(draw)
     def styled(*args: P.args, **options: P.kwargs) -> T:
@@ -85,47 +85,47 @@ def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
 
 
 def _fit_labels(figure: "Figure") -> None:
-    """Break labels that are longer than their axis, so that none is cut off or runs into its neighbour's."""
+    """Break labels that are longer than their axis into lines."""
     shown = [axes for axes in figure.axes if axes.get_visible()]
-    both = [(axes.bbox, axes.xaxis.label, "width") for axes in shown]
-    both += [(axes.bbox, axes.yaxis.label, "height") for axes in shown]
-    # what was broken by hand stays so, and a single word cannot be broken
-    labels = [one for one in both if " " in (words := one[1].get_text()) and "\n" not in words]
-    # panels are laid out, which takes its time, only where a label may be too long
-    if any(_excess(*one) > -0.15 * getattr(one[0], one[2]) for one in labels):
+    candidates = [(axes.bbox, axes.xaxis.label, "width") for axes in shown]
+    candidates += [(axes.bbox, axes.yaxis.label, "height") for axes in shown]
+    # labels with line breaks stay unchanged, and a single word cannot be broken
+    labels = [item for item in candidates if " " in (text := item[1].get_text()) and "\n" not in text]
+    # the layout is slow, and necessary only if a label may be too long
+    if any(_excess(*item) > -0.15 * getattr(item[0], item[2]) for item in labels):
         figure.draw_without_rendering()
     for box, label, side in labels:
-        words, lines = label.get_text(), 1
-        while _excess(box, label, side) > _OVERHANG and lines < len(words.split()):
+        text, lines = label.get_text(), 1
+        while _excess(box, label, side) > _OVERHANG and lines < len(text.split()):
             lines += 1
-            label.set_text(broken(words, lines))
+            label.set_text(broken(text, lines))
 
 
 def _excess(box: "BboxBase", label: "Text", side: str) -> float:
-    """Return by how much a label is longer than its axis, in dots."""
+    """Return the excess length of a label over its axis, in dots."""
     return float(getattr(label.get_window_extent(), side) - getattr(box, side))
 
 
-def broken(words: str, lines: int) -> str:
-    r"""Return words in some lines of nearly equal length, formulas whole.
+def broken(text: str, lines: int) -> str:
+    r"""Return a text in lines of nearly equal length, without breaks in formulas.
 
     >>> broken("peak ground velocity [m/s]", 2)
     'peak ground\nvelocity [m/s]'
     """
-    whole = re.sub(r"\$[^$]*\$", lambda formula: formula[0].replace(" ", "\0"), words)
-    width = max(len(whole) // lines, 1)
-    while len(rows := wrap(whole, width, break_long_words=False, break_on_hyphens=False)) > lines:
+    protected = re.sub(r"\$[^$]*\$", lambda formula: formula[0].replace(" ", "\0"), text)
+    width = max(len(protected) // lines, 1)
+    while len(rows := wrap(protected, width, break_long_words=False, break_on_hyphens=False)) > lines:
         width += 1
     return "\n".join(rows).replace("\0", " ")
 
 
 def journal_style() -> AbstractContextManager[None]:
-    """Return a context in which figures are drawn in the style of this package: sizes, lines, fonts.
+    """Return a context that sets the figure style of this package: sizes, lines, fonts.
 
     Returns
     -------
     context manager
-        Within it matplotlib's settings are those of a journal's column; afterwards they are what they were.
+        Within it, matplotlib has the settings of a journal's column; afterwards, the previous settings apply.
 
     Raises
     ------
@@ -146,23 +146,23 @@ def journal_style() -> AbstractContextManager[None]:
 def new_figure(
     width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple["Figure", list["Axes"]]:
-    """Return a figure with its axes, laid out so that no label is cut off.
+    """Return a figure with its axes, with a layout that shows all labels.
 
     Parameters
     ----------
     width, height : float
         Size [in]; `SINGLE` and `DOUBLE` of `rocking.plots.style` are the columns of a journal.
     rows, columns : int
-        Panels.
+        Number of panels.
     **options
-        Of `matplotlib.figure.Figure.subplots`, such as sharex.
+        Options of `matplotlib.figure.Figure.subplots`, such as sharex.
 
     Returns
     -------
     figure : matplotlib.figure.Figure
-        The figure; draw into it within `journal_style`.
+        The figure, for drawing within `journal_style`.
     axes : list of matplotlib.axes.Axes
-        Its panels, row by row.
+        Panels, by rows.
 
     Examples
     --------
@@ -187,56 +187,56 @@ def look(number: int) -> dict[str, Any]:
 
 
 def patch(color: str, label: str, **options: Any) -> "Patch":
-    """Return an area of a colour, for a legend."""
+    """Return a coloured area for a legend."""
     from matplotlib.patches import Patch
 
     return Patch(facecolor=color, label=label, **options)
 
 
 def stroke(label: str, **options: Any) -> "Line2D":
-    """Return a line or a mark, for a legend."""
+    """Return a line or a mark for a legend."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], label=label, **options)
 
 
 def legend_above(axes: "Axes", columns: int = 1, **options: Any) -> None:
-    """Put the legend of a panel above it, where no curve runs."""
-    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.0, "borderpad": 0.2}
-    axes.legend(ncols=columns, **(place | options))
+    """Put the legend of a panel above it."""
+    layout: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.0, "borderpad": 0.2}
+    axes.legend(ncols=columns, **(layout | options))
 
 
 def legend_below(figure: "Figure", handles: Sequence[Any], columns: int, **options: Any) -> None:
-    """Put the legend of a whole figure below its panels."""
-    look: dict[str, Any] = {"loc": "outside lower center", "fontsize": 6.5, "handlelength": 1.2}
-    figure.legend(handles=handles, ncols=columns, **(look | options))
+    """Put the legend of a figure below its panels."""
+    layout: dict[str, Any] = {"loc": "outside lower center", "fontsize": 6.5, "handlelength": 1.2}
+    figure.legend(handles=handles, ncols=columns, **(layout | options))
 
 
 def headline(figure: "Figure", sentence: str) -> None:
-    """Head a figure with the sentence that says how a response ended."""
+    """Set the title of a figure to the summary of a response."""
     lines = wrap(sentence[:1].upper() + sentence[1:], 88)
     figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
 
 
 def write(figure: "Figure", path: str | Path) -> Path:
-    """Write a figure in the format that the suffix names.
+    """Write a figure in the format of the extension.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure.
     path : str or Path
-        File ending in .png, .svg or .pdf.
+        File with extension .png, .svg or .pdf.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Raises
     ------
     RockingError
-        If the suffix is another, or the file cannot be written.
+        If the extension is not allowed, or the file cannot be written.
     """
     path = Path(path)
     metadata: dict[str, dict[str, Any]] = {
@@ -245,7 +245,7 @@ def write(figure: "Figure", path: str | Path) -> Path:
         ".pdf": {"CreationDate": None},
     }
     if path.suffix not in metadata:
-        raise RockingError("a picture is .png, .svg or .pdf, got {file!r}", file=path.name)
+        raise RockingError("unsupported picture file {file!r}; use .png, .svg or .pdf", file=path.name)
     with writing(path), journal_style():
         figure.savefig(path, metadata=metadata[path.suffix])
     return path

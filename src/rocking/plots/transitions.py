@@ -1,4 +1,4 @@
-"""Every stretch of amplitudes that overturns a body: of one motion with the peak rotation, of many in lanes."""
+"""Pictures of intervals of amplitudes with overturning: one motion with the peak rotation, many motions in lanes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 PGA = "peak ground acceleration [g]"
 _HEIGHT = 2.9
 _ROOM, _LEAST = 1.35, 0.045
-"""How far beyond the last crossing is shown, and the share of the width below which a stretch is not named."""
+"""Plotted range over the last crossing, and fraction of the width below which an interval has no name."""
 
 _MOST_POINTS = 100_000
 
@@ -49,7 +49,7 @@ _FALLS, _STANDS = "#E0812F", "#E4EFF8"
 
 @dataclass(frozen=True)
 class _AmplitudeRun:
-    """A stretch of amplitudes that overturn in one class, with the modes of its samples [m/s2, -]."""
+    """An interval of amplitudes with one class of overturning, with the modes of its samples [m/s2, -]."""
 
     low: float
     high: float
@@ -65,7 +65,7 @@ class _AmplitudeRun:
 
 @in_journal_style
 def transitions_picture(
-    found: Transitions,
+    transitions: Transitions,
     body: Body,
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
@@ -74,12 +74,12 @@ def transitions_picture(
     gravity: float = conventions.g,
     **settings: Any,
 ) -> "Figure":
-    """Draw the peak rotation over the amplitude, and shade what overturns.
+    """Draw the peak rotation over the amplitude, and shade intervals with overturning.
 
     Parameters
     ----------
-    found : Transitions
-        As of `minimum_overturning_acceleration` with the same body, motion, restitution and settings.
+    transitions : Transitions
+        Result of `minimum_overturning_acceleration` with the same body, motion, restitution and settings.
     body : Body
         The body.
     motion : GroundMotion or Pulse
@@ -87,7 +87,7 @@ def transitions_picture(
     restitution : as for `simulate`
         The restitution.
     points : int
-        Amplitudes of the curve, in equal ratios [-].
+        Number of amplitudes of the curve, geometrically spaced [-].
     gravity : float
         Acceleration of gravity [m/s2].
     **settings
@@ -96,75 +96,77 @@ def transitions_picture(
     Returns
     -------
     matplotlib.figure.Figure
-        One panel, one column wide; what lies above the last crossing is cut short.
+        One panel, one column wide.
 
     Raises
     ------
     InvalidValueError
-        If `found` is of something else, or a value is outside its range.
+        If `transitions` has another type, or a value is outside its range.
 
     Examples
     --------
     >>> import rocking as rk
     >>> from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
-    >>> found = minimum_overturning_acceleration(block, pulse, 0.85)
-    >>> transitions_picture(found, block, pulse, 0.85).axes[0].get_xlabel()
+    >>> transitions = minimum_overturning_acceleration(block, pulse, 0.85)
+    >>> transitions_picture(transitions, block, pulse, 0.85).axes[0].get_xlabel()
     'peak ground acceleration [g]'
     """
-    if not isinstance(found, Transitions):
+    if not isinstance(transitions, Transitions):
         raise InvalidValueError(
-            "{parameter} must be of minimum_overturning_acceleration, got {kind}", parameter="found",
-            kind=type(found).__name__,
+            "{parameter} must be of minimum_overturning_acceleration, got {kind}", parameter="transitions",
+            kind=type(transitions).__name__,
         )  # fmt: skip
     count = int(checks.within("points", points, 2, _MOST_POINTS))
     threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
     question = Question(body, motion, restitution, study_settings(body, settings, gravity), threads, engine)
-    place = _places(found, count)
-    peaks, modes = _curve(question, place)
+    amplitudes = _places(transitions, count)
+    peaks, modes = _curve(question, amplitudes)
     figure, (axes,) = new_figure(SINGLE, _HEIGHT)
-    _shade(axes, found, place, modes)
+    _shade(axes, transitions, amplitudes, modes)
     standing = np.isin(modes, (-2, -1))
-    axes.plot(place / g, np.where(standing, peaks, np.nan), color=INK, linewidth=0.9, zorder=4)
+    axes.plot(amplitudes / g, np.where(standing, peaks, np.nan), color=INK, linewidth=0.9, zorder=4)
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=DASHED, zorder=1)
-    _finish(axes, found, place, peaks[standing])
+    _finish(axes, transitions, amplitudes, peaks[standing])
     note(axes, f"{plain(motion.name)}, scaled; restitution {plain(question.parameters.label)}")
     return figure
 
 
-def _shown_until(found: Transitions) -> float:
-    """Return the largest amplitude worth showing [m/s2]."""
-    if not len(found):
-        return found.max_pga
-    return min(found.max_pga, _ROOM * float(found.acceleration[-1]))
+def _shown_until(transitions: Transitions) -> float:
+    """Return the largest plotted amplitude [m/s2]."""
+    if not len(transitions):
+        return transitions.max_pga
+    return min(transitions.max_pga, _ROOM * float(transitions.acceleration[-1]))
 
 
-def _places(found: Transitions, count: int) -> FloatArray:
-    """Return amplitudes, closer together towards crossings, where the curve rises steeply [m/s2]."""
-    last = _shown_until(found)
-    near = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
-    around = (found.acceleration[:, None] * (1.0 + near)).ravel()
-    both = np.concatenate([np.geomspace(found.min_pga, last, count), around])
-    return np.unique(both[(both >= found.min_pga) & (both <= last)])
+def _places(transitions: Transitions, count: int) -> FloatArray:
+    """Return amplitudes, denser near crossings, where the curve rises steeply [m/s2]."""
+    last = _shown_until(transitions)
+    offsets = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
+    around = (transitions.acceleration[:, None] * (1.0 + offsets)).ravel()
+    amplitudes = np.concatenate([np.geomspace(transitions.min_pga, last, count), around])
+    return np.unique(amplitudes[(amplitudes >= transitions.min_pga) & (amplitudes <= last)])
 
 
-def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]:
-    sides = {name: np.repeat(value, place.size) for name, value in sides_of([question.parameters]).items()}
+def _curve(question: Question, amplitudes: FloatArray) -> tuple[FloatArray, IntArray]:
+    sides = {name: np.repeat(value, amplitudes.size) for name, value in sides_of([question.parameters]).items()}
     # the same random numbers at every amplitude, as in the search
-    keys = np.zeros(place.size, dtype=np.int64)
-    results, _ = question.run({**sides, "scale": place / question.motion.peak}, np.ones(place.size), keys)
+    keys = np.zeros(amplitudes.size, dtype=np.int64)
+    results, _ = question.run({**sides, "scale": amplitudes / question.motion.peak}, np.ones(amplitudes.size), keys)
     return results["peak_ratio"], results["mode"]
 
 
-def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray) -> None:
-    """Shade every overturning interval, in the colours of maps, and say how it overturns."""
-    last = _shown_until(found)
+def _shade(axes: "Axes", transitions: Transitions, amplitudes: FloatArray, modes: IntArray) -> None:
+    """Shade the overturning intervals in the colours of maps, and name their modes."""
+    last = _shown_until(transitions)
     widest: dict[str, _AmplitudeRun] = {}
-    runs = [run for low, high in found.overturning_intervals for run in _runs(place, modes, low, min(high, last))]
+    runs = [
+        run for low, high in transitions.overturning_intervals for run in _runs(amplitudes, modes, low, min(high, last))
+    ]
     for run in sorted(runs, key=lambda run: run.high / run.low):
-        # above the dashed line of alpha, which says nothing of what overturns
+        # above the dashed line of alpha
         axes.axvspan(run.low / g, run.high / g, color=CLASSES[run.kind][1], linewidth=0.0, zorder=2)
-        if np.log(run.high / run.low) > _LEAST * np.log(last / found.min_pga):
+        if np.log(run.high / run.low) > _LEAST * np.log(last / transitions.min_pga):
             widest[run.words] = run
     for run in widest.values():
         _name(axes, run)
@@ -174,15 +176,15 @@ def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray)
         legend_below(axes.figure, handles, 2)  # type: ignore[arg-type]
 
 
-def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_AmplitudeRun]:
-    """Return the stretches of one class within an interval; between two samples the change is drawn halfway."""
-    inside = (place > low) & (place < high) & (modes >= 0)
+def _runs(amplitudes: FloatArray, modes: IntArray, low: float, high: float) -> list[_AmplitudeRun]:
+    """Return the runs of one class within an interval; a change is plotted halfway between two samples."""
+    inside = (amplitudes > low) & (amplitudes < high) & (modes >= 0)
     if not inside.any():
         return []
-    place, modes = place[inside], modes[inside]
+    amplitudes, modes = amplitudes[inside], modes[inside]
     kinds = np.select([modes == 0, modes == 1, modes == UNCOUNTED], [FIRST, SECOND, FELL], default=LATER)
     changes = np.flatnonzero(np.diff(kinds))
-    ends = [low, *(0.5 * (place[changes] + place[changes + 1])).tolist(), high]
+    ends = [low, *(0.5 * (amplitudes[changes] + amplitudes[changes + 1])).tolist(), high]
     parts = np.split(modes, changes + 1)
     firsts = kinds[np.append(0, changes + 1)].tolist()
     return [_AmplitudeRun(ends[k], ends[k + 1], kind, parts[k]) for k, kind in enumerate(firsts)]
@@ -195,14 +197,14 @@ def _name(axes: "Axes", run: _AmplitudeRun) -> None:
     )  # fmt: skip
 
 
-def _finish(axes: "Axes", found: Transitions, place: FloatArray, peaks: FloatArray) -> None:
+def _finish(axes: "Axes", transitions: Transitions, amplitudes: FloatArray, peaks: FloatArray) -> None:
     from matplotlib.ticker import LogLocator
 
-    most = float(np.nanmax(peaks, initial=1.0))
-    axes.set_ylim(0.0, 1.06 * min(most, 2.0))
-    axes.set_xlim(found.min_pga / g, float(place[-1]) / g)
+    largest = float(np.nanmax(peaks, initial=1.0))
+    axes.set_ylim(0.0, 1.06 * min(largest, 2.0))
+    axes.set_xlim(transitions.min_pga / g, float(amplitudes[-1]) / g)
     plain_log(axes, "x")
-    if place[-1] < 20.0 * found.min_pga:
+    if amplitudes[-1] < 20.0 * transitions.min_pga:
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 4.0, 6.0, 8.0)))
     axes.set(xlabel=PGA, ylabel=PEAK)
     axes.spines[["top", "right"]].set_visible(True)
@@ -210,37 +212,37 @@ def _finish(axes: "Axes", found: Transitions, place: FloatArray, peaks: FloatArr
 
 @in_journal_style
 def transitions_of_many_picture(
-    found: Mapping[str, Sequence[Transitions]],
+    transitions: Mapping[str, Sequence[Transitions]],
     names: Sequence[str],
     *,
-    words: str = "motion",
+    lane_title: str = "motion",
     until: float | None = None,
 ) -> "Figure":
-    """Draw every stretch of amplitudes that overturns a body, a lane for each motion, a panel for each restitution.
+    """Draw all intervals of amplitudes with overturning, one lane per motion, one panel per restitution.
 
-    Lanes are in the order of the least acceleration that overturns in the first panel, which is marked; what lies
-    between two stretches of a lane is a stronger motion under which the body stands again.
+    Lanes are sorted by the smallest overturning acceleration of the first panel, which is marked. Between two intervals
+    of a lane, the body does not overturn under a stronger motion.
 
     Parameters
     ----------
-    found : mapping of str to sequence of Transitions
-        For each restitution what was found for each motion.
+    transitions : mapping of str to sequence of Transitions
+        Results for each motion, by restitution.
     names : sequence of str
-        What the motions are called, or short marks of them.
-    words : str
-        What the lanes are.
+        Names of the motions, or short marks.
+    lane_title : str
+        Title of the axis of lanes.
     until : float, optional
-        Largest acceleration that is shown; a third beyond the last crossing if not given [m/s2].
+        Largest plotted acceleration; default: 1.35 times the last crossing [m/s2].
 
     Returns
     -------
     matplotlib.figure.Figure
-        One column wide for one panel, else two.
+        One column wide for one panel, otherwise two.
 
     Raises
     ------
     InvalidValueError
-        If there is nothing to draw, too much, or the lanes are not as many as the names.
+        If there are no lanes, too many, or their number differs from the number of names.
 
     Examples
     --------
@@ -248,60 +250,60 @@ def transitions_of_many_picture(
     >>> from rocking.studies import minimum_overturning_acceleration
     >>> block = rk.Block(width=0.5, height=2.0)
     >>> pulses = [rk.pulses.sine(3.0, period) for period in (0.6, 0.8)]
-    >>> found = {"0.85": [minimum_overturning_acceleration(block, pulse, 0.85) for pulse in pulses]}
-    >>> transitions_of_many_picture(found, ["0.6 s", "0.8 s"], words="period").axes[0].get_xlabel()
+    >>> transitions = {"0.85": [minimum_overturning_acceleration(block, pulse, 0.85) for pulse in pulses]}
+    >>> transitions_of_many_picture(transitions, ["0.6 s", "0.8 s"], lane_title="period").axes[0].get_xlabel()
     'peak ground acceleration [g]'
     """
-    lanes = [*found.values()]
+    lanes = [*transitions.values()]
     if not 1 <= len(lanes) <= _MOST_PANELS or not 1 <= len(names) <= _MOST_LANES:
         raise InvalidValueError(
-            "a picture holds 1 to {panels} restitutions and 1 to {limit} lanes, got {lanes} and {restitutions}",
+            "a picture can have 1 to {panels} restitutions and 1 to {limit} lanes, got {lanes} and {restitutions}",
             panels=_MOST_PANELS, limit=_MOST_LANES, lanes=len(lanes), restitutions=len(names),
         )  # fmt: skip
-    for each in lanes:
-        if len(each) != len(names) or not all(isinstance(one, Transitions) for one in each):
+    for lane in lanes:
+        if len(lane) != len(names) or not all(isinstance(item, Transitions) for item in lane):
             raise InvalidValueError(
-                "{parameter} must have {count} Transitions for each restitution, got {value}", parameter="found",
-                count=len(names), value=each,
+                "{parameter} must have {count} Transitions for each restitution, got {value}", parameter="transitions",
+                count=len(names), value=lane,
             )  # fmt: skip
-    order = np.argsort([one.acceleration[0] if len(one) else np.inf for one in lanes[0]], kind="stable").tolist()
+    order = np.argsort([item.acceleration[0] if len(item) else np.inf for item in lanes[0]], kind="stable").tolist()
     width = SINGLE if len(lanes) == 1 else DOUBLE
     figure, axes = new_figure(width, _MARGIN + _LANE * len(names), columns=len(lanes), sharex=True, sharey=True)
-    ends = _ends([one for each in lanes for one in each])
+    ends = _ends([item for lane in lanes for item in lane])
     if until is not None:
         ends = ends[0], checks.within("until", until, ends[0] * g, 1e6, open_low=True) / g
-    for panel, (label, each) in zip(axes, found.items(), strict=True):
-        _lanes(panel, [each[k] for k in order], ends)
+    for panel, (label, lane) in zip(axes, transitions.items(), strict=True):
+        _lanes(panel, [lane[k] for k in order], ends)
         panel.set_title(plain(label), loc="left", fontsize=7.5)
         panel.set_xlabel(PGA)
         panel.tick_params(axis="y", length=0)
     axes[0].set_yticks(range(len(names)), [plain(names[k]) for k in order])
-    axes[0].set_ylabel(words)
+    axes[0].set_ylabel(lane_title)
     axes[0].set_ylim(len(names) - 0.5, -0.5)
     axes[0].set_xlim(*ends)
     for panel in axes:
         plain_log(panel, "x")
     handles = [
-        patch(_STANDS, "stays standing", edgecolor=INK, linewidth=0.4),
+        patch(_STANDS, "does not overturn", edgecolor=INK, linewidth=0.4),
         patch(_FALLS, "overturns"),
-        stroke("least that overturns", linestyle="none", marker="|", color=INK, markeredgewidth=1.2),
+        stroke("smallest overturning acceleration", linestyle="none", marker="|", color=INK, markeredgewidth=1.2),
     ]
     legend_below(figure, handles, 3)
     return figure
 
 
-def _ends(found: Sequence[Transitions]) -> tuple[float, float]:
-    """Return how far it is worth showing [g]."""
-    low = min(one.min_pga for one in found)
-    last = [1.35 * one.acceleration[-1] for one in found if len(one)]
+def _ends(transitions: Sequence[Transitions]) -> tuple[float, float]:
+    """Return the plotted range [g]."""
+    low = min(item.min_pga for item in transitions)
+    last = [1.35 * item.acceleration[-1] for item in transitions if len(item)]
     return low / g, max([2.0 * low, *last]) / g
 
 
-def _lanes(axes: "Axes", found: Sequence[Transitions], ends: tuple[float, float]) -> None:
-    for row, one in enumerate(found):
-        lane, shown = (row - 0.36, 0.72), [(one.min_pga / g, max(ends[1] - one.min_pga / g, 0.0))]
+def _lanes(axes: "Axes", transitions: Sequence[Transitions], ends: tuple[float, float]) -> None:
+    for row, item in enumerate(transitions):
+        lane, shown = (row - 0.36, 0.72), [(item.min_pga / g, max(ends[1] - item.min_pga / g, 0.0))]
         axes.broken_barh(shown, lane, color=_STANDS, linewidth=0)
-        stretches = [(low / g, (high - low) / g) for low, high in one.overturning_intervals]
-        axes.broken_barh(stretches, lane, color=_FALLS, linewidth=0, zorder=2)
-        if one.minimum is not None:
-            axes.plot(one.minimum / g, row, "|", color=INK, markersize=6.5, markeredgewidth=1.2, zorder=3)
+        intervals = [(low / g, (high - low) / g) for low, high in item.overturning_intervals]
+        axes.broken_barh(intervals, lane, color=_FALLS, linewidth=0, zorder=2)
+        if item.minimum is not None:
+            axes.plot(item.minimum / g, row, "|", color=INK, markersize=6.5, markeredgewidth=1.2, zorder=3)

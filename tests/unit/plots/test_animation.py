@@ -108,7 +108,7 @@ def test_name_of_a_motion_cannot_become_markup():
     assert [tag for tag, _ in made.seen].count("script") == 2
     assert name in made.inside("p")[0]
     assert "1.5 times" in made.inside("p")[0]
-    assert "vertical motion" in " ".join(made.inside("p"))
+    assert "vertical ground motion" in " ".join(made.inside("p"))
 
 
 def test_data_is_the_response(rocked):
@@ -402,7 +402,7 @@ def test_a_comparison_refuses(rocked, tmp_path):
     with pytest.raises(InvalidValueError, match="2 to 4"):
         animate_comparison({"one": rocked}, tmp_path / "film.gif")
     both = {"one": rocked, "two": rocked}
-    with pytest.raises(RockingError, match="this animation is a"):
+    with pytest.raises(RockingError, match="must end in"):
         animate_comparison(both, tmp_path / "film.png")
     with pytest.raises(InvalidValueError, match="at most 500 frames"):
         animate_comparison(both, tmp_path / "film.gif", speed=0.01)

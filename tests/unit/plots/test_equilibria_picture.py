@@ -31,7 +31,7 @@ def test_another_pose_stands_in_the_middle():
     solid = Solid(box(1.0, 2.0, 3.0))
     figure = equilibria_picture(solid, solid.equilibria().stable[0])
     titles = " ".join(axes.get_title(loc="left") for axes in figure.axes)
-    assert "nearest edge 1e+03 mm off" in titles
+    assert "nearest edge at 1e+03 mm" in titles
     assert "centre 0.5 m high" in titles
 
 

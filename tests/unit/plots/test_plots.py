@@ -103,10 +103,10 @@ def test_each_foot_at_its_own_slenderness():
     assert left == pytest.approx([3.0] * len(tables["left"]))
     assert right == pytest.approx([1.5] * len(tables["right"]))
     titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert all(word in " ".join(titles[1:]) for word in ("left foot", "right foot"))
+    assert all(word in " ".join(titles[1:]) for word in ("on the left (", "right foot ("))
     alone = coefficient_picture(body, {"right": tables["right"]})
     assert drawn_at(alone.axes[2], tables["right"], "D") == pytest.approx([1.5] * len(tables["right"]))
-    assert "onto the right foot" in alone.axes[1].get_title(loc="left")
+    assert "on the right foot" in alone.axes[1].get_title(loc="left")
 
 
 def test_files_come_out_the_same(tmp_path):

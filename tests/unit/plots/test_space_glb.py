@@ -103,7 +103,7 @@ def test_the_file_stands_again_in_each_pose(solid, scan, tmp_path):
     """Read with the direction that a pose names as up, it stands as high as that pose; turns set down."""
     found = solid.equilibria()
     file = GltfFile(solid)
-    file.stands(found, found.stable[0])
+    file.add_equilibria(found, found.stable[0])
     file.write(tmp_path / "body.glb")
     _, extras, _ = opened(tmp_path / "body.glb")
     heights = [pose.height for pose in found.stable]
@@ -119,7 +119,7 @@ def test_colours_are_those_of_the_height(solid, tmp_path):
     """Brightness follows the height of the centre over the point that is below, from all pairs of points."""
     found = solid.equilibria()
     file = GltfFile(solid)
-    file.stands(found, found.stable[0])
+    file.add_equilibria(found, found.stable[0])
     file.write(tmp_path / "body.glb")
     told, extras, array = opened(tmp_path / "body.glb")
     attributes = told["meshes"][0]["primitives"][0]["attributes"]
@@ -138,7 +138,7 @@ def test_what_is_told_to_touch_is_on_the_ground(solid, tmp_path):
     pulse = rk.pulses.sine(amplitude=6.0, period=0.6)
     response = rk.simulate(solid, {"x": pulse, "y": pulse}, 0.6, friction=0.5)
     file = GltfFile(solid)
-    file.moves(response)
+    file.add_motion(response)
     file.write(tmp_path / "body.glb")
     told, extras, array = opened(tmp_path / "body.glb")
     turns, places = (array(each["output"]) for each in told["animations"][0]["samplers"])

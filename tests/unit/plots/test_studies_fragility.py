@@ -12,7 +12,7 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots import fragility_picture, incremental_dynamic_analysis_picture, measures_picture, sensitivity_picture
-from rocking.plots.fragility import caption, gathered, state_colors, symbol
+from rocking.plots.fragility import caption, grouped, state_colors, symbol
 from rocking.plots.style import PALE
 from rocking.studies.fragility import compare_measures, fragility_analysis
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity
@@ -132,7 +132,7 @@ def test_separation_is_said():
 def test_cloud_is_gathered(clouded):
     """Outcomes of many levels are gathered: groups hold all of them, none twice."""
     counts = [np.asarray(v, dtype=float) for v in (clouded.counts["overturned"], clouded.trials)]
-    at, reached, trials = gathered(np.asarray(clouded.levels), *counts)
+    at, reached, trials = grouped(np.asarray(clouded.levels), *counts)
     assert (reached.sum(), trials.sum(), at.size) == (counts[0].sum(), 80.0, 10)
     assert np.all(np.diff(at) > 0.0)
     assert fragility_picture(clouded).axes[1].get_xlabel() == "peak ground acceleration [m/s$^2$]"
@@ -141,7 +141,7 @@ def test_cloud_is_gathered(clouded):
 def test_weighted_mean_of_a_group():
     """Sixteen levels of one trial each make two groups, at their geometric means."""
     levels = np.geomspace(1.0, 16.0, 16)
-    at, reached, trials = gathered(levels, (levels > 4.0).astype(float), np.ones(16))
+    at, reached, trials = grouped(levels, (levels > 4.0).astype(float), np.ones(16))
     np.testing.assert_allclose(at, [math.sqrt(levels[0] * levels[7]), math.sqrt(levels[8] * levels[15])])
     assert (reached.tolist(), trials.tolist()) == ([0.0, 8.0], [8.0, 8.0])
 
@@ -171,7 +171,7 @@ def test_incremental_curves(raised):
     np.testing.assert_allclose(passed.get_xdata(), [(wanted <= level).sum() / 24.0 for level in raised.levels])
     assert np.all(passed.get_xdata() >= fraction.get_xdata())
     words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert f"stands again: {len(raised.resurrected(0.01))} motions" in words
+    assert f"resurrection: {len(raised.resurrected(0.01))} motions" in words
 
 
 def test_incremental_without_overturning():
@@ -181,7 +181,7 @@ def test_incremental_without_overturning():
     )
     FigureCanvasAgg(figure).draw()
     words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert not any("stands again" in word for word in words)
+    assert not any("resurrection" in word for word in words)
 
 
 def test_measures(clouded):
@@ -228,7 +228,7 @@ def test_what_cannot_be_lifted_is_shaded():
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() == pytest.approx(0.25 * G, rel=1e-12, abs=0.0)
     assert shade.get_x() < upper.get_xlim()[0]
-    assert [text.get_text() for text in upper.texts] == ["not lifted"]
+    assert [text.get_text() for text in upper.texts] == ["no uplift"]
     assert found.counts["rocking"][found.levels < 0.25 * G].tolist() == [0, 0]
 
 
@@ -265,10 +265,10 @@ def test_few_motions_have_no_band():
 def test_stripes_stay_stripes():
     """Twenty levels of twelve motions are twenty points; of one motion they would be gathered (negative control)."""
     levels, reached = np.linspace(1.0, 5.0, 20), np.arange(20.0)
-    at, hits, trials = gathered(levels, np.minimum(reached, 12.0), np.full(20, 12.0))
+    at, hits, trials = grouped(levels, np.minimum(reached, 12.0), np.full(20, 12.0))
     np.testing.assert_allclose(at, levels, rtol=1e-14)
     assert (hits.tolist(), trials.tolist()) == (np.minimum(reached, 12.0).tolist(), 20 * [12.0])
-    assert gathered(levels, np.ones(20), np.ones(20))[0].size == 2
+    assert grouped(levels, np.ones(20), np.ones(20))[0].size == 2
 
 
 @pytest.fixture(scope="module")

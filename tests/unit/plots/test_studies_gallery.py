@@ -55,7 +55,7 @@ def test_refined_map(refined):
     """Each pixel has the class of the nearest point, every polyline is there, and the window shows its points."""
     points, lines = refined
     window = ((1.5, 4.0), (2.0, 5.0))
-    figure = drawn(refined_map_picture(points, lines, window=window, words="a sine"))
+    figure = drawn(refined_map_picture(points, lines, window=window, title="a sine"))
     left, right = figure.axes
     assert len(left.lines) == len(lines)
     for line, shown in zip(lines, left.lines, strict=True):
@@ -76,7 +76,7 @@ def test_refined_map(refined):
 def test_refined_map_refuses(refined):
     """Nothing to outline, something else, and an empty window are refused."""
     points, lines = refined
-    for given, words in (((points, []), "at least one polyline"), ((lines, lines), "must be of refined_map")):
+    for given, words in (((points, []), "one or more polylines"), ((lines, lines), "must be of refined_map")):
         with pytest.raises(InvalidValueError, match=words):
             refined_map_picture(*given)
     with pytest.raises(InvalidValueError, match="window must be"):
@@ -137,7 +137,7 @@ def test_crossings_of_many():
     """Bars are the overturning stretches in g, lanes are by the least of the first panel, wrong counts are refused."""
     pulses = [rk.pulses.sine(3.0, period) for period in (0.5, 0.8, 0.65)]
     found = {f"r = {r}": [rk.minimum_overturning_acceleration(BLOCK, p, r) for p in pulses] for r in (0.85, 0.95)}
-    figure = drawn(transitions_of_many_picture(found, ["0.5", "0.8", "0.65"], words="period [s]"))
+    figure = drawn(transitions_of_many_picture(found, ["0.5", "0.8", "0.65"], lane_title="period [s]"))
     first = figure.axes[0]
     assert [label.get_text() for label in first.get_yticklabels()] == ["0.8", "0.65", "0.5"]
     assert [panel.get_title(loc="left") for panel in figure.axes] == ["r = 0.85", "r = 0.95"]
@@ -168,7 +168,7 @@ def test_difference_map():
     np.testing.assert_array_equal(colors[stand], change[stand])
     flips = int(((before["mode"].values >= 0) != (after["mode"].values >= 0)).sum())
     assert flips > 0
-    assert f"{flips} of {stand.size} verdicts flip" in panel.get_title(loc="left")
+    assert f"{flips} of {stand.size} outcomes change" in panel.get_title(loc="left")
     assert "overturns with the choice only" in legend_of(figure)
     other = difference_map_picture(found, "horizontal-momentum").axes[2].collections[1].get_array()
     assert not np.ma.allequal(other.ravel(), colors.ravel())  # the control: another choice is another picture

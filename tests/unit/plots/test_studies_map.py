@@ -87,7 +87,7 @@ def test_words_lie_in_their_regions(found, figure):
     """Each region that is named has only its own class under the words, and no two words overlap."""
     boxes = _boxes(figure)
     axes, kinds = figure.axes[0], classes_of(found)
-    named = {"overturns without impact": FIRST, "after 1 impact": SECOND, "rocks, stays standing": ROCKED}
+    named = {"overturns without impact": FIRST, "after 1 impact": SECOND, "rocks, does not overturn": ROCKED}
     present = {words: named[told] for words in boxes if (told := words.replace("\n", " ")) in named}
     assert len(present) >= 2
     for words, kind in present.items():
@@ -105,7 +105,7 @@ def test_regions_that_are_too_small_are_in_the_legend(figure):
     """What has no room for words is named below the panel; nothing is named twice."""
     below = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     within = {text.get_text().replace("\n", " ") for text in figure.axes[0].texts}
-    assert "not lifted" in below or "not lifted" in within
+    assert "no uplift" in below or "no uplift" in within
     assert not set(below) & within
 
 
@@ -156,9 +156,9 @@ def test_refusals(found):
     """What is no map, a boundary along other axes, and a map of one row are refused in words."""
     other = [Polyline(np.ones((2, 2)), np.zeros((2, 2), int), "overturned", ("frequency_ratio", "scale"))]
     for given, words in (
-        *((([bad]), "found must be a map") for bad in ("map", None, 3.0)),
+        *((([bad]), "results must be a map") for bad in ("map", None, 3.0)),
         ((found, other), "boundary must be along frequency_ratio and amplitude_ratio"),
-        ((found.isel(amplitude_ratio=[0]),), "two values or more"),
+        ((found.isel(amplitude_ratio=[0]),), "two or more values"),
     ):
         with pytest.raises(InvalidValueError, match=words):
             overturning_map_picture(*given)
@@ -169,10 +169,10 @@ def test_place_in_a_disc():
     rows, columns = np.mgrid[0 : FINE[0], 0 : FINE[1]]
     disc = (rows - 120) ** 2 + (columns - 150) ** 2 < 80**2
     place = place_in(disc, "words", (3.0, 2.4))
-    assert place.words == "words"
+    assert place.text == "words"
     # centre of a pixel grid: half a pixel of 240 or 300
     assert (place.x, place.y) == pytest.approx((0.5, 0.5), abs=0.01)
-    assert place_in(disc, "many words that are long together", (3.0, 2.4)).words.count("\n") >= 1
+    assert place_in(disc, "many words that are long together", (3.0, 2.4)).text.count("\n") >= 1
     assert place_in(disc, "many words that are long together" * 5, (3.0, 2.4)) is None
     assert place_in(np.zeros(FINE, bool), "words", (3.0, 2.4)) is None
 

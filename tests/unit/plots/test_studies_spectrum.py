@@ -110,7 +110,7 @@ def test_shares_of_many(many, pictures):
     figure = pictures["many"]
     lower = figure.axes[1]
     assert (pictures["one"].axes[1].get_xscale(), lower.get_xscale()) == ("log", "linear")
-    assert lower.get_ylabel() == "share over-\nturned [-]"
+    assert lower.get_ylabel() == "fraction over-\nturned [-]"
     for place, line in enumerate(lower.lines):
         np.testing.assert_allclose(
             line.get_ydata(), (many["mode"].values[:, place] >= 0).sum(axis=0) / 5.0, rtol=0.0, atol=1e-15
@@ -130,7 +130,7 @@ def test_nothing_lifts():
 @pytest.mark.parametrize("bad", ["spectrum", None, 1.0])
 def test_no_spectrum(bad):
     """What is no spectrum is refused in words."""
-    with pytest.raises(InvalidValueError, match="found must be of rocking_spectrum"):
+    with pytest.raises(InvalidValueError, match="results must be of rocking_spectrum"):
         rocking_spectrum_picture(bad)
 
 
@@ -156,11 +156,11 @@ def test_maps_and_flips(maps):
         drawn = np.asarray(axes[3 + place].collections[-1].get_array()).reshape(over[label].shape)
         np.testing.assert_array_equal(drawn, over[label].astype(int) - over["housner"].astype(int))
         count = int((over[label] != over["housner"]).sum())
-        assert axes[3 + place].get_title(loc="left").startswith(f"{count} of 480 flip ({100.0 * count / 480:.3g} %)")
+        assert axes[3 + place].get_title(loc="left").startswith(f"{count} of 480 change ({100.0 * count / 480:.3g} %)")
         assert count > 0
     assert axes[0].get_xlabel() == r"$\omega_p\,/\,p$ [-]"
     words = [text.get_text() for text in axes[3].get_legend().get_texts()]
-    assert {"flips to overturned", "flips to standing", "not lifted"} <= set(words)
+    assert {"changes to overturned", "changes to not overturned", "no uplift"} <= set(words)
     FigureCanvasAgg(figure).draw()
 
 
@@ -179,7 +179,7 @@ def test_spectra():
     modes = {label: found.results[label]["mode"].values >= 0 for label in CHOICES}
     for place, panel in enumerate(figure.axes):
         flips = [int((modes[c][:, place] != modes["housner"][:, place]).sum()) for c in CHOICES[1:]]
-        assert panel.get_title(loc="left").endswith(f"flips {flips[0]}, {flips[1]} of 75")
+        assert panel.get_title(loc="left").endswith(f"changes {flips[0]}, {flips[1]} of 75")
         assert len(panel.lines) == 3
     assert figure.axes[-1].get_xlabel() == r"$2\pi\,/\,p$ [s]"
     assert "median" in figure.get_supylabel()
@@ -221,5 +221,5 @@ def test_refusals(maps):
     with pytest.raises(InvalidValueError, match="2 to 6 choices, got 7"):
         sensitivity_picture(sensitivity(lambda restitution: maps.results["ked"], many))
     row = {name: maps.results[name].isel(frequency_ratio=0) for name in ("ked", "housner")}
-    with pytest.raises(InvalidValueError, match="a picture of maps, spectra and fragility"):
+    with pytest.raises(InvalidValueError, match="maps, spectra and fragility"):
         sensitivity_picture(sensitivity(lambda restitution: row[restitution], ["ked", "housner"]))

@@ -227,7 +227,7 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def _analysis(analysis: Any, crossing_curves: Crossing, unit: str) -> dict[str, Any]:
-    from rocking.plots.fragility import shares_of
+    from rocking.plots.fragility import fractions_of
 
     shown = shown_curves(analysis, crossing_curves)
     shared = {} if shown is None else shown.shared
@@ -238,7 +238,7 @@ def _analysis(analysis: Any, crossing_curves: Crossing, unit: str) -> dict[str, 
         "trials": np.asarray(analysis.trials),
         "failed": int(getattr(analysis, "stripes", analysis).failed),
         "states": list(analysis.counts),
-        "points": {name: shares_of(analysis, name) for name in analysis.counts},
+        "points": {name: fractions_of(analysis, name) for name in analysis.counts},
         "adjusted": "" if shown is None else shown.adjusted,
         "fits": {name: _fit(fit, shared.get(name)) for name, fit in fits.items()},
         "curves": {name: _curve(fit, _fine(levels), shared.get(name)) for name, fit in fits.items() if fit.exists},

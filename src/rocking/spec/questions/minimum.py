@@ -122,4 +122,4 @@ class MinimumQuestion(BodyQuestion):
                     "there is no picture: no history of {lane} with restitution {restitution} has a result",
                     lane=lanes[row.index(None)], restitution=label,
                 )  # fmt: skip
-        return transitions_of_many_picture(rows, lanes, words="motion and body" if several else "motion")
+        return transitions_of_many_picture(rows, lanes, lane_title="motion and body" if several else "motion")
