@@ -71,7 +71,7 @@ UNCOUNTED = 1_000_000
 """Number of impacts, and mode, of an overturned 3D body: its impacts are not counted."""
 
 
-_MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact",
+_MODES = {-3: "not computed", -2: "no uplift", -1: "rocks, does not overturn", 0: "overturns without impact",
           UNCOUNTED: "overturns"}  # fmt: skip
 
 
@@ -79,7 +79,7 @@ def mode_words(mode: int) -> str:
     """Return the outcome of a mode as text.
 
     >>> mode_words(-1), mode_words(2)
-    ('rocks, stays standing', 'overturns after 2 impacts')
+    ('rocks, does not overturn', 'overturns after 2 impacts')
     """
     return _MODES.get(mode) or f"overturns after {mode} impact{'s' if mode != 1 else ''}"
 

@@ -1,4 +1,4 @@
-"""What was measured, and what it says about the models."""
+"""Measured coefficients of restitution, and comparison of the models with them."""
 
 from lazy_loader import attach_stub
 

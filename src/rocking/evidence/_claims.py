@@ -1,10 +1,10 @@
-"""Every claim of the paper's sections 3 and 4, with a verdict and the number behind it; here those of 3.1 and 4."""
+"""Claims of the paper's sections 3 and 4 with verdicts and numbers; this module contains those of 3.1 and 4."""
 
 from functools import partial
 
 import numpy as np
 
-from rocking.evidence import claims_of_errors  # noqa: F401 - whose judges are called, too
+from rocking.evidence import claims_of_errors  # noqa: F401 - the import registers its tests
 from rocking.evidence._errata import closer_rows, recomputed
 from rocking.evidence.claims_of_errors import (
     FAILS,
@@ -26,32 +26,30 @@ from rocking.studies.impact_laboratory import large_bodies
 
 
 def claims() -> tuple[Claim, ...]:
-    """Judge every claim.
+    """Test all claims.
 
     Returns
     -------
     tuple of Claim
-        In the paper's order.
+        Claims in the paper's order.
 
     Examples
     --------
     >>> sorted({claim.verdict for claim in claims()})
     ['does not hold', 'holds', 'holds in part', 'not resolved', 'not testable']
     """
-    in_order = sorted(JUDGES, key=lambda each: each[0].split()[-1])  # what is said in 3.2 and 4 stands in 4
+    in_order = sorted(JUDGES, key=lambda entry: entry[0].split()[-1])  # a claim of sections 3.2 and 4 is sorted under 4
     return tuple(Claim(section, quote, *judge(), test) for section, quote, test, judge in in_order)
 
 
-_BY_BOOTSTRAP = (
-    "paired bootstrap of the errors over all rows; in part where KED is closer in less than three rows of four"
-)
+_BY_BOOTSTRAP = "paired bootstrap of the errors over all rows; in part if KED is closer in less than three of four rows"
 
 
 def _closer(*names: str) -> tuple[str, str]:
     won = [closer for name in names for closer in closer_rows(datasets()[name])]
     joined = [truth(name) for name in names]
     measured = np.concatenate([data.coefficient for data, _, _ in joined])
-    housner, ked = (np.concatenate([each[i] for each in joined]) for i in (1, 2))
+    housner, ked = (np.concatenate([item[i] for item in joined]) for i in (1, 2))
     comparison = compare(datasets()[names[0]] if len(names) == 1 else blocks(), ked, housner)
     closer_by_rows = sum(won) > 0.75 * len(won)
     return IN_PART if comparison.sign < 0 and not closer_by_rows else resolved(-comparison.sign), (
@@ -64,7 +62,7 @@ def _closer(*names: str) -> tuple[str, str]:
 @claim(
     "3.1",
     "all experimental values (Table 1) are higher than those of the classical model",
-    "measured r against Housner's true r, row by row",
+    "measured r compared with Housner's exact r, by row",
 )
 def _above_classical() -> tuple[str, str]:
     data, housner, _ = truth("table1")
@@ -138,10 +136,10 @@ claim("3.1", _TABLE_3, _BY_BOOTSTRAP)(partial(_closer, "S", "M", "L"))
 )
 def _group_l_closer() -> tuple[str, str]:
     errors = {name: rmse(ked, data.coefficient) for name, (data, _, ked) in ((n, truth(n)) for n in "SML")}
-    more = {name: errors_of_groups(Ked(), name, "L") for name in "SM"}
-    return all_or_open(*more.values()), (
+    excess = {name: errors_of_groups(Ked(), name, "L") for name in "SM"}
+    return all_or_open(*excess.values()), (
         ", ".join(f"{name} {error:.4f}" for name, error in errors.items())
-        + "".join(f"; {name} above L by {each}" for name, each in more.items())
+        + "".join(f"; {name} above L by {difference}" for name, difference in excess.items())
     )
 
 
@@ -182,9 +180,9 @@ def _housner_worse_when_squat() -> tuple[str, str]:
 def _outperforms() -> tuple[str, str]:
     sets = [truth(name) for name in ("table1", "S", "M", "L")]
     data = all_measurements()
-    housner, ked = (np.concatenate([each[i] for each in sets]) for i in (1, 2))
-    won = np.concatenate([closer_rows(each) for each, _, _ in sets])
-    slender = np.concatenate([each.slenderness > 6.0 for each, _, _ in sets])
+    housner, ked = (np.concatenate([item[i] for item in sets]) for i in (1, 2))
+    won = np.concatenate([closer_rows(item) for item, _, _ in sets])
+    slender = np.concatenate([item.slenderness > 6.0 for item, _, _ in sets])
     above = int((won & slender).sum())
     simple = HorizontalMomentum().of_slenderness(data.slenderness)
     return IN_PART, (
@@ -204,21 +202,22 @@ def _large_bodies() -> tuple[str, str]:
     coefficients = large_bodies([0.1, 10.0])
     flat, hollow, ked = (coefficients[name].tolist() for name in ("flat", "hollow", "ked"))
     return UNTESTABLE, (
-        "the heaviest measured block is 5.6 kg; L is closer than S by a loss that does not depend on mass just "
-        f"as well; a contact bed (h/b = 2, 41 points) has r = {flat[0]:.3f} at every size on a flat base, and over a "
-        f"hollow of 0.1 mm {hollow[0]:.3f} at 0.1 m and {hollow[1]:.3f} at 10 m of width: what is small beside a large "
-        f"body stops to matter, but the model's {ked[1]:.3f} does not become right, it is {ked[1] - flat[1]:+.3f} off"
+        "the heaviest measured block has 5.6 kg; a loss independent of mass also explains that L is closer than S; a "
+        f"contact bed (h/b = 2, 41 points) has r = {flat[0]:.3f} at every size on a flat base, and over a hollow of "
+        f"0.1 mm {hollow[0]:.3f} at a width of 0.1 m and {hollow[1]:.3f} at 10 m: small defects have no effect on a "
+        f"large body, but the model's {ked[1]:.3f} still has an error of {ked[1] - flat[1]:+.3f}"
     )
 
 
 @claim(
     "4",
     "calculating loss and conservation stage by stage aligns more closely with reality",
-    "r alone was measured; the same slender limit follows from a viscous flat contact",
+    "only r was measured; a viscous flat contact has the same slender limit",
 )
 def _reality() -> tuple[str, str]:
     return UNTESTABLE, (
-        "no measurement in the paper resolves the stages; stage 3 redistributes energy as no rigid body can"
+        "no measurement in the paper resolves the stages; stage 3 redistributes energy in a way impossible for a rigid "
+        "body"
     )
 
 
@@ -229,10 +228,11 @@ def _reality() -> tuple[str, str]:
 )
 def _larger_structures() -> tuple[str, str]:
     errors = {n: rmse(k, d.coefficient) for n, (d, _, k) in ((n, truth(n)) for n in "SML")}
-    falls = {f"{one} to {other}": errors_of_groups(Ked(), one, other) for one, other in ("SM", "ML")}
+    falls = {f"{smaller} to {larger}": errors_of_groups(Ked(), smaller, larger) for smaller, larger in ("SM", "ML")}
     return all_or_open(*falls.values()), (
         ", ".join(f"{name} {error:.4f}" for name, error in errors.items())
-        + f" (RMSE of r; mass S < M < L); falls {', '.join(f'from {name} by {each}' for name, each in falls.items())}"
+        + " (RMSE of r; mass S < M < L); falls "
+        + ", ".join(f"from {name} by {difference}" for name, difference in falls.items())
     )
 
 
@@ -243,6 +243,6 @@ def _larger_structures() -> tuple[str, str]:
 )
 def _future() -> tuple[str, str]:
     return UNTESTABLE, (
-        "proposals for further work, built here: a contact bed, complementarity, solids in space, units; what explains "
-        "the measurements stands in its own section, and it is a loss beside the bed"
+        "proposals for further work, implemented here: a contact bed, complementarity, 3D solids, units; the section "
+        "on explanations of the measurements finds a loss in addition to the bed"
     )

@@ -1,4 +1,4 @@
-"""One body under every model: coefficient with its interval for one more measurement, and what it implies."""
+"""One body with all models: coefficient with its interval for a new measurement, and implied quantities."""
 
 import math
 from collections.abc import Sequence
@@ -25,19 +25,19 @@ def interval_for(
     """Return a model's coefficient with an interval from its own misfit to the measurements.
 
     The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own
-    predictions, bias included: it says how far one measured body may lie from this model. That of the calibrated
-    default is of its posterior, for a body on an interface like none of those measured.
+    predictions, with its bias. It applies to one measured body. The interval of the calibrated default is from its
+    posterior, for a body on a new interface.
 
     Parameters
     ----------
     model : RestitutionModel
-        Any model; a fixed coefficient takes the scatter of the calibrated default.
+        Any model; a fixed coefficient has the scatter of the calibrated default.
     body : Body
         The body.
     foot : {"left", "right"}
-        The foot on which it lands.
+        Landing foot.
     measurements : DataSet, optional
-        What was measured; the 39 published ones if not given.
+        Measurements; default: the 39 published coefficients.
 
     Returns
     -------
@@ -60,9 +60,9 @@ def interval_for(
 
 
 def _misfit(model: RestitutionModel, data: DataSet) -> tuple[float, float]:
-    """Return the scatter of the measurements around a model, from what is kept of the models as they are."""
+    """Return the scatter of the measurements around a model, from stored values of unfitted models."""
     first, *misfit = _kept_misfits(data).get(model.label, (math.nan,))
-    # one prediction tells another model of the same label
+    # one prediction detects another model with the same label
     if abs(first - model.of_slenderness(data.slenderness[:1])[0]) < 1e-12:
         return misfit[0], misfit[1]
     return _fitted(model.of_slenderness(data.slenderness).tobytes(), data)
@@ -70,7 +70,7 @@ def _misfit(model: RestitutionModel, data: DataSet) -> tuple[float, float]:
 
 @lru_cache(maxsize=8)
 def _kept_misfits(data: DataSet) -> dict[str, list[float]]:
-    """Return the first prediction and the scatter that are kept of models, by their labels."""
+    """Return the stored first prediction and scatter of models, by label."""
     stored = kept(KEPT)
     if stored["inputs"] != fingerprint(data):
         return {}
@@ -89,7 +89,7 @@ CALIBRATED = Calibrated.name
 
 @dataclass(frozen=True, slots=True)
 class CoefficientRow:
-    """One model's answer for one body."""
+    """Result of one model for one body."""
 
     name: str  # of the model with its parameters, or "calibrated"
     title: str  # the model in one line
@@ -97,7 +97,7 @@ class CoefficientRow:
     low: float  # low, high: 95 % interval for a single measured body, from the residuals on the measurements [-]
     high: float
     implication: Implication  # impulse position, friction, energy loss
-    warnings: tuple[str, ...]  # what a user should know before using the number
+    warnings: tuple[str, ...]  # limitations of the number
 
     @property
     def half_interval(self) -> float:
@@ -105,7 +105,7 @@ class CoefficientRow:
         return 0.5 * (self.high - self.low)
 
     def answer(self) -> Answer:
-        """Return the model's coefficient, its interval and what it implies."""
+        """Return the model's coefficient, its interval and implied quantities."""
         implied = self.implication
         return Answer({
             "model": self.name, "coefficient": self.coefficient,
@@ -117,7 +117,7 @@ class CoefficientRow:
 
 
 def default_models() -> list[RestitutionModel]:
-    """Return every registered model that needs no value by hand, the calibrated default before all others."""
+    """Return all registered models without a required value, the calibrated default first."""
     return [model(name) for name in sorted(models(), key=lambda name: name != CALIBRATED) if name != "fixed"]
 
 
@@ -127,21 +127,21 @@ def coefficient_table(
     *,
     foot: Foot = "right",
 ) -> tuple[CoefficientRow, ...]:
-    """Return the coefficient of a body under every model, with intervals and implications.
+    """Return the coefficients of a body with all models, with intervals and implied quantities.
 
     Parameters
     ----------
     body : Body
         The body.
     which : sequence of RestitutionModel, optional
-        Models to show; by default every registered one.
+        Models of the table; default: all registered models.
     foot : {"left", "right"}
-        The foot on which it lands.
+        Landing foot.
 
     Returns
     -------
     tuple of CoefficientRow
-        One row a model, the calibrated default first.
+        One row per model, the calibrated default first.
 
     Examples
     --------
@@ -150,28 +150,28 @@ def coefficient_table(
     >>> rows[0].name, [round(row.coefficient, 6) for row in rows if row.name == "housner"]
     ('calibrated', [0.911765])
     """
-    chosen = [each for each in which or default_models() if not isinstance(each, Calibrated)]
-    return tuple(_row(body, foot, each) for each in (Calibrated(), *map(model, chosen)))
+    chosen = [candidate for candidate in which or default_models() if not isinstance(candidate, Calibrated)]
+    return tuple(_row(body, foot, candidate) for candidate in (Calibrated(), *map(model, chosen)))
 
 
-def _row(body: Body, foot: Foot, known: RestitutionModel) -> CoefficientRow:
-    interval, given = interval_for(known, body, foot=foot), known.evaluate(body, foot)
-    warnings: tuple[str, ...] = tuple(flag.value for flag in given.flags)
-    if isinstance(known, Calibrated) and (outside := outside_evidence(body, foot)):
+def _row(body: Body, foot: Foot, row_model: RestitutionModel) -> CoefficientRow:
+    interval, evaluated = interval_for(row_model, body, foot=foot), row_model.evaluate(body, foot)
+    warnings: tuple[str, ...] = tuple(flag.value for flag in evaluated.flags)
+    if isinstance(row_model, Calibrated) and (outside := outside_evidence(body, foot)):
         warnings = (*warnings, outside)
-    value, low, high = given.coefficient, float(interval.low), float(interval.high)
+    value, low, high = evaluated.coefficient, float(interval.low), float(interval.high)
     implication = implied(body, value, foot=foot)
     objections = (*warnings, *implication.objections)
-    return CoefficientRow(known.label, known.title, value, low, high, implication, objections)
+    return CoefficientRow(row_model.label, row_model.title, value, low, high, implication, objections)
 
 
 def outside_evidence(body: Body, foot: Foot = "right") -> str:
-    """Say that a body lies outside the slendernesses that were measured; nothing if it lies inside."""
+    """Return a warning for a body outside the measured range of slenderness; empty inside."""
     low, high = CALIBRATED_RANGE
     ratio = body.side(foot).slenderness_ratio
     if low <= ratio <= high:
         return ""
     return Message(
-        "h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation",
+        "h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}; the interval is an extrapolation",
         {"ratio": ratio, "low": low, "high": high},
     )

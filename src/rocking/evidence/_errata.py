@@ -1,4 +1,4 @@
-"""What Mao et al. (2024) print beside what is computed: Tables 1 to 3, and errors, reported and never corrected."""
+"""Printed and recomputed values of Mao et al. (2024): Tables 1 to 3, and errata, without correction of the data."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,30 +13,30 @@ from rocking.restitution import Housner, Ked
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """Something the paper prints that recomputing does not confirm, or confirms against doubt."""
+    """A printed statement that recomputing does not confirm, or confirms against doubt."""
 
     name: str
-    statement: str  # what recomputing shows
+    statement: str  # result of recomputing
     evidence: str  # the numbers
-    found: bool  # whether the data at hand show it
+    found: bool  # True if the data confirm the erratum
 
 
 def errata(data: dict[str, DataSet] | None = None) -> tuple[Erratum, ...]:
-    """Look for every erratum in the paper's tables.
+    """Check all errata in the paper's tables.
 
     Parameters
     ----------
     data : dict of str to DataSet, optional
-        The paper's data sets, or altered ones, which a check uses as its negative control.
+        The paper's data sets (default), or modified ones for a negative control.
 
     Returns
     -------
     tuple of Erratum
-        In the order of the tables.
+        Errata in the order of the tables.
 
     Examples
     --------
-    >>> all(each.found for each in errata())
+    >>> all(erratum.found for erratum in errata())
     True
     """
     tables = datasets() if data is None else data
@@ -76,14 +76,14 @@ def _rounded_energy_ratios(tables: dict[str, DataSet]) -> tuple[str, bool]:
     printed = tables["table2"].printed["housner"]
     ratios = np.round(printed**2, 2)
     misfit = float(np.abs(np.sqrt(ratios) - printed).max())
-    return f"sqrt({', '.join(f'{each:.2f}' for each in ratios)}) to {misfit:.0e}", (misfit < 1e-6)
+    return f"sqrt({', '.join(f'{ratio:.2f}' for ratio in ratios)}) to {misfit:.0e}", (misfit < 1e-6)
 
 
 @_erratum("Table 2, a wrong r_H", "One r_H is wrong beyond any rounding of energy ratios.")
 def _wrong_value(tables: dict[str, DataSet]) -> tuple[str, bool]:
     second = tables["table2"]
     truth = Housner().of_slenderness(second.slenderness)
-    # an energy ratio rounded to two digits leaves r open by 0.005 / (2 r)
+    # an energy ratio rounded to two digits gives r with an error of up to 0.005 / (2 r)
     beyond = np.abs(second.printed["housner"] - truth) > 0.0051 / (2.0 * truth)
     where = [
         f"h/b = {ratio:g}: printed {p:.6f}, true {t:.6f}"
@@ -122,11 +122,11 @@ def _true_housner_of_table_2(tables: dict[str, DataSet]) -> tuple[str, bool]:
     second = tables["table2"]
     truth = Housner().of_slenderness(second.slenderness)
     off = int((np.abs(truth - second.printed["housner"]) > 0.5e-6).sum())
-    return ", ".join(f"{each:.6f}" for each in truth), (off == len(second) - 1)
+    return ", ".join(f"{value:.6f}" for value in truth), (off == len(second) - 1)
 
 
 @_erratum(
-    "Correlation", "The correlation does not tell the models apart: Housner's is as high, and higher in S, M and L."
+    "Correlation", "The correlation does not distinguish the models: Housner's is equal, and higher in S, M and L."
 )
 def _housner_correlates_as_well(tables: dict[str, DataSet]) -> tuple[str, bool]:
     pairs = []
@@ -141,7 +141,7 @@ def _housner_correlates_as_well(tables: dict[str, DataSet]) -> tuple[str, bool]:
     )
 
 
-@_erratum("Table 3, number of blocks", "Section 3.1 says each set has 10 blocks; Table 3 lists fewer.")
+@_erratum("Table 3, number of blocks", "According to section 3.1 each set has 10 blocks; Table 3 lists fewer.")
 def _missing_blocks(tables: dict[str, DataSet]) -> tuple[str, bool]:
     counts = [len(tables[name]) for name in ("S", "M", "L")]
     return f"{counts} rows in S, M, L", (counts == [9, 9, 9])
@@ -154,7 +154,7 @@ def _missing_blocks(tables: dict[str, DataSet]) -> tuple[str, bool]:
 def _run_together(tables: dict[str, DataSet]) -> tuple[str, bool]:
     group = tables["M"]
     row = group.labels.index("M7")
-    # masses of a group are proportional to slenderness, which settles where the number ends
+    # masses of a group are proportional to slenderness, which shows the end of the number
     others = np.arange(len(group)) != row
     per_ratio = float(np.median(group.mass[others] / group.slenderness[others]))
     expected = per_ratio * float(group.slenderness[row])
@@ -170,9 +170,9 @@ def _run_together(tables: dict[str, DataSet]) -> tuple[str, bool]:
 )
 def _closer_in_half(tables: dict[str, DataSet]) -> tuple[str, bool]:
     sets = [tables[name] for name in ("table1", "S", "M", "L")]
-    won, slender = [np.array(closer_rows(each)) for each in sets], [each.slenderness > 6.0 for each in sets]
-    total, of_table_3 = (sum(int(each.sum()) for each in wins) for wins in (won, won[1:]))
-    count, of = (sum(map(len, some)) for some in (sets, sets[1:]))
+    won, slender = [np.array(closer_rows(data)) for data in sets], [data.slenderness > 6.0 for data in sets]
+    total, of_table_3 = (sum(int(data.sum()) for data in wins) for wins in (won, won[1:]))
+    count, of = (sum(map(len, subset)) for subset in (sets, sets[1:]))
     above = sum(int((closer & tall).sum()) for closer, tall in zip(won, slender, strict=True))
     rows_above = sum(int(tall.sum()) for tall in slender)
     return f"{total} of {count} rows, {of_table_3} of {of} in Table 3, {above} of {rows_above} above 6", (
@@ -181,7 +181,7 @@ def _closer_in_half(tables: dict[str, DataSet]) -> tuple[str, bool]:
 
 
 def closer_rows(data: DataSet) -> list[bool]:
-    """Return in which rows KED is closer to the measurement than Housner."""
+    """Return one flag per row: True if KED is closer to the measurement than Housner."""
     ked = np.abs(Ked().of_slenderness(data.slenderness) - data.coefficient)
     housner = np.abs(Housner().of_slenderness(data.slenderness) - data.coefficient)
     return [bool(closer) for closer in ked < housner]
@@ -189,11 +189,11 @@ def closer_rows(data: DataSet) -> list[bool]:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One printed number beside the recomputed one."""
+    """A printed number and its recomputed value."""
 
-    printed: float  # as the paper prints it
-    recomputed: float  # by this package
-    digits: int  # decimals that the paper prints
+    printed: float  # printed value
+    recomputed: float  # recomputed value
+    digits: int  # number of printed decimals
 
     @property
     def difference(self) -> float:
@@ -202,7 +202,7 @@ class Entry:
 
     @property
     def agrees(self) -> bool:
-        """Whether the printed digits are those of the recomputed value."""
+        """True if the recomputed value rounds to the printed digits."""
         return abs(self.difference) <= 0.5000001 * 10.0**-self.digits
 
 
@@ -218,11 +218,11 @@ class TableRow:
 
 
 def agreement(rows: Sequence[TableRow]) -> str:
-    """Return how many printed values agree with the recomputed ones, and how many cannot be recomputed."""
+    """Return the numbers of printed values that agree, and that cannot be recomputed, as text."""
     entries = [entry for row in rows for entry in row.entries.values()]
     agreeing = f"{sum(entry.agrees for entry in entries)} of {len(entries)} printed values agree in all digits"
-    given = sum("measured" not in row.entries for row in rows)
-    return f"{agreeing}; {given} measured r_e cannot be recomputed" if given else agreeing
+    missing = sum("measured" not in row.entries for row in rows)
+    return f"{agreeing}; {missing} measured r_e cannot be recomputed" if missing else agreeing
 
 
 def _roots() -> FloatArray:
@@ -237,7 +237,7 @@ def _means() -> FloatArray:
 
 
 _MEASURED: dict[str, Callable[[], FloatArray]] = {"table1": _roots, "table2": _means}
-"""What measured values are recomputed from; those of Table 3 are data, which tests compare with the article's text."""
+"""Functions that recompute measured values; values of Table 3 are data, and tests compare them with the article."""
 
 
 def recomputed(name: str) -> tuple[TableRow, ...]:

@@ -1,4 +1,4 @@
-"""The league table: every model, as it is or fitted, against every measurement, by measures that tell them apart."""
+"""The league table: all models, unfitted or fitted, compared with all measurements by several error measures."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -34,16 +34,16 @@ from rocking.restitution.shifted_impulse import shifted
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A model, or a family of models with the rule that fits it."""
+    """A model, or a family of models with its fit."""
 
     name: str  # name in the league
-    parameters: tuple[str, ...]  # names of the fitted parameters; none for a model as it is
-    # takes a `DataSet` and some of its rows; returns for each of them the model with the least squares of r
+    parameters: tuple[str, ...]  # names of the fitted parameters; empty for an unfitted model
+    # for a `DataSet` and selections of its rows: the least-squares model of r for each selection
     fit: Callable[[DataSet, Sequence[BoolArray]], list[RestitutionModel]]
 
 
 def as_it_is(model: RestitutionModel) -> Contender:
-    """Return a contender without anything fitted."""
+    """Return an unfitted contender."""
     return Contender(model.label, (), lambda data, rows: [model] * len(rows))
 
 
@@ -53,7 +53,7 @@ def with_interface(model: RestitutionModel) -> Contender:
     def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
         """Fit the factor by least squares."""
         r = model.of_slenderness(data.slenderness)
-        return [Interface(model, eta=_best_eta(r[some], data.coefficient[some])) for some in rows]
+        return [Interface(model, eta=_best_eta(r[subset], data.coefficient[subset])) for subset in rows]
 
     return Contender(f"eta*{model.name}", ("eta",), fit)
 
@@ -67,17 +67,17 @@ def family(
     *,
     eta: bool,
 ) -> Contender:
-    """Return a contender with one fitted parameter, and an interface factor on request.
+    """Return a contender with one fitted parameter, and optionally an interface factor.
 
-    The parameter makes a model; of impacts and a column of its values it makes coefficients, a line for each value.
+    make: model of a parameter value; coefficients: those of impacts for a column of values, one row per value.
     """
 
     def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
-        """Find the parameter by bounded least squares."""
+        """Fit the parameter by bounded least squares."""
         geometry = ImpactGeometry.of_slenderness(data.slenderness)
 
         def factors(values: FloatArray, which: IntArray) -> tuple[list[float], list[float]]:
-            """Return the interface factors at values of the parameter, and the misfits, each to its rows."""
+            """Return the interface factors and the misfits at values of the parameter, each for its rows."""
             every = np.maximum(coefficients(geometry, values[:, None]), 0.0)
             pairs = [(r[rows[i]], data.coefficient[rows[i]]) for r, i in zip(every, which.tolist(), strict=True)]
             best = [_best_eta(r, measured) if eta else 1.0 for r, measured in pairs]
@@ -100,42 +100,42 @@ def family(
 
 
 def contact_bed(*, eta: bool) -> Contender:
-    """Return the contact bed with points and hardness fitted, damping its default, and a factor on request."""
-    usual = ContactBedModel().damping
+    """Return the contact bed with fitted points and hardness, default damping, and optionally a factor."""
+    default_damping = ContactBedModel().damping
 
-    def of(points: int) -> Contender:
+    def family_with(points: int) -> Contender:
         return family(
             "contact-bed",
             "hardness",
             lambda x: ContactBedModel(points=points, hardness=x),
-            lambda geometry, x: tabulated(geometry, points, usual, x),
+            lambda geometry, x: tabulated(geometry, points, default_damping, x),
             HARDNESS,
             eta=eta,
         )
 
     def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
-        """Fit the hardness with every number of points; the one with the least squares takes part."""
+        """Fit the hardness with all numbers of points; return the least-squares model."""
 
-        def closest(models: Sequence[RestitutionModel], some: BoolArray) -> RestitutionModel:
-            ratios, measured = data.slenderness[some], data.coefficient[some]
+        def closest(models: Sequence[RestitutionModel], subset: BoolArray) -> RestitutionModel:
+            ratios, measured = data.slenderness[subset], data.coefficient[subset]
             return min(models, key=lambda model: float(((model.of_slenderness(ratios) - measured) ** 2).sum()))
 
-        each = zip(*(of(points).fit(data, rows) for points in POINTS), strict=True)
-        return [closest(models, some) for models, some in zip(each, rows, strict=True)]
+        by_rows = zip(*(family_with(points).fit(data, rows) for points in POINTS), strict=True)
+        return [closest(models, subset) for models, subset in zip(by_rows, rows, strict=True)]
 
     prefix, first = ("eta*", ("eta",)) if eta else ("", ())
     return Contender(f"{prefix}contact-bed(points, hardness)", (*first, "points", "hardness"), fit)
 
 
 def contenders() -> list[Contender]:
-    """Return everyone who takes part by default."""
+    """Return the default contenders."""
     impulses = [ShiftedImpulse(k=2.0 / 3.0), *(DistributedImpulse(q=q) for q in (0.0, 1.0, 2.0))]
-    whole = [Housner(), Ked(), HorizontalMomentum(), *impulses, PlasticWinkler(), ContactBedModel()]
+    unfitted = [Housner(), Ked(), HorizontalMomentum(), *impulses, PlasticWinkler(), ContactBedModel()]
     factored = [Housner(), Ked(), HorizontalMomentum(), PlasticWinkler()]
     by_position = ("shifted-impulse", "k", ShiftedImpulse, shifted, (0.0, 1.0))
     by_exponent = ("distributed-impulse", "q", DistributedImpulse, distributed, (0.0, 20.0))
     return [
-        *(as_it_is(model) for model in whole),
+        *(as_it_is(model) for model in unfitted),
         family(*by_position, eta=False),
         family(*by_exponent, eta=False),
         *(with_interface(model) for model in factored),
@@ -151,15 +151,18 @@ def _best_eta(model: FloatArray, measured: FloatArray) -> float:
 
 
 _UNRESOLVED, _SLENDER = 6.0, 6.0
-_PUBLISHED = "Two sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what"
+_PUBLISHED = (
+    "Two sources, repeated tests of the same blocks and one tape-covered interface are little evidence. The behaviour "
+    "of"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class LeagueRow:
-    """One contender's record on measurements."""
+    """Errors of one contender on measurements."""
 
     name: str  # in the league
-    model: RestitutionModel  # with fitted values where there are any
+    model: RestitutionModel  # model with fitted values, if any
     parameters: tuple[str, ...]  # names of the fitted parameters
     rmse: float  # rmse, bias: of r, model minus experiment [-]
     bias: float
@@ -169,22 +172,22 @@ class LeagueRow:
     concordance: float  # Lin's [-]
     loss_rmse: float  # loss_rmse, log_loss_rmse: errors of the energy loss 1 - r^2, absolute and logarithmic [-]
     log_loss_rmse: float
-    leave_one_out: float  # RMSE of predictions by fits that have not seen the row [-]
-    leave_group_out: float  # the same without its whole data set [-]
-    bic: float  # of the likelihood that knows the rounding, with a scatter that grows with the loss; lower is better
+    leave_one_out: float  # RMSE of predictions by fits without the row [-]
+    leave_group_out: float  # RMSE of predictions by fits without the data set of the row [-]
+    bic: float  # BIC of the likelihood with rounding, with a scatter that grows with the loss; lower is better
     by_group: dict[str, float]  # RMSE by data set [-]
     by_band: dict[str, float]  # RMSE by slenderness band [-]
-    # 95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved where it includes zero
+    # 95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved if it includes zero
     ahead_of_ked: tuple[float, float]
 
     @property
     def fitted(self) -> str:
-        """The fitted values, as words."""
+        """Fitted values as text."""
         values = self.model.parameters
         return ", ".join(f"{name} = {values[name]:.4g}" for name in self.parameters)
 
     def answer(self) -> Answer:
-        """Return what is shown of the model."""
+        """Return the results of the model."""
         plain = {name: getattr(self, name) for name in self.__slots__ if name not in ("model", "parameters")}
         return Answer({**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}})
 
@@ -195,19 +198,19 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
     Parameters
     ----------
     extra : sequence of RestitutionModel
-        Your own models, to take part as they are.
+        User models, compared without a fit.
     measurements : DataSet, optional
-        What they are judged by; the 39 published coefficients if not given.
+        Measurements; default: the 39 published coefficients.
 
     Returns
     -------
     tuple of LeagueRow
-        One row a contender.
+        One row per contender.
 
     Raises
     ------
     InvalidValueError
-        If the measurements are of fewer than five blocks.
+        If the measurements have fewer than five blocks.
 
     Examples
     --------
@@ -217,7 +220,7 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
     data = all_measurements() if measurements is None else measurements
     if (count := len(set(zip(data.group, data.labels, data.slenderness.tolist(), strict=True)))) < FEWEST:
         raise InvalidValueError(
-            "a league needs measurements of at least {fewest} blocks, got {count}", fewest=FEWEST, count=count
+            "a league requires measurements of {fewest} or more blocks, got {count}", fewest=FEWEST, count=count
         )
     rows = [*_standing(data), *(_row(as_it_is(model), data) for model in extra)]
     return tuple(sorted(rows, key=lambda row: row.rmse))
@@ -231,11 +234,11 @@ def _standing(data: DataSet) -> tuple[LeagueRow, ...]:
 def _row(contender: Contender, data: DataSet) -> LeagueRow:
     measured = data.coefficient
     groups = {name: np.array([group == name for group in data.group]) for name in dict.fromkeys(data.group)}
-    whole, alone = np.ones(len(data), dtype=bool), list(~np.eye(len(data), dtype=bool))
-    apart = [~rows for rows in groups.values()]
+    all_rows, without_row = np.ones(len(data), dtype=bool), list(~np.eye(len(data), dtype=bool))
+    without_group = [~rows for rows in groups.values()]
     if contender.parameters and len(groups) == 1:
-        apart = []  # nothing is left to fit
-    model, *others = contender.fit(data, [whole, *alone, *apart])
+        without_group = []  # no rows remain for the fit
+    model, *partial_fits = contender.fit(data, [all_rows, *without_row, *without_group])
     r = model.of_slenderness(data.slenderness)
     low, high = np.quantile(resampled((r - measured) ** 2, drawn(data)), [0.025, 0.975]).tolist()
     against_ked = compare(data, r, Ked().of_slenderness(data.slenderness))
@@ -249,8 +252,8 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
         rmse_low=low,
         rmse_high=high,
         **{name: getattr(comparison, name)(r, measured) for name in measures},
-        leave_one_out=_left_out(others[: len(alone)], alone, data),
-        leave_group_out=_left_out(others[len(alone) :], apart, data) if apart else math.nan,
+        leave_one_out=_left_out(partial_fits[: len(without_row)], without_row, data),
+        leave_group_out=_left_out(partial_fits[len(without_row) :], without_group, data) if without_group else math.nan,
         bic=rounding_bic(data, r, count),
         by_group={name: comparison.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
         by_band={
@@ -261,7 +264,7 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
 
 
 def _left_out(models: Sequence[RestitutionModel], seen: Sequence[BoolArray], data: DataSet) -> float:
-    """Return the error of predictions of rows by models that were fitted to the others [-]."""
+    """Return the RMSE of predictions of rows by models fitted to the other rows [-]."""
     predicted = np.empty(len(data))
     for model, rows in zip(models, seen, strict=True):
         predicted[~rows] = model.of_slenderness(data.slenderness[~rows])
@@ -269,19 +272,19 @@ def _left_out(models: Sequence[RestitutionModel], seen: Sequence[BoolArray], dat
 
 
 def verdict(rows: Sequence[LeagueRow], measurements: DataSet | None = None) -> tuple[str, ...]:
-    """Put the league table into words, also where the paper's own model loses.
+    """Return the conclusions of the league table as sentences.
 
     Parameters
     ----------
     rows : sequence of LeagueRow
-        The league, which must hold ``ked`` and ``housner``.
+        The league, with the rows ``ked`` and ``housner``.
     measurements : DataSet, optional
-        What it is of; the 39 published coefficients if not given.
+        Measurements of the league; default: the 39 published coefficients.
 
     Returns
     -------
     tuple of str
-        One sentence or two each.
+        One or two sentences per conclusion.
     """
     data = all_measurements() if measurements is None else measurements
     by_name = {row.name: row for row in rows}
@@ -295,9 +298,9 @@ def verdict(rows: Sequence[LeagueRow], measurements: DataSet | None = None) -> t
         f"{_slender(data, ked, housner)}The bias of KED over all rows is {ked.bias:+.4f} (model minus measurement).",
         f"With fitted parameters the lowest BIC is that of {best.name} ({best.fitted or 'nothing fitted'}): RMSE "
         f"{best.rmse:.4f}, leave-one-out {best.leave_one_out:.4f}, leave-one-data-set-out {best.leave_group_out:.4f}.",
-        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. "
-        f"{_PUBLISHED if data is all_measurements() else 'What'} a model does outside slenderness "
-        f"{data.slenderness.min():g} to {data.slenderness.max():g}, or for other shapes, is theory.",
+        f"Models that these data do not distinguish (BIC within {_UNRESOLVED:g}): {', '.join(close)}. "
+        f"{_PUBLISHED if data is all_measurements() else 'The behaviour of'} a model outside slenderness "
+        f"{data.slenderness.min():g} to {data.slenderness.max():g}, or for other shapes, is not tested.",
     )
 
 
@@ -306,9 +309,9 @@ def _slender(data: DataSet, ked: LeagueRow, housner: LeagueRow) -> str:
     return f"Above slenderness {_SLENDER:g}: {_between(rows, ked, housner, 'r')}. " if len(rows) else ""
 
 
-def _between(data: DataSet, one: LeagueRow, other: LeagueRow, measure: str) -> str:
-    first, second = (row.model.of_slenderness(data.slenderness) for row in (one, other))
-    return compare(data, first, second, measure).sentence(one.name, other.name)
+def _between(data: DataSet, first_row: LeagueRow, second_row: LeagueRow, measure: str) -> str:
+    first, second = (row.model.of_slenderness(data.slenderness) for row in (first_row, second_row))
+    return compare(data, first, second, measure).sentence(first_row.name, second_row.name)
 
 
 def _against_free(data: DataSet, ked: LeagueRow, free: Sequence[LeagueRow]) -> str:

@@ -1,4 +1,4 @@
-"""What the measurements say about the coefficient of one body, as a distribution to draw from."""
+"""Distribution of the coefficient of one body from the measurements, for sampling."""
 
 import math
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ from rocking.studies.sensitivity.restitutions import SampledRestitution
 
 _POINTS = 1025
 _GRID = 2001
-_STRIDE = 50  # of the points by which the part of the grid that is read is found
+_STRIDE = 50  # stride of the points for the search of the used part of the grid
 _ROUNDS = 3
 _PIECE = 64
 
@@ -34,22 +34,22 @@ _PIECE = 64
 class RestitutionDistribution:
     """Posterior predictive distribution of the coefficient of restitution of one body.
 
-    It holds both that the parameters of the calibrated model are not known exactly, and that bodies scatter about it.
-    What would create energy is cut off at the bound of each side, and what is below zero there: it is the distribution
-    of r on condition that 0 <= r <= bound, and the probability that was cut off is kept.
+    It contains the uncertainty of the parameters of the calibrated model and the scatter of bodies. It is the
+    distribution of r under the condition 0 <= r <= bound, where the bound excludes a gain of energy. The truncated
+    probability is stored.
 
     Parameters
     ----------
     tables : dict of str to ndarray
-        By foot, coefficients at equally spaced probabilities from 0 to 1, the outermost a quarter of a step inside [-].
+        Coefficients at equally spaced probabilities from 0 to 1, the ends a quarter of a step inside, by foot [-].
     cut : dict of str to float
-        By foot, the probability outside [0, bound] that was cut off [-].
+        Truncated probability outside [0, bound], by foot [-].
     bounds : dict of str to float
-        By foot, the largest coefficient at which landing on it creates no energy [-].
+        Largest coefficient without a gain of energy, by landing foot [-].
     foot : {"left", "right"}
-        The foot of which mean, quantiles and samples are asked.
+        Landing foot of mean, quantiles and samples.
     extrapolated : bool
-        Whether the slenderness is outside what was measured.
+        True if the slenderness is outside the measured range.
     """
 
     tables: Mapping[Foot, FloatArray]
@@ -82,19 +82,19 @@ class RestitutionDistribution:
         return float(np.sqrt(trapezoid(moved, 1.0 / (self.quantiles.size - 1))))
 
     def quantile(self, probability: Any, foot: Foot | None = None) -> FloatArray:
-        """Return the coefficients that are not exceeded with given probabilities.
+        """Return the quantiles of the coefficient.
 
         Parameters
         ----------
         probability : float or array_like
             Probabilities in [0, 1] [-].
         foot : {"left", "right"}, optional
-            The foot on which the body lands, if not that of the distribution.
+            Landing foot; default: that of the distribution.
 
         Returns
         -------
         ndarray
-            Coefficients, of the same shape [-].
+            Coefficients with the same shape [-].
 
         Raises
         ------
@@ -108,16 +108,16 @@ class RestitutionDistribution:
         return np.interp(p, np.linspace(0.0, 1.0, table.size), table)
 
     def sample(self, count: int, seed: int, foot: Foot | None = None) -> FloatArray:
-        """Return coefficients drawn from the distribution.
+        """Return sampled coefficients.
 
         Parameters
         ----------
         count : int
-            How many.
+            Number of samples.
         seed : int
-            Seed; the same one gives the same draws, and onto both feet those of the same probabilities.
+            Random seed; samples for both feet have equal probabilities.
         foot : {"left", "right"}, optional
-            The foot on which the body lands, if not that of the distribution.
+            Landing foot; default: that of the distribution.
 
         Returns
         -------
@@ -127,34 +127,34 @@ class RestitutionDistribution:
         return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))), foot)
 
     def per_history(self, seed: int) -> SampledRestitution:
-        """Return the restitution of a body whose coefficient is not known: one draw for every history.
+        """Return a restitution with one sampled coefficient per history.
 
-        Both sides take it at the same probability: where it is high onto one foot, it is high onto the other.
+        Both feet have the same probability: a high coefficient on one foot means a high one on the other.
 
         Parameters
         ----------
         seed : int
-            Seed of the draws.
+            Random seed.
 
         Returns
         -------
         SampledRestitution
-            For `simulate`, maps, spectra and fragility analyses.
+            Restitution for `simulate`, maps, spectra and fragility analyses.
         """
         return SampledRestitution(dict(self.tables), seed, cut=(self.cut["left"], self.cut["right"]))
 
     def per_impact(self, seed: int) -> RandomRestitution:
-        """Return the restitution of a body whose every impact is another draw.
+        """Return a restitution with one sampled coefficient per impact.
 
         Parameters
         ----------
         seed : int
-            Seed of the draws.
+            Random seed.
 
         Returns
         -------
         RandomRestitution
-            For `simulate`, maps, spectra and fragility analyses.
+            Restitution for `simulate`, maps, spectra and fragility analyses.
         """
         return RandomRestitution(dict(self.tables), seed, cut=(self.cut["left"], self.cut["right"]))
 
@@ -169,14 +169,14 @@ def restitution_distribution(
     body : Body or float
         A body, or the slenderness ratio h/b of a rectangle [-].
     foot : {"left", "right"}
-        The foot on which it lands, of which quantiles are asked; laws are of both.
+        Landing foot of the quantiles; laws of impact apply to both feet.
     calibration : Calibration, optional
-        Posterior of the model; `calibrate_hierarchy` of the published measurements if not given.
+        Posterior of the model; default: `calibrate_hierarchy` of the published measurements.
 
     Returns
     -------
     RestitutionDistribution
-        Quantiles, and laws of impact made of them.
+        Quantiles, and laws of impact from them.
 
     Raises
     ------
@@ -185,21 +185,21 @@ def restitution_distribution(
 
     Examples
     --------
-    >>> found = restitution_distribution(4.0)
-    >>> low, high = found.quantile([0.025, 0.975])
-    >>> bool(low < found.mean < high)
+    >>> distribution = restitution_distribution(4.0)
+    >>> low, high = distribution.quantile([0.025, 0.975])
+    >>> bool(low < distribution.mean < high)
     True
     """
     posterior = calibrate_hierarchy() if calibration is None else calibration
-    known: Body = (
+    known_body: Body = (
         body if isinstance(body, Body) else Block(width=1.0, height=checks.positive("slenderness_ratio", body))
     )
     checks.foot("foot", foot)
     low, high = CALIBRATED_RANGE
-    outside = not all(low <= known.side(side).slenderness_ratio <= high for side in FEET)
-    bounds = {side: energy_bound(known, side) for side in FEET}
-    feet = (foot,) if known.is_symmetric else FEET
-    geometries = {side: ImpactGeometry.of_body(known, side) for side in feet}
+    outside = not all(low <= known_body.side(side).slenderness_ratio <= high for side in FEET)
+    bounds = {side: energy_bound(known_body, side) for side in FEET}
+    feet = (foot,) if known_body.is_symmetric else FEET
+    geometries = {side: ImpactGeometry.of_body(known_body, side) for side in feet}
     truncated = {
         side: _truncated(posterior, tuple(map(float, astuple(geometries[side]))), bounds[side]) for side in feet
     }
@@ -212,7 +212,7 @@ def restitution_distribution(
 
 @lru_cache(maxsize=64)
 def _truncated(posterior: Calibration, geometry: tuple[float, ...], bound: float) -> tuple[FloatArray, float]:
-    """Return the quantiles on condition that 0 <= r <= bound, and the probability of what is outside."""
+    """Return the quantiles under the condition 0 <= r <= bound, and the probability outside."""
     eta, k, s, gamma = posterior.samples.T
     mean = np.clip(eta * shifted(ImpactGeometry(*map(np.asarray, geometry)), k), 0.0, bound)
     sd = scatter(mean, s, gamma)
@@ -221,9 +221,9 @@ def _truncated(posterior: Calibration, geometry: tuple[float, ...], bound: float
 
 
 def _quantiles(mean: FloatArray, sd: FloatArray, low: float, high: float) -> FloatArray:
-    """Quantiles of an even mixture of normals between two probabilities: read from a grid, made exact by Newton."""
+    """Return quantiles of an equal mixture of normals between two probabilities, from a grid and Newton iteration."""
     levels = np.linspace(0.0, 1.0, _POINTS)
-    # the normal's ends are infinite: the outermost levels stand a quarter of a step inside
+    # the end levels are a quarter of a step inside, because the ends of a normal are infinite
     levels[[0, -1]] = 0.25 / _POINTS, 1.0 - 0.25 / _POINTS
     levels = low + (high - low) * levels
     grid = np.linspace((mean - 8.0 * sd).min(), (mean + 8.0 * sd).max(), _GRID)
@@ -238,7 +238,7 @@ def _quantiles(mean: FloatArray, sd: FloatArray, low: float, high: float) -> Flo
 
 
 def _below(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Return the distribution of the mixture, in pieces that stay in the cache."""
+    """Return the cumulative distribution of the mixture, computed in pieces that fit the cache."""
     from scipy.special import ndtr
 
     pieces = np.split(at, range(_PIECE, at.size, _PIECE))
@@ -246,6 +246,6 @@ def _below(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
 
 
 def _density(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Return the density of the mixture, in pieces that stay in the cache."""
+    """Return the density of the mixture, computed in pieces that fit the cache."""
     pieces = ((piece[:, np.newaxis] - mean) / sd for piece in np.split(at, range(_PIECE, at.size, _PIECE)))
     return np.concatenate([(np.exp(-0.5 * z**2) / sd).mean(axis=1) for z in pieces]) / math.sqrt(2.0 * math.pi)

@@ -1,4 +1,4 @@
-"""What could make the measured groups differ: explanations by the contact bed, their fit, and a verdict in words."""
+"""Explanations of the differences between measured groups by the contact bed: fits and conclusions."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _FIRST, _POLISHED, _AGAIN = 300, 1500, 100
 
 BLOCKS = ("S", "M", "L")
 DAMPED = (1.0, DAMPING[1])
-"""Damping ratios that are fitted [-]: below 1 hops are left over, and the stated error nears the scatter."""
+"""Range of fitted damping ratios [-]; below 1, hops remain, and the stated error is close to the scatter."""
 
 
 _DAMPING, _HARDNESS, _FACTOR, _SHARE = (slice(first, first + 4) for first in (0, 4, 8, 12))  # of each group
@@ -34,9 +34,9 @@ class FittedNumber:
     """One fitted number of an explanation."""
 
     name: str  # name
-    start: float  # where the fit starts
-    bounds: tuple[float, float]  # its range
-    sets: slice  # columns of `coefficients` that have its value
+    start: float  # initial value of the fit
+    bounds: tuple[float, float]  # range
+    sets: slice  # columns of `coefficients` with this value
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class Physics:
     """One explanation, as a family of predictions."""
 
     name: str  # short name
-    sentence: str  # what it says
-    parameters: tuple[FittedNumber, ...]  # the fitted numbers, the number of points not among them
+    sentence: str  # statement of the explanation
+    parameters: tuple[FittedNumber, ...]  # the fitted numbers, without the number of points
 
     def columns(self, behind: int) -> IntArray:
-        """Return where each number of `coefficients` is: a parameter's number, or behind them those without effect."""
+        """Return the position of each number of `coefficients`: index of a parameter, or after them, without effect."""
         columns = behind + np.arange(len(_WITHOUT))
         for number, parameter in enumerate(self.parameters):
             columns[parameter.sets] = number
@@ -62,8 +62,8 @@ class Physics:
 def coefficients(numbers: FloatArray, data: DataSet, points: IntArray | int) -> FloatArray:
     """Return coefficients of rows, of shape (..., rows), for numbers of shape (..., 18) [-].
 
-    The columns are damping ratio, hardness, factor of the interface and share of the base, each of Table 1, S, M and
-    L; the energy lost beside the bed times mass [kg]; and the shift of the impulse times the relative width.
+    The columns are damping ratio, hardness, interface factor and fraction of the base, each for Table 1, S, M and L.
+    The last two are the additional energy loss times mass [kg], and the shift of the impulse times the relative width.
     """
     group = data.group_number
     cell, across, along = bed_table().bed(points, numbers[..., _DAMPING], numbers[..., _HARDNESS])
@@ -78,47 +78,45 @@ def coefficients(numbers: FloatArray, data: DataSet, points: IntArray | int) -> 
 def bed_coefficients(
     slenderness: FloatArray, points: int, damping: float, hardness: float, share: float = 1.0, shift: float = 0.0
 ) -> FloatArray:
-    """Return the bed's coefficients of rectangles of a slenderness h/b that stand on the middle of their base [-]."""
-    # share: part of the base that the bed reaches over [-]; shift: added to the position of the impulse [-]
+    """Return the bed's coefficients of rectangles of slenderness h/b with a bed in the middle of the base [-]."""
+    # share: fraction of the base width with the bed [-]; shift: added to the impulse position [-]
     return _on_bed(slenderness, bed_table().bed(points, damping, hardness), np.asarray(share), np.asarray(shift))
 
 
 def _on_bed(slenderness: FloatArray, bed: Bed, share: FloatArray, shift: FloatArray) -> FloatArray:
     gyration = ImpactGeometry.of_slenderness(slenderness).base_gyration
     kappa = bed_table().position(bed, 1.0 / (1.0 + gyration / share**2), 0.0)
-    # the impulse stays between the middle and the foot
+    # the impulse is between the middle and the foot
     arm = np.minimum(np.maximum(kappa + shift, 0.0), 1.0) * share
     return np.asarray((gyration - arm * share) / (gyration + arm * share))  # Eq. 3
 
 
 def relative_width(data: DataSet) -> FloatArray:
-    """Return widths of the blocks over that of a 1 kg cube, as far as masses tell: (mass / slenderness)^(1/3)."""
-    # The paper gives no widths. Blocks of one material with depth in proportion to width have this scale; nothing but
-    # ratios of it enters. Table 1 gives no masses: there the width is infinite, which leaves unevenness out.
+    """Return widths of the blocks over that of a 1 kg cube, from masses: (mass / slenderness)^(1/3)."""
+    # The paper contains no widths. Blocks of one material with depth proportional to width have this scale, and only
+    # its ratios are used. Table 1 contains no masses: an infinite width there removes the effect of unevenness.
     width = np.cbrt(data.mass / data.slenderness)
     return np.where(np.isnan(width), np.inf, width)
 
 
 def explanations() -> tuple[Physics, ...]:
-    """Return the explanations that are compared."""
+    """Return the compared explanations."""
     bed = FittedNumber("damping", 1.5, DAMPED, _DAMPING), FittedNumber("hardness", 100.0, HARDNESS, _HARDNESS)
     damping, hardness = bed
     eta, base = (0.98, (0.9, 1.0), _FACTOR), (0.95, (0.5, 1.0), _SHARE)
     return (
-        Physics("one bed", "all blocks stand on one bed; mass has no effect", bed),
+        Physics("one bed", "all blocks have the same bed; mass has no effect", bed),
         Physics(
-            "loss beside the bed",
+            "additional loss on tape",
             "a factor eta for all blocks on tape (S, M, L), none for Table 1",
             (*bed, FittedNumber("eta", 0.98, (0.9, 1.0), slice(9, 12))),
         ),
         Physics(
-            "loss that does not grow with mass",
-            "a loss of energy that falls as 1/mass in relation, as of a tape under all blocks",
+            "loss independent of mass",
+            "a relative loss of energy proportional to 1/mass, such as of a tape under all blocks",
             (*bed, FittedNumber("tape", 0.01, (0.0, 0.2), slice(_TAPE, _TAPE + 1))),
         ),
-        Physics(
-            "loss by group", "an interface factor eta of its own for each group", (*bed, *_by_group("eta", *eta)[1:])
-        ),
+        Physics("loss by group", "a separate interface factor eta for each group", (*bed, *_by_group("eta", *eta)[1:])),
         Physics(
             "damping by group",
             "the damping ratio of the bed differs between the groups",
@@ -131,12 +129,12 @@ def explanations() -> tuple[Physics, ...]:
         ),
         Physics(
             "narrower base by group",
-            "the base rests on a part of its width that differs between the groups",
+            "the supported fraction of the base width differs between the groups",
             (*bed, *_by_group("share", *base)[1:]),
         ),
         Physics(
             "unevenness of one height",
-            "millimetres of the same height under all blocks move the impulse by an amount over the width",
+            "unevenness of equal height under all blocks shifts the impulse by an amount proportional to 1/width",
             (*bed, FittedNumber("uneven", 0.05, (-0.5, 0.5), slice(_UNEVEN, _UNEVEN + 1))),
         ),
     )
@@ -149,11 +147,11 @@ def _by_group(name: str, start: float, bounds: tuple[float, float], columns: sli
 
 @dataclass(frozen=True, eq=False)
 class BedFit:
-    """One explanation at its most likely parameters."""
+    """One explanation at its maximum likelihood parameters."""
 
     physics: Physics  # the explanation
-    points: int  # most likely number of contact points of those tabulated [-]
-    values: dict[str, float]  # most likely parameters
+    points: int  # maximum likelihood number of contact points of the table [-]
+    values: dict[str, float]  # maximum likelihood parameters
     floor: float  # floor, slope: scatter around the prediction, as `likelihood.scatter` [-]
     slope: float
     log_likelihood: float  # of the printed digits
@@ -163,43 +161,45 @@ class BedFit:
 
     @property
     def count(self) -> int:
-        """Number of fitted parameters: of the bed, its points, and the scatter."""
+        """Number of fitted parameters: bed, number of points, and scatter."""
         return len(self.values) + 3
 
     @property
     def at_a_limit(self) -> tuple[str, ...]:
-        """Parameters that the fit has pushed to the end of their range."""
-        at = {each.name: (self.values[each.name], *each.bounds) for each in self.physics.parameters}
+        """Parameters at the end of their range."""
+        ranges = {
+            parameter.name: (self.values[parameter.name], *parameter.bounds) for parameter in self.physics.parameters
+        }
         return tuple(
-            name for name, (value, low, high) in at.items() if min(value - low, high - value) < 2e-3 * (high - low)
+            name for name, (value, low, high) in ranges.items() if min(value - low, high - value) < 2e-3 * (high - low)
         )
 
 
 def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[int] = POINTS) -> BedFit:
-    """Fit one explanation with each of some numbers of contact points [-]."""
+    """Fit one explanation with several numbers of contact points [-]."""
     return bed_fits(data, (physics,), points)[0]
 
 
 def bed_fits(
     data: DataSet | None = None, compared: Sequence[Physics] | None = None, points: Sequence[int] = POINTS
 ) -> tuple[BedFit, ...]:
-    """Fit explanations, all if none are given, with each of some numbers of contact points [-]; least BIC first."""
+    """Fit explanations (default: all) with several numbers of contact points [-]; lowest BIC first."""
     rows = data or all_measurements()
     searches = [
-        _BedSearch(physics, number, np.array([*(each.start for each in physics.parameters), *_SCATTER[0]]))
+        _BedSearch(physics, number, np.array([*(parameter.start for parameter in physics.parameters), *_SCATTER[0]]))
         for physics in compared or explanations()
         for number in points
     ]
-    found = _most_likely(searches, rows, _FIRST)
-    families = [found[first : first + len(points)] for first in range(0, len(found), len(points))]
+    ended = _most_likely(searches, rows, _FIRST)
+    families = [ended[first : first + len(points)] for first in range(0, len(ended), len(points))]
     best = [max(family, key=lambda search: search.log_likelihood) for family in families]
-    for _ in range(2):  # a simplex that has collapsed at a bound is started once more
+    for _ in range(2):  # restart of simplices that collapsed at a bound
         best = _most_likely(best, rows, _POLISHED)
     return tuple(sorted((_fit(search, rows) for search in best), key=lambda fit: fit.bic))
 
 
 def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
-    """Return the logarithm of the probability of each printed number by fits that have not seen it, (fits, rows)."""
+    """Return the logarithm of the probability of each printed number by fits without it, shape (fits, rows)."""
     rows = data or all_measurements()
     searches = [
         _BedSearch(fit.physics, fit.points, np.array([*fit.values.values(), math.log(fit.floor), fit.slope]), unseen)
@@ -212,12 +212,12 @@ def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class _BedSearch:
-    """Where a search for the most likely parameters of an explanation starts, or where it has ended."""
+    """Initial or final state of a search for the maximum likelihood parameters of an explanation."""
 
     physics: Physics
     points: int
     at: FloatArray  # the parameters, and floor (its logarithm) and slope of the scatter
-    unseen: int | None = None  # row that takes no part
+    unseen: int | None = None  # left-out row
     log_likelihood: float = math.nan
     log_likelihood_unseen: float = math.nan  # of that row
 
@@ -225,7 +225,7 @@ class _BedSearch:
 def _fit(search: _BedSearch, data: DataSet) -> BedFit:
     *values, log_floor, slope = search.at.tolist()
     mean = search.physics.predict(values, data, search.points)
-    names = [each.name for each in search.physics.parameters]
+    names = [parameter.name for parameter in search.physics.parameters]
     return BedFit(
         search.physics, search.points, dict(zip(names, values, strict=True)),
         math.exp(log_floor), slope, search.log_likelihood,
@@ -235,58 +235,59 @@ def _fit(search: _BedSearch, data: DataSet) -> BedFit:
 
 
 def _most_likely(searches: Sequence[_BedSearch], data: DataSet, steps: int) -> list[_BedSearch]:
-    """Return where searches end that all take their steps at once."""
+    """Return the final states of simultaneous searches."""
     sizes = np.array([search.at.size for search in searches])
     width = int(sizes.max())
     points = np.array([[search.points] for search in searches])
-    columns = np.array([[*each.physics.columns(width), each.at.size - 2, each.at.size - 1] for each in searches])
-    seen = np.array([np.delete(np.arange(len(data)), [] if (i := each.unseen) is None else i) for each in searches])
+    columns = np.array([[*item.physics.columns(width), item.at.size - 2, item.at.size - 1] for item in searches])
+    seen = np.array([np.delete(np.arange(len(data)), [] if (i := item.unseen) is None else i) for item in searches])
     starts, low, span = np.zeros((3, len(searches), width))
-    for place, search in enumerate(searches):
-        limits = np.array([*(each.bounds for each in search.physics.parameters), *_SCATTER[1]])
-        low[place, : search.at.size], span[place, : search.at.size] = limits[:, 0], limits[:, 1] - limits[:, 0]
-        starts[place, : search.at.size] = np.clip(
+    for index, search in enumerate(searches):
+        limits = np.array([*(item.bounds for item in search.physics.parameters), *_SCATTER[1]])
+        low[index, : search.at.size], span[index, : search.at.size] = limits[:, 0], limits[:, 1] - limits[:, 0]
+        starts[index, : search.at.size] = np.clip(
             (search.at - limits[:, 0]) / (limits[:, 1] - limits[:, 0]), 0.02, 0.98
         )
 
-    def at(free: FloatArray, number: IntArray) -> FloatArray:
+    def unscaled(free: FloatArray, number: IntArray) -> FloatArray:
         return np.asarray(low[number] + span[number] * np.clip(free, 0.0, 1.0))
 
-    def of_rows(free: FloatArray, number: IntArray) -> FloatArray:
-        both = np.concatenate([at(free, number), np.broadcast_to(_WITHOUT, (len(free), len(_WITHOUT)))], axis=1)
-        numbers = np.take_along_axis(both, columns[number], axis=1)
+    def log_likelihoods(free: FloatArray, number: IntArray) -> FloatArray:
+        candidates = np.concatenate(
+            [unscaled(free, number), np.broadcast_to(_WITHOUT, (len(free), len(_WITHOUT)))], axis=1
+        )
+        numbers = np.take_along_axis(candidates, columns[number], axis=1)
         mean = coefficients(numbers[:, :-2], data, points[number])
         sd = scatter(mean, np.exp(numbers[:, -2:-1]), numbers[:, -1:])
         return interval_log_likelihood(data.low, data.high, mean, sd)
 
     def misfit(free: FloatArray, number: IntArray) -> FloatArray:
-        likelihood = np.take_along_axis(of_rows(free, number), seen[number], axis=1).sum(axis=1)
+        likelihood = np.take_along_axis(log_likelihoods(free, number), seen[number], axis=1).sum(axis=1)
         return np.asarray(10.0 * np.abs(free - np.clip(free, 0.0, 1.0)).sum(axis=1) - likelihood)
 
     best = minimise_many(misfit, starts, sizes, tolerance=1e-5, evaluations=steps)
-    every = np.arange(len(searches))
-    found, rows = at(best, every), of_rows(best, every)
+    all_searches = np.arange(len(searches))
+    parameters, rows = unscaled(best, all_searches), log_likelihoods(best, all_searches)
     return [
         replace(
-            search, at=found[i, : sizes[i]], log_likelihood=float(rows[i, seen[i]].sum()),
+            search, at=parameters[i, : sizes[i]], log_likelihood=float(rows[i, seen[i]].sum()),
             log_likelihood_unseen=float(rows[i, search.unseen]) if search.unseen is not None else math.nan,
         )
         for i, search in enumerate(searches)
     ]  # fmt: skip
 
 
-UNRESOLVED = 2.0  # difference in BIC below which two explanations are not told apart
+UNRESOLVED = 2.0  # difference in BIC below which two explanations are not distinguishable
 
 
 @dataclass(frozen=True, eq=False)
 class Ranked:
-    """An explanation and how it fares."""
+    """An explanation and its scores."""
 
     fit: BedFit  # at its most likely parameters
     scores: FloatArray  # logarithmic scores of the measurements, each left out [-]
-    behind: float  # BIC above the least [-]
-    # gain, gain_error: sum of the scores above that of one bed for all, and its standard error over the measurements
-    # [-]
+    behind: float  # BIC minus the lowest [-]
+    # gain, gain_error: sum of scores minus that of one common bed, and its standard error over the measurements [-]
     gain: float
     gain_error: float
 
@@ -302,41 +303,41 @@ class Ranked:
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """All explanations, least BIC first."""
+    """All explanations, lowest BIC first."""
 
     ranked: tuple[Ranked, ...]  # the explanations
 
     @property
     def plain(self) -> Ranked:
-        """One bed for all: the explanation in which mass has no effect."""
-        return next(each for each in self.ranked if each.name == "one bed")
+        """One common bed: the explanation without an effect of mass."""
+        return next(item for item in self.ranked if item.name == "one bed")
 
     @property
     def unresolved(self) -> tuple[str, ...]:
-        """Names of the explanations that BIC does not tell from the best one."""
-        return tuple(each.name for each in self.ranked if each.behind < UNRESOLVED)
+        """Names of the explanations not distinguishable from the best one by BIC."""
+        return tuple(item.name for item in self.ranked if item.behind < UNRESOLVED)
 
     @property
     def better_unseen(self) -> tuple[str, ...]:
-        """Names of those that predict measurements they have not seen better than one bed, by two standard errors."""
-        return tuple(each.name for each in self.ranked if each.gain > 2.0 * each.gain_error > 0.0)
+        """Names of explanations that predict left-out measurements better than one bed, by two standard errors."""
+        return tuple(item.name for item in self.ranked if item.gain > 2.0 * item.gain_error > 0.0)
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """What follows, in words."""
+        """Conclusions as sentences."""
         best, plain = self.ranked[0], self.plain
         bed = ", ".join(f"{name} {value:.3g}" for name, value in best.fit.values.items())
         first = (
-            f'Least BIC: "{best.name}" ({best.fit.physics.sentence}), {best.fit.points} contact points, {bed}; RMSE of '
-            f"r {best.fit.rmse:.4f}. One bed for all blocks has an RMSE of {plain.fit.rmse:.4f} and a BIC higher by "
+            f'Lowest BIC: "{best.name}" ({best.fit.physics.sentence}), {best.fit.points} contact points, {bed}; RMSE '
+            f"of r {best.fit.rmse:.4f}. One bed for all blocks has an RMSE of {plain.fit.rmse:.4f} and a BIC higher by "
             f"{plain.behind:.1f}."
         )
         return first, self._rivals(best), self._unseen(), self._of_mass(), _WIDTHS
 
     @property
     def shares_lost(self) -> dict[str, float]:
-        """Share of the energy that each group loses beside the bed, 1 - eta^2, where each has a factor of its own."""
-        values = next(each for each in self.ranked if each.name == "loss by group").fit.values
+        """Additional energy loss of each group, 1 - eta^2, from the fit with one factor per group."""
+        values = next(item for item in self.ranked if item.name == "loss by group").fit.values
         return {name: 1.0 - values[f"eta {name}"] ** 2 for name in BLOCKS}
 
     def _of_mass(self) -> str:
@@ -344,52 +345,52 @@ class Explanation:
         losses = ", ".join(f"{100.0 * share:.1f} % ({name})" for name, share in shares.items())
         falls = list(shares.values()) == sorted(shares.values(), reverse=True)
         order = "falls from the lightest group to the heaviest" if falls else "does not follow the mass"
-        limits = _listed(list(self.ranked[0].fit.at_a_limit)) if self.ranked[0].fit.at_a_limit else "no parameter"
+        limits = _listed(list(self.ranked[0].fit.at_a_limit)) if self.ranked[0].fit.at_a_limit else "none"
         return (
-            f"With a factor for each group the energy lost beside the bed is {losses}: it {order}. The shape of the "
-            f"bed need not change with mass for that; at the end of its range the best fit has {limits}."
+            f"With one factor per group the additional energy loss is {losses}: it {order}. This does not require a "
+            f"change of the bed with mass. Parameters of the best fit at the end of their range: {limits}."
         )
 
     def _rivals(self, best: Ranked) -> str:
         rivals = [name for name in self.unresolved if name != best.name]
         if rivals:
-            return f"BIC does not tell it from {_listed(rivals)}: the 39 measurements do not decide between them."
+            return f"By BIC, the 39 measurements do not distinguish it from {_listed(rivals)}."
         second = self.ranked[1]
-        return f'The next, "{second.name}", is {second.behind:.1f} behind.'
+        return f'The BIC of the next, "{second.name}", is higher by {second.behind:.1f}.'
 
     def _unseen(self) -> str:
         better = list(self.better_unseen)
         if not better:
             return (
-                "Left out one by one, no explanation predicts the measurements better than one bed for all by two "
-                "standard errors: a mass effect is not resolved."
+                "For left-out measurements, no explanation predicts better than one common bed by two standard errors. "
+                "A mass effect is not resolved."
             )
         return (
-            f"Left out one by one, {_listed(better)} predict{'s' if len(better) == 1 else ''} the measurements "
-            "better than one bed for all, by more than two standard errors."
+            f"For left-out measurements, {_listed(better)} predict{'s' if len(better) == 1 else ''} better than one "
+            "common bed, by more than two standard errors."
         )
 
 
 _WIDTHS = (
-    "The paper gives no widths, landing speeds or moduli: hardness is fitted, widths enter as ratios that follow from "
-    "the masses, and a loss that does not grow with mass, a narrower base and unevenness of one height all act on "
-    "light blocks most; only tests that vary one of them alone could tell them apart for certain."
+    "The paper contains no widths, landing speeds or moduli. Hardness is fitted, and ratios of widths follow from the "
+    "masses. A loss independent of mass, a narrower base and unevenness of one height all have the largest effect on "
+    "light blocks. Only tests that vary one of these alone can distinguish them."
 )
 
 
 @lru_cache(maxsize=1)
 def explanation() -> Explanation:
-    """Compare the explanations on all 39 measurements, ranked by BIC, each with its left-out scores."""
+    """Return the explanations of all 39 measurements, ranked by BIC, with left-out scores."""
     fits = bed_fits()
     scores = {fit.physics.name: scores for fit, scores in zip(fits, left_out(fits), strict=True)}
     return Explanation(tuple(_ranked(fit, scores, fits[0].bic) for fit in fits))
 
 
-def _ranked(fit: BedFit, scores: dict[str, FloatArray], least: float) -> Ranked:
-    own = scores[fit.physics.name]
-    ahead = own - scores["one bed"]
-    error = math.sqrt(ahead.size) * float(np.std(ahead, ddof=1))
-    return Ranked(fit, own, fit.bic - least, float(ahead.sum()), error)
+def _ranked(fit: BedFit, scores: dict[str, FloatArray], min_bic: float) -> Ranked:
+    own_scores = scores[fit.physics.name]
+    gains = own_scores - scores["one bed"]
+    error = math.sqrt(gains.size) * float(np.std(gains, ddof=1))
+    return Ranked(fit, own_scores, fit.bic - min_bic, float(gains.sum()), error)
 
 
 def _listed(names: list[str]) -> str:

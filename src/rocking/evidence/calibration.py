@@ -1,7 +1,7 @@
 """The calibrated default: an interface factor times the shifted impulse, inferred from the 39 measurements.
 
-Model and priors stand in docs/theory/evidence.md. On the 39 measurements a scatter that grows with the loss beats a
-constant one by 20 in BIC (277 against 297), so its power is inferred too.
+Model and priors are in docs/theory/evidence.md. On the 39 measurements, a scatter that grows with the loss has a lower
+BIC than a constant scatter by 20 (277 and 297), so its power is inferred too.
 """
 
 import hashlib
@@ -23,10 +23,10 @@ from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import NAMES, kept, scatter
 from rocking.restitution.shifted_impulse import shifted
 
-CALIBRATED_RANGE = (1.5, 9.75)  # slendernesses h/b that were measured; outside, an interval is an extrapolation
+CALIBRATED_RANGE = (1.5, 9.75)  # measured range of h/b; outside, an interval is an extrapolation
 LEVEL = 0.95
 KEPT = Path(__file__).parent / "data" / "calibration.npz"
-"""The posterior and the misfits of all models, made by `make calibration`; computed anew for other measurements."""
+"""Stored posterior and misfits of all models, written by `make calibration`; not used for other measurements."""
 
 _ETA = np.linspace(0.9655, 0.9999, 32)
 _K = np.linspace(0.30, 0.80, 26)
@@ -38,7 +38,7 @@ FIELDS = ("samples", "marginals", "joint", "summary")
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """The grid on which a posterior is evaluated."""
+    """The grid of a posterior."""
 
     eta: FloatArray  # interface factor [-]
     k: FloatArray  # position of the impulse [-]
@@ -105,7 +105,7 @@ class Calibration:
         body : Body or array_like
             A body, or slenderness ratios h/b [-].
         foot : {"left", "right"}
-            The foot on which a body lands.
+            Landing foot.
 
         Returns
         -------
@@ -128,10 +128,10 @@ class Calibration:
         else:
             ratios = checks.positive_array("slenderness_ratio", body)
             values, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
-        mean, low, high, spread = (each.reshape(shape).copy() for each in values)
+        mean, low, high, spread = (value.reshape(shape).copy() for value in values)
         return PredictedCoefficient(mean, low, high, spread)
 
-    @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures ask it for the same ratios again
+    @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures use the same ratios several times
     def _of_ratios(self, ratios: bytes) -> tuple[FloatArray, ...]:
         return self._predicted(*geometry_of(np.frombuffer(ratios), "right"))
 
@@ -147,19 +147,19 @@ class Calibration:
 
     @cached_property
     def _distinct(self) -> tuple[FloatArray, FloatArray]:
-        """Samples without repetition, a quarter of them: they lie on a grid; and their shares, as a column."""
+        """Distinct samples on the grid, and their fractions as a column."""
         samples, count = np.unique(self.samples, axis=0, return_counts=True)
         return samples, (count / count.sum())[:, None]
 
     def draw(self, count: int, seed: int) -> FloatArray:
-        """Draw parameters from the posterior.
+        """Sample parameters from the posterior.
 
         Parameters
         ----------
         count : int
-            Number of draws.
+            Number of samples.
         seed : int
-            Seed; the same one gives the same draws.
+            Random seed.
 
         Returns
         -------
@@ -177,7 +177,7 @@ def calibrate() -> Calibration:
     Returns
     -------
     Calibration
-        Posterior on a fixed grid: the same numbers every time.
+        Posterior on a fixed grid, without random numbers.
 
     Examples
     --------
@@ -193,34 +193,34 @@ def calibrate() -> Calibration:
 
 
 def fingerprint(data: DataSet, *more: str) -> str:
-    """Return the hash of all that a posterior is made of: measurements, grid, number of samples, and more."""
+    """Return the hash of the inputs of a posterior: measurements, grid, number of samples, and more."""
     arrays = (data.slenderness, data.low, data.high, _ETA, _K, _LOG_S, _GAMMA)
     text = [[f"{value:.12g}" for value in values.tolist()] for values in arrays]
     return hashlib.sha256(repr((text, _SAMPLES, *more)).encode()).hexdigest()
 
 
 def keep(path: Path) -> None:
-    """Compute what `calibrate` and `interval_for` read, and write it."""
+    """Compute and write the stored values of `calibrate` and `interval_for`."""
     data = all_measurements()
     calibration = calibrate_on(data)
     named = [model(name) for name in models() if name not in ("calibrated", "fixed")]
-    predictions = np.array([each.of_slenderness(data.slenderness) for each in named])
+    predictions = np.array([item.of_slenderness(data.slenderness) for item in named])
     arrays: dict[str, Any] = {
         "inputs": fingerprint(data),
         **arrays_of(calibration),
-        "labels": [each.label for each in named],
+        "labels": [item.label for item in named],
         "predictions": predictions,
-        "misfits": [fit_scatter(data, each)[:2] for each in predictions],
+        "misfits": [fit_scatter(data, item)[:2] for item in predictions],
     }
     np.savez_compressed(path, **arrays)
 
 
 def arrays_of(calibration: Calibration) -> dict[str, Any]:
-    """Return a posterior as arrays to keep."""
-    found: dict[str, Any] = {"samples": calibration.samples, "joint": calibration.joint}
+    """Return a posterior as arrays for storage."""
+    arrays: dict[str, Any] = {"samples": calibration.samples, "joint": calibration.joint}
     for name, (grid, weight) in calibration.marginals.items():
-        found |= {f"{name}_grid": grid, f"{name}_weight": weight}
-    return {**found, "summary": [list(facts.values()) for facts in calibration.summary.values()]}
+        arrays |= {f"{name}_grid": grid, f"{name}_weight": weight}
+    return {**arrays, "summary": [list(facts.values()) for facts in calibration.summary.values()]}
 
 
 def calibrate_on(data: DataSet) -> Calibration:
@@ -231,7 +231,7 @@ def calibrate_on(data: DataSet) -> Calibration:
 
 @dataclass(frozen=True, eq=False)
 class PosteriorGrid:
-    """Everything the posterior is made of, on the grid of (eta, k, s, gamma)."""
+    """Terms of the posterior on the grid of (eta, k, s, gamma)."""
 
     log_prior: FloatArray  # logarithm of the prior; shape (a, b, 1, 1)
     terms: FloatArray  # logarithm of the likelihood of each row; shape (a, b, c, d, n)
@@ -240,7 +240,7 @@ class PosteriorGrid:
 
 
 def posterior_grid(data: DataSet) -> PosteriorGrid:
-    """Evaluate likelihood and prior on the grid, row by row: rows can be left out without evaluating again."""
+    """Return likelihood by row and prior on the grid; rows can be left out without a new evaluation."""
     base = shifted(ImpactGeometry.of_slenderness(data.slenderness), _K[:, None])
     mean = (_ETA[:, None, None] * base)[:, :, None, None, :]
     sd = np.exp(_LOG_S)[:, None, None] * scatter(mean, 1.0, 1.0) ** _GAMMA[:, None]
@@ -259,7 +259,7 @@ def log_prior(nodes: Nodes) -> FloatArray:
 
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
     """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid."""
-    # they are of the density whose logarithm is a cubic spline through the nodes: fourth order in their distance
+    # the logarithm of the density is a cubic spline through the nodes, of fourth order in their distance
     from scipy.interpolate import CubicSpline
 
     even = np.allclose(np.diff(grid, 2), 0.0, atol=1e-9 * abs(grid[-1]))
@@ -279,7 +279,7 @@ def normalised(log_weight: FloatArray) -> FloatArray:
 
 
 def geometry_of(body: Body | Any, foot: Foot) -> tuple[ImpactGeometry, FloatArray]:
-    """Return the impact of a body, or of rectangles by slenderness [-], and the bound that energy sets [-]."""
+    """Return the impact of a body, or of rectangles by slenderness [-], and the energy bound of r [-]."""
     if isinstance(body, Body):
         return ImpactGeometry.of_body(body, foot), np.array([energy_bound(body, foot)])
     ratios = np.atleast_1d(checks.positive_array("slenderness_ratio", body)).ravel()
@@ -294,11 +294,11 @@ def summarised(weight: FloatArray, nodes: Nodes = NODES) -> Calibration:
         name: (grid, weight.sum(axis=tuple(j for j in axes if j != i)))
         for i, (name, grid) in enumerate(zip(NAMES, grids, strict=True))
     }
-    # systematic resampling: equally likely points without any random number
+    # systematic resampling: equally likely points without random numbers
     steps = np.cumsum(weight.ravel())
-    picked = np.searchsorted(steps, (np.arange(_SAMPLES) + 0.5) / _SAMPLES * steps[-1])
-    places = np.unravel_index(np.minimum(picked, steps.size - 1), weight.shape)
-    samples = np.column_stack([grid[place] for grid, place in zip(grids, places, strict=True)])
+    positions = np.searchsorted(steps, (np.arange(_SAMPLES) + 0.5) / _SAMPLES * steps[-1])
+    indices = np.unravel_index(np.minimum(positions, steps.size - 1), weight.shape)
+    samples = np.column_stack([grid[index] for grid, index in zip(grids, indices, strict=True)])
     summary = {name: _facts(*marginal) for name, marginal in marginals.items()}
     return Calibration(samples, marginals, weight.sum(axis=(2, 3)), summary)
 
@@ -310,36 +310,36 @@ def _facts(grid: FloatArray, weight: FloatArray) -> dict[str, float]:
 
 
 def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float) -> FloatArray:
-    """Return a quantile of mixtures of normals, one a column: Newton's method within a bracket; weight: a column."""
+    """Return a quantile of mixtures of normals, one per column, by bracketed Newton iteration; weight: a column."""
     low, high = (mean - 8.0 * sd).min(axis=0), (mean + 8.0 * sd).max(axis=0)
     value = (weight * mean).sum(axis=0)
-    sought = np.arange(value.size)  # columns whose quantile still moves
+    active = np.arange(value.size)  # columns without convergence
     for _ in range(100):
-        now, spread = value[sought], sd[:, sought]
-        z = (now - mean[:, sought]) / spread
+        current, spread = value[active], sd[:, active]
+        z = (current - mean[:, active]) / spread
         excess = (weight * normal_cdf(z)).sum(axis=0) - level  # Eq. 137
-        low, high = np.where(excess < 0.0, now, low), np.where(excess < 0.0, high, now)
+        low, high = np.where(excess < 0.0, current, low), np.where(excess < 0.0, high, current)
         slope = (weight * np.exp(-0.5 * z * z) / spread).sum(axis=0) / math.sqrt(2.0 * math.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = excess / slope
-        # at the root rounding may point out of the bracket
+        # near the root, rounding may give a step out of the bracket
         moved = ~(np.abs(step) < 1e-13)
-        following = now - step
+        following = current - step
         inside = ~moved | ((following > low) & (following < high))
-        value[sought] = np.where(inside, following, 0.5 * (low + high))
+        value[active] = np.where(inside, following, 0.5 * (low + high))
         if not moved.any():
             break
-        sought, low, high = sought[moved], low[moved], high[moved]
+        active, low, high = active[moved], low[moved], high[moved]
     return np.asarray(value)
 
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How many left-out measurements fall into their intervals."""
+    """Numbers of left-out measurements inside their intervals."""
 
     rows: int  # number of measurements
-    one_by_one: int  # those inside the interval of a calibration without them
-    # data set to the number inside, and of all, for a calibration without the whole set
+    one_by_one: int  # measurements inside the interval of a calibration without them
+    # by data set: number inside and total number, for a calibration without the data set
     by_group: dict[str, tuple[int, int]]
 
     @property
@@ -349,25 +349,25 @@ class Coverage:
             for name, (inside, count) in self.by_group.items()
         )
         return (
-            f"Left out one by one, {self.one_by_one} of the {self.rows} measurements fall into their "
-            f"{100.0 * LEVEL:.0f} % intervals; with a whole data set left out, {groups} do: for a new laboratory or "
-            "interface the interval is too narrow where these counts fall short."
+            f"With one measurement left out, {self.one_by_one} of the {self.rows} measurements are inside their "
+            f"{100.0 * LEVEL:.0f} % intervals. With one data set left out, {groups} are inside. If these fractions are "
+            "too low, the interval is too narrow for a new laboratory or interface."
         )
 
 
 def coverage(data: DataSet | None = None) -> Coverage:
-    """Return the coverage of measurements that a calibration has not seen."""
-    # the posterior without some rows is the posterior over their likelihood, so that one grid serves them all
+    """Return the coverage of measurements left out of a calibration."""
+    # the posterior without some rows is the posterior divided by their likelihood, so one grid is enough
     data = all_measurements() if data is None else data
     grid = posterior_grid(data)
-    whole = grid.log_prior + grid.terms.sum(axis=-1)
-    alone = sum(_inside(data, grid, i, normalised(whole - grid.terms[..., i])) for i in range(len(data)))
+    log_posterior = grid.log_prior + grid.terms.sum(axis=-1)
+    one_by_one = sum(_inside(data, grid, i, normalised(log_posterior - grid.terms[..., i])) for i in range(len(data)))
     groups = {}
     for name in dict.fromkeys(data.group):
         rows = [i for i, group in enumerate(data.group) if group == name]
-        weight = normalised(whole - grid.terms[..., rows].sum(axis=-1))
+        weight = normalised(log_posterior - grid.terms[..., rows].sum(axis=-1))
         groups[name] = sum(_inside(data, grid, i, weight) for i in rows), len(rows)
-    return Coverage(len(data), alone, groups)
+    return Coverage(len(data), one_by_one, groups)
 
 
 def _inside(data: DataSet, grid: PosteriorGrid, row: int, weight: FloatArray) -> bool:

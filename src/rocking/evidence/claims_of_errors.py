@@ -1,4 +1,4 @@
-"""What every judge of a claim needs, and section 3.2 of the paper: correlation, error zones, mass, Figures 6 to 9."""
+"""Common parts of the tests of claims, and section 3.2 of the paper: correlation, error zones, mass, Figures 6 to 9."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -24,7 +24,7 @@ from rocking.evidence.measurements import DataSet, blocks, datasets
 from rocking.restitution import Housner, Ked, RestitutionModel
 
 Judge = Callable[[], tuple[str, str]]  # returns a verdict, and the numbers
-JUDGES: list[tuple[str, str, str, Judge]] = []  # section, quote and test of every claim, and who judges it
+JUDGES: list[tuple[str, str, str, Judge]] = []  # section, quote, test and judging function of each claim
 
 HOLDS, IN_PART, FAILS, UNTESTABLE = "holds", "holds in part", "does not hold", "not testable"
 UNRESOLVED = "not resolved"
@@ -34,31 +34,31 @@ VERDICTS = {
     HOLDS: "hold",
     IN_PART: "hold in part",
     FAILS: "do not hold",
-    UNRESOLVED: "are not resolved by so few blocks",
+    UNRESOLVED: "are not distinguishable with so few blocks",
     UNTESTABLE: "are not testable",
 }
-"""Verdicts, each with its verb for several claims."""
+"""Verdicts, with the verb for several claims."""
 
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper and what the published measurements say about it."""
+    """A claim of the paper, with the verdict from the published measurements."""
 
     section: str  # of the paper
     quote: str  # the claim, in the paper's words or close to them
     verdict: str  # "holds", "holds in part", "does not hold", "not resolved" or "not testable"
     evidence: str  # the numbers
-    test: str  # how it was tested
+    test: str  # method of the test
 
 
 def tally(claims: Sequence[Claim]) -> str:
-    """Return how many claims there are, and how many of each verdict."""
+    """Return the number of claims, in total and by verdict, as text."""
     counts = Counter(claim.verdict for claim in claims)
     return f"{len(claims)} claims: {', '.join(f'{counts[verdict]} {verb}' for verdict, verb in VERDICTS.items())}"
 
 
 def claim(section: str, quote: str, test: str) -> Callable[[Judge], Judge]:
-    """Let a function judge a claim of the paper."""
+    """Return a decorator that registers a function as the test of a claim of the paper."""
 
     def register(judge: Judge) -> Judge:
         JUDGES.append((section, quote, test, judge))
@@ -68,23 +68,23 @@ def claim(section: str, quote: str, test: str) -> Callable[[Judge], Judge]:
 
 
 def truth(name: str) -> tuple[DataSet, FloatArray, FloatArray]:
-    """Return a data set with the true coefficients of Housner's model and of KED [-]."""
+    """Return a data set with the exact coefficients of Housner's model and of KED [-]."""
     data = datasets()[name]
     return data, Housner().of_slenderness(data.slenderness), Ked().of_slenderness(data.slenderness)
 
 
 def verdict_of(holds: bool) -> str:
-    """Return the verdict on a claim that holds or does not."""
+    """Return the verdict on a claim that holds or does not hold."""
     return HOLDS if holds else FAILS
 
 
 def all_or_open(*differences: Difference) -> str:
-    """Return the verdict on a claim that several differences are all positive: it fails if one is negative."""
-    return resolved(min(each.sign for each in differences))
+    """Return the verdict on a claim of several positive differences; it fails if one is negative."""
+    return resolved(min(difference.sign for difference in differences))
 
 
 def resolved(sign: int) -> str:
-    """Return the verdict on a claim that one thing is larger than another, by the sign of what is resolved."""
+    """Return the verdict on a claim of a positive difference, from the sign of the resolved difference."""
     return {1: HOLDS, -1: FAILS, 0: UNRESOLVED}[sign]
 
 
@@ -106,7 +106,7 @@ def _correlations() -> tuple[str, str]:
 @claim(
     "3.2",
     "correlation above 0.9 shows that the model agrees with the tests better than the classical one",
-    "the same coefficient for both models: it does not tell them apart",
+    "the same coefficient for both models: it does not distinguish them",
 )
 def _correlation_means_agreement() -> tuple[str, str]:
     pairs = [
@@ -138,7 +138,7 @@ def _zones_ked() -> tuple[str, str]:
 def _zones_housner() -> tuple[str, str]:
     data, housner, _ = truth("table2")
     zones = zone(relative_error(housner, data.coefficient))
-    outer = sum(each != "I" for each in zones)
+    outer = sum(zone_name != "I" for zone_name in zones)
     return verdict_of(outer > 0.5 * len(zones)), (f"zones by slenderness: {', '.join(zones)}")
 
 
@@ -174,15 +174,16 @@ def _below_six() -> tuple[str, str]:
 def _advantage_by_group() -> tuple[str, str]:
     wins = {name: sum(closer_rows(datasets()[name])) for name in "SML"}
     gains = {name: compare(d, h, k) for name, (d, h, k) in ((n, truth(n)) for n in "SML")}
-    more = {name: errors_of_groups(Housner(), "L", name, Ked()) for name in "SM"}
-    pronounced = all_or_open(*more.values()) if gains["L"].sign > 0 else resolved(gains["L"].sign)
+    excess = {name: errors_of_groups(Housner(), "L", name, Ked()) for name in "SM"}
+    pronounced = all_or_open(*excess.values()) if gains["L"].sign > 0 else resolved(gains["L"].sign)
     not_significant = gains["S"].sign == gains["M"].sign == 0
     return pronounced if not_significant else IN_PART if pronounced == HOLDS else FAILS, (
         "; ".join(
-            f"{name}: closer in {wins[name]} of 9, RMSE lower by {each.value:.4f} ({each.low:+.4f} to {each.high:+.4f})"
-            for name, each in gains.items()
+            f"{name}: closer in {wins[name]} of 9, RMSE lower by {difference.value:.4f} ({difference.low:+.4f} to "
+            f"{difference.high:+.4f})"
+            for name, difference in gains.items()
         )
-        + "".join(f"; in L more than in {name} by {each}" for name, each in more.items())
+        + "".join(f"; in L more than in {name} by {difference}" for name, difference in excess.items())
     )
 
 
@@ -250,15 +251,15 @@ def _stable_error() -> tuple[str, str]:
 
 
 def _with_mass(model: int, sign: float) -> tuple[str, str]:
-    """Judge the steps, S to M and M to L, of the relative error at equal slenderness."""
+    """Test the steps of the relative error at equal slenderness, from S to M and from M to L."""
     groups = [truth(name) for name in "SML"]
     ratio = groups[0][0].slenderness
     errors = np.array([relative_error(group[model], group[0].coefficient) for group in groups])  # type: ignore[arg-type]
-    going = np.diff(errors, axis=0) * sign > 0.0
-    share = float(going.mean())
-    squat, slender = going[:, ratio < 6.0], going[:, ratio >= 6.0]
+    is_expected = np.diff(errors, axis=0) * sign > 0.0
+    share = float(is_expected.mean())
+    squat, slender = is_expected[:, ratio < 6.0], is_expected[:, ratio >= 6.0]
     return HOLDS if share > 0.7 else IN_PART if squat.mean() > 0.7 or share > 0.5 else FAILS, (
-        f"{going.sum()} of {going.size} steps from S to M to L go {'up' if sign > 0.0 else 'down'}: "
+        f"{is_expected.sum()} of {is_expected.size} steps from S to M to L go {'up' if sign > 0.0 else 'down'}: "
         f"{squat.sum()} of {squat.size} below slenderness 6, {slender.sum()} of {slender.size} from 6 on"
     )
 

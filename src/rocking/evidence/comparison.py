@@ -1,7 +1,7 @@
-"""How well models agree with measurements, and the one rule that compares two: a paired bootstrap of their errors.
+"""Errors of models on measurements, and comparison of two models by a paired bootstrap of their errors.
 
-Rows of one block, or of one pair of materials in Table 1, are not independent (pseudo-replication): what is drawn
-again is the specimen with all its rows, within its data set. Both models meet the same draws (Efron & Tibshirani 1993).
+Rows of one block, or of one pair of materials in Table 1, are not independent (pseudo-replication). The bootstrap
+resamples specimens with all their rows, within data sets. Both models have the same samples (Efron & Tibshirani 1993).
 """
 
 from collections.abc import Callable
@@ -16,14 +16,14 @@ from rocking.restitution import RestitutionModel
 
 _RESAMPLES = 4000
 _SEED = 20240710
-FEWEST = 5  # specimens; of four that agree, one in eight does so by chance
+FEWEST = 5  # minimum number of specimens; four agree by chance with probability 1/8
 
 MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "r": lambda r: r,
     "absolute error of the loss": lambda r: r**2,
     "relative error of the loss": lambda r: np.log1p(-(r**2)),
 }
-"""What is compared: root mean square differences of these functions of r."""
+"""Functions of r for the root mean square differences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +36,12 @@ class Difference:
 
     @classmethod
     def of(cls, values: FloatArray) -> "Difference":
-        """Return it from its value and those of the resamples."""
+        """Return the difference from its value and those of the resamples."""
         return cls(float(values[0]), *np.quantile(values[1:], [0.025, 0.975]).tolist())
 
     @property
     def sign(self) -> int:
-        """1 where the interval is above zero, -1 where it is below, 0 where it includes zero."""
+        """1 if the interval is above zero, -1 if it is below, 0 if it includes zero."""
         return int(self.low > 0.0) - int(self.high < 0.0)
 
     def __str__(self) -> str:
@@ -50,29 +50,30 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Difference):
-    """Error of one model minus that of another, the interval of a paired bootstrap: infinite from few specimens."""
+    """Error of one model minus that of another, with a paired bootstrap interval; infinite for few specimens."""
 
     first: float  # first, second: root mean square errors [-]
     second: float
-    by_group: "dict[str, Comparison]"  # the same within each data set
+    by_group: "dict[str, Comparison]"  # comparison within each data set
 
-    def sentence(self, one: str, other: str) -> str:
+    def sentence(self, first_name: str, second_name: str) -> str:
         numbers = (
-            f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
+            f"{self.first:.4f} for {first_name} against {self.second:.4f} for {second_name}, difference "
             f"{self.value:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
         )
-        outcome = {-1: f"{one} is closer", 0: "not resolved", 1: f"{other} is closer"}
+        outcome = {-1: f"{first_name} is closer", 0: "not resolved", 1: f"{second_name} is closer"}
         groups = "; ".join(
-            f"{'Table 1' if name == 'table1' else name}: {outcome[each.sign]}" for name, each in self.by_group.items()
+            f"{'Table 1' if name == 'table1' else name}: {outcome[comparison.sign]}"
+            for name, comparison in self.by_group.items()
         )
         return f"{outcome[self.sign]} ({numbers}{'; by group: ' if groups else ''}{groups})"
 
 
-def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r") -> Comparison:
-    """Compare the predictions of two models; to exchange them changes the signs and nothing else."""
-    of = MEASURES[measure]
+def compare(data: DataSet, first: FloatArray, second: FloatArray, measure: str = "r") -> Comparison:
+    """Compare the predictions of two models; an exchange of the models changes only signs."""
+    transform = MEASURES[measure]
     with np.errstate(divide="ignore"):
-        squares = [(of(np.asarray(r)) - of(data.coefficient)) ** 2 for r in (one, other)]
+        squares = [(transform(np.asarray(r)) - transform(data.coefficient)) ** 2 for r in (first, second)]
     names = tuple(dict.fromkeys(data.group))
     groups = {name: np.array([group == name for group in data.group]) for name in names} if len(names) > 1 else {}
     return _compared(squares, drawn(data), {name: (rows, drawn(data.rows(rows))) for name, rows in groups.items()})
@@ -81,38 +82,41 @@ def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r
 def _compared(
     squares: list[FloatArray], weight: FloatArray, groups: dict[str, tuple[FloatArray, FloatArray]]
 ) -> Comparison:
-    first, second = (float(np.sqrt(each.mean())) for each in squares)
-    one, other = (resampled(each, weight) for each in squares)
+    first, second = (float(np.sqrt(errors.mean())) for errors in squares)
+    first_errors, second_errors = (resampled(errors, weight) for errors in squares)
     with np.errstate(invalid="ignore"):
-        low, high = np.nanquantile(one - other, [0.025, 0.975]).tolist()
+        low, high = np.nanquantile(first_errors - second_errors, [0.025, 0.975]).tolist()
     if len({column.tobytes() for column in weight.T}) < FEWEST:
         low, high = -np.inf, np.inf
-    by_group = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
+    by_group = {
+        name: _compared([errors[rows] for errors in squares], group_weight, {})
+        for name, (rows, group_weight) in groups.items()
+    }
     return Comparison(first - second, low, high, first, second, by_group)
 
 
 def errors_of_groups(
-    model: RestitutionModel, one: str, other: str, against: RestitutionModel | None = None
+    model: RestitutionModel, first_group: str, second_group: str, reference: RestitutionModel | None = None
 ) -> Difference:
-    """Return how much larger a model's RMSE of r is in one group of blocks than in another, drawn independently."""
+    """Return the difference of a model's RMSE of r between two groups of blocks, resampled independently."""
     data = blocks()
     weight, group = np.vstack([np.ones(len(data)), drawn(data)]), np.array(data.group)
     error = np.zeros((2, len(weight)))
-    for sign, each in ((1.0, model), (-1.0, against)):
-        if each is not None:
-            squares = (each.of_slenderness(data.slenderness) - data.coefficient) ** 2
-            error += [sign * resampled(squares, weight * (group == name)) for name in (one, other)]
+    for sign, signed_model in ((1.0, model), (-1.0, reference)):
+        if signed_model is not None:
+            squares = (signed_model.of_slenderness(data.slenderness) - data.coefficient) ** 2
+            error += [sign * resampled(squares, weight * (group == name)) for name in (first_group, second_group)]
     return Difference.of(error[0] - error[1])
 
 
 def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:
     """Return root mean squares of the resamples."""
-    # a sum and no product of matrices: the same on every processor
+    # a sum, not a matrix product, for equal results on all processors
     return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))  # Eq. 139
 
 
 def drawn(data: DataSet) -> FloatArray:
-    """Return how often each row is in each resample: specimens drawn within their data sets, by a fixed seed."""
+    """Return the multiplicity of each row in each resample; specimens are resampled within data sets, fixed seed."""
     return _drawn(data.group, data.labels)
 
 
@@ -133,7 +137,7 @@ def rmse(model: FloatArray, measured: FloatArray) -> float:
 
 
 def bias(model: FloatArray, measured: FloatArray) -> float:
-    """Mean of model minus experiment, positive where the model is too elastic [-]."""
+    """Mean of model minus experiment, positive for a too elastic model [-]."""
     return float(np.mean(model - measured))
 
 
@@ -144,23 +148,23 @@ def correlation(model: FloatArray, measured: FloatArray) -> float:
     return float(dm @ de) / scale if scale > 0.0 else float("nan")
 
 
-def rank_correlation(one: FloatArray, other: FloatArray) -> tuple[float, float]:
-    """Spearman's rank correlation, and the probability of one as far from zero by chance, by Student's t."""
+def rank_correlation(first: FloatArray, second: FloatArray) -> tuple[float, float]:
+    """Return Spearman's rank correlation, and its p-value by Student's t."""
     from scipy.special import stdtr
 
-    rho = correlation(_ranks(one), _ranks(other))
-    freedom = one.size - 2
+    rho = correlation(_ranks(first), _ranks(second))
+    freedom = first.size - 2
     return rho, float(2.0 * stdtr(freedom, -abs(rho) * np.sqrt(freedom / max((1.0 + rho) * (1.0 - rho), 1e-300))))
 
 
 def _ranks(values: FloatArray) -> FloatArray:
-    """Ranks from 1 on; equal values share the mean of theirs."""
-    _, place, count = np.unique(values, return_inverse=True, return_counts=True)
-    return (np.cumsum(count) - 0.5 * (count - 1))[place]
+    """Return ranks from 1; equal values have their mean rank."""
+    _, index, count = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(count) - 0.5 * (count - 1))[index]
 
 
 def concordance(model: FloatArray, measured: FloatArray) -> float:
-    """Lin's concordance (Biometrics 45, 1989): correlation that also pays for bias and scale."""
+    """Lin's concordance (Biometrics 45, 1989): correlation with penalties for bias and scale."""
     covariance = float(np.mean((model - model.mean()) * (measured - measured.mean())))
     return 2.0 * covariance / float(model.var() + measured.var() + (model.mean() - measured.mean()) ** 2)
 

@@ -1,4 +1,4 @@
-"""The calibration that knows who measured what: rows of one block, interface and laboratory deviate together."""
+"""The hierarchical calibration: rows of one block, interface and laboratory have common deviations."""
 
 import math
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ from rocking.restitution.calibrated import KEPT, kept
 from rocking.restitution.shifted_impulse import shifted
 
 LEVELS = ("laboratory", "interface", "block", "measurement")
-"""What the variance is divided among, from those that have most rows in common to single rows."""
+"""Levels of the variance, from the most common rows to single rows."""
 
 NODES = Nodes(
     np.linspace(0.9655, 0.9999, 17),
@@ -36,66 +36,66 @@ NODES = Nodes(
     np.linspace(math.log(0.02), math.log(0.80), 12),
     np.linspace(0.20, 1.50, 8),
 )
-"""Fewer than where rows stand alone: a posterior that is as wide as a step or more is summed to 1e-4."""
-_SHARES, _PARTS = 10, 4  # nodes of the share between groups, and of what lies within it or within the rest
+"""Coarser than the grid for independent rows; a posterior as wide as a step or more is integrated to 1e-4."""
+_SHARES, _PARTS = 10, 4  # nodes of the variance fraction between groups, and of its subdivision
 
 
 @dataclass(frozen=True, eq=False)
 class HierarchicalCalibration(Calibration):
-    """Posterior of the calibrated default for a body on an interface that was not measured."""
+    """Posterior of the calibrated default for a body on a new interface."""
 
-    # expected shares of the variance of a new measurement: laboratory, interface, block and measurement; where no
-    # laboratory has two groups, or no block two rows, the first or third is in its neighbour's [-]
+    # expected fractions of the variance of a new measurement: laboratory, interface, block and measurement; without
+    # two groups of a laboratory, or two rows of a block, the first or third is part of the next level [-]
     shares: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """A group of measurements beside what is predicted of it by all others."""
+    """A group of measurements compared with predictions from all other groups."""
 
     name: str  # group and interface
-    measurements: int  # how many it has
-    inside: int  # those within their intervals for a single measured body
+    measurements: int  # number of measurements
+    inside: int  # measurements within their intervals for a single measured body
     interval_width: float  # mean width of these intervals [-]
     probability: float  # predicted probability of a lower mean than that of the group [-]
 
     def answer(self) -> Answer:
-        """Return what is shown of the group."""
+        """Return the results of the group."""
         return Answer({**vars(self), "within": self.within})
 
     @property
     def within(self) -> bool:
-        """Whether the group's mean lies within its 95 % interval."""
+        """True if the group's mean is within its 95 % interval."""
         return 0.5 * (1.0 - LEVEL) <= self.probability <= 0.5 * (1.0 + LEVEL)
 
 
 def hierarchy_answer(calibration: "HierarchicalCalibration", left_out: Sequence[LeftOut]) -> Answer:
-    """Return what is shown of a calibration with groups."""
+    """Return the results of a calibration with groups."""
     return Answer({
         "model": calibration.model().label,
         "calibration": calibration.summary,
         "shares": calibration.shares,
-        "left_out_groups": [each.answer() for each in left_out],
+        "left_out_groups": [group.answer() for group in left_out],
     })  # fmt: skip
 
 
 def calibrate_hierarchy(measurements: DataSet | None = None) -> HierarchicalCalibration:
-    """Return the calibration whose scatter has shares of laboratories, interfaces and blocks.
+    """Return the calibration with scatter between laboratories, interfaces and blocks.
 
     Parameters
     ----------
     measurements : DataSet, optional
-        What was measured; the 39 published coefficients if not given.
+        Measurements; default: the 39 published coefficients.
 
     Returns
     -------
     HierarchicalCalibration
-        Posterior on a fixed grid: the same numbers every time. Its predictions are of a body on a new interface.
+        Posterior on a fixed grid, without random numbers. Its predictions apply to a body on a new interface.
 
     Examples
     --------
-    >>> found = calibrate_hierarchy()
-    >>> 0.3 < found.shares["laboratory"] + found.shares["interface"] < 0.9
+    >>> calibration = calibrate_hierarchy()
+    >>> 0.3 < calibration.shares["laboratory"] + calibration.shares["interface"] < 0.9
     True
     """
     data = all_measurements() if measurements is None else measurements
@@ -112,36 +112,38 @@ def _calibrated(data: DataSet) -> HierarchicalCalibration:
 
 
 def hierarchy_fingerprint(data: DataSet) -> str:
-    """Return the hash of all that this posterior is made of."""
+    """Return the hash of the inputs of this posterior."""
     nodes = [[f"{value:.12g}" for value in axis.tolist()] for axis in vars(NODES).values()]
     return fingerprint(data, repr((tree(data), data.coefficient.tolist(), nodes, _SHARES, _PARTS)))
 
 
 def keep_hierarchy() -> None:
-    """Compute what `calibrate_hierarchy` and the model `calibrated` read, and write it."""
+    """Compute and write the stored values of `calibrate_hierarchy` and of the model `calibrated`."""
     data = all_measurements()
-    found, unknown = _Posterior(data, NODES).whole(), unseen(data)
-    shares = np.array(list(found.shares.values()))
-    np.savez_compressed(KEPT, inputs=hierarchy_fingerprint(data), shares=shares, unseen=unknown, **arrays_of(found))
+    posterior, expected = _Posterior(data, NODES).whole(), unseen(data)
+    shares = np.array(list(posterior.shares.values()))
+    np.savez_compressed(
+        KEPT, inputs=hierarchy_fingerprint(data), shares=shares, unseen=expected, **arrays_of(posterior)
+    )
 
 
 def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
-    """Return each group of measurements beside what the others predict of it."""
+    """Return each group of measurements compared with predictions from the other groups."""
     data = all_measurements() if measurements is None else measurements
     posterior = _Posterior(data, NODES)
     terms = {laboratory: posterior.term(groups) for laboratory, groups in posterior.tree.items()}
-    whole, found = posterior.log_prior + sum(terms.values()), []
+    log_posterior, left_out = posterior.log_prior + sum(terms.values()), []
     for laboratory, groups in posterior.tree.items():
         for name, blocks in groups.items():
-            others = {other: each for other, each in groups.items() if other != name}
-            rest = whole - terms[laboratory] + (posterior.term(others) if others else 0.0)
-            found.append(posterior.left_out(name, list(blocks.values()), rest))
-    return tuple(found)
+            others = {other: blocks_of_group for other, blocks_of_group in groups.items() if other != name}
+            log_remaining = log_posterior - terms[laboratory] + (posterior.term(others) if others else 0.0)
+            left_out.append(posterior.left_out(name, list(blocks.values()), log_remaining))
+    return tuple(left_out)
 
 
 @lru_cache(maxsize=8)
 def unseen(data: DataSet) -> FloatArray:
-    """Return the expected coefficients of all rows, each by a calibration that has not seen its group [-]."""
+    """Return the expected coefficients of all rows, each from a calibration without its group [-]."""
     stored = kept(KEPT)
     if stored["inputs"] == hierarchy_fingerprint(data):
         return np.array(stored["unseen"])
@@ -152,25 +154,25 @@ def unseen(data: DataSet) -> FloatArray:
     return expected
 
 
-def sentence_of(found: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
-    """Return what a calibration says of new interfaces, and how it fared on groups that it had not seen."""
-    shares = ", ".join(f"{100.0 * share:.0f} % by {name}" for name, share in found.shares.items() if share > 0.0)
-    rows, inside = sum(each.measurements for each in groups), sum(each.inside for each in groups)
-    width = sum(each.measurements * each.interval_width for each in groups) / rows
+def sentence_of(calibration: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
+    """Return a sentence on the scatter of new interfaces, and on predictions of left-out groups."""
+    shares = ", ".join(f"{100.0 * share:.0f} % by {name}" for name, share in calibration.shares.items() if share > 0.0)
+    rows, inside = sum(group.measurements for group in groups), sum(group.inside for group in groups)
+    width = sum(group.measurements * group.interval_width for group in groups) / rows
     return (
-        f"For a body on a new interface the scatter is divided: {shares}. Of {len(groups)} groups, each left out, the "
-        f"means of {sum(each.within for each in groups)} lie within their {100.0 * LEVEL:.0f} % intervals; of their "
-        f"{rows} measurements {inside}, whose intervals are {width:.3f} wide on average."
+        f"For a body on a new interface the variance consists of {shares}. Of {len(groups)} groups, each left out, the "
+        f"means of {sum(group.within for group in groups)} are within their {100.0 * LEVEL:.0f} % intervals. Of "
+        f"their {rows} measurements, {inside} are within their intervals, with a mean width of {width:.3f}."
     )
 
 
 def tree(data: DataSet) -> dict[str, dict[str, dict[Any, list[int]]]]:
     """Return the rows by laboratory, group with interface, and block: a label with its slenderness."""
-    found: dict[str, dict[str, dict[Any, list[int]]]] = {}
+    by_laboratory: dict[str, dict[str, dict[Any, list[int]]]] = {}
     for i, name in enumerate(_groups(data)):
-        blocks = found.setdefault(data.laboratory[i] or name, {}).setdefault(name, {})
+        blocks = by_laboratory.setdefault(data.laboratory[i] or name, {}).setdefault(name, {})
         blocks.setdefault((data.labels[i], float(data.slenderness[i])), []).append(i)
-    return found
+    return by_laboratory
 
 
 def _groups(data: DataSet) -> list[str]:
@@ -180,18 +182,18 @@ def _groups(data: DataSet) -> list[str]:
 
 
 def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[float, ...]]:
-    """Return the nodes of the shares; what no rows tell apart is not divided."""
+    """Return the nodes of the variance fractions; levels that no rows distinguish are not divided."""
     groups = [group for laboratory in tree.values() for group in laboratory.values()]
-    several = any(len(laboratory) > 1 for laboratory in tree.values())
-    again = any(len(rows) > 1 for group in groups for rows in group.values())
+    has_groups = any(len(laboratory) > 1 for laboratory in tree.values())
+    has_repeats = any(len(rows) > 1 for group in groups for rows in group.values())
     middle = [((np.arange(n) + 0.5) / n).tolist() for n in (_SHARES, _PARTS)]
-    parts = product(middle[0], middle[1] if several else [0.0], middle[1] if again else [0.0])
+    parts = product(middle[0], middle[1] if has_groups else [0.0], middle[1] if has_repeats else [0.0])
     return [(a * b, a * (1.0 - b), (1.0 - a) * c, (1.0 - a) * (1.0 - c)) for a, b, c in parts]  # Eq. 288
 
 
 @dataclass(frozen=True)
 class _Sums:
-    """What rows say of an effect that they have in common, arrays on the grid of (eta, k, s, gamma)."""
+    """Sums over rows with a common effect, arrays on the grid of (eta, k, s, gamma)."""
 
     precision: Any = 0.0
     moment: Any = 0.0
@@ -200,10 +202,10 @@ class _Sums:
 
     def __add__(self, other: "_Sums") -> "_Sums":
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
-        return _Sums(*(one + two for one, two in pairs))
+        return _Sums(*(left + right for left, right in pairs))
 
     def integrated(self, variance: FloatArray) -> "_Sums":
-        """Return the sums without the effect, which is normal with a variance."""
+        """Return the sums after integration over a normal effect with a variance."""
         widened = 1.0 + variance * self.precision
         return _Sums(
             self.precision / widened, self.moment / widened, self.square - variance * self.moment**2 / widened,
@@ -212,7 +214,7 @@ class _Sums:
 
 
 class _Posterior:
-    """The posterior on nodes, laboratory by laboratory: groups can be left out without computing all of it again."""
+    """The posterior on nodes, by laboratory; groups can be left out without a complete new computation."""
 
     def __init__(self, data: DataSet, nodes: Nodes) -> None:
         self.data, self.nodes, self.tree = data, nodes, tree(data)
@@ -228,22 +230,22 @@ class _Posterior:
         return np.asarray(np.maximum(1.0 - self.mean[row], 1e-6) ** self.nodes.gamma)  # Eq. 133
 
     def term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
-        """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all shares."""
+        """Return the logarithm of the likelihood of a laboratory's rows, on the grid and for all variance fractions."""
         rows = [i for group in groups.values() for block in group.values() for i in block]
-        known = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 287
-        found = []
+        residuals = {i: (self.data.coefficient[i] - self.mean[i], self.loading(i)) for i in rows}  # Eq. 287
+        terms = []
         for share in self.shares:
-            laboratory, interface, block, alone = (self.variance * part for part in share)
-            whole = _Sums()
+            laboratory, interface, block, alone = (self.variance * fraction for fraction in share)
+            total = _Sums()
             for group in groups.values():
                 inner = _Sums()
                 for members in group.values():
-                    each = sum((self.row(i, alone, *known[i]) for i in members), _Sums())
-                    inner += each if share[2] == 0.0 else each.integrated(block)
-                whole += inner.integrated(interface)
-            whole = whole if share[0] == 0.0 else whole.integrated(laboratory)
-            found.append(-0.5 * (whole.square + whole.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 291
-        return np.stack(found, axis=-1)
+                    block_sums = sum((self.row(i, alone, *residuals[i]) for i in members), _Sums())
+                    inner += block_sums if share[2] == 0.0 else block_sums.integrated(block)
+                total += inner.integrated(interface)
+            total = total if share[0] == 0.0 else total.integrated(laboratory)
+            terms.append(-0.5 * (total.square + total.logarithm + len(rows) * math.log(2.0 * math.pi)))  # Eq. 291
+        return np.stack(terms, axis=-1)
 
     def row(self, row: int, variance: FloatArray, residual: FloatArray, loading: FloatArray) -> _Sums:
         own = variance * loading**2 + self.rounding[row]
@@ -256,34 +258,38 @@ class _Posterior:
         return self.calibration(np.broadcast_to(self.log_prior + sum(map(self.term, self.tree.values())), shape))
 
     def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
-        """Return the calibration that a logarithm of weights means."""
+        """Return the calibration of a logarithm of weights."""
         weight = normalised(logarithm)
-        found, expected = (
+        calibration, expected = (
             summarised(weight.sum(axis=-1), self.nodes),
             weight.sum(axis=(0, 1, 2, 3)) @ np.array(self.shares),
         )
-        return HierarchicalCalibration(**vars(found), shares=dict(zip(LEVELS, expected.tolist(), strict=True)))
+        return HierarchicalCalibration(**vars(calibration), shares=dict(zip(LEVELS, expected.tolist(), strict=True)))
 
     def left_out(self, name: str, blocks: list[list[int]], logarithm: FloatArray) -> LeftOut:
-        """Return a group beside what the weights of the others predict, as of another laboratory's."""
+        """Return a group compared with predictions from the weights of the others, as of a new laboratory."""
         rows = [i for block in blocks for i in block]
-        found = self.calibration(logarithm).predict(self.data.slenderness[rows])
+        prediction = self.calibration(logarithm).predict(self.data.slenderness[rows])
         measured = self.data.coefficient[rows]
-        inside = int(((found.low <= measured) & (measured <= found.high)).sum())
+        inside = int(((prediction.low <= measured) & (measured <= prediction.high)).sum())
         probability = self._below_mean(normalised(logarithm), blocks)
-        return LeftOut(name, len(rows), inside, float((found.high - found.low).mean()), probability)
+        return LeftOut(name, len(rows), inside, float((prediction.high - prediction.low).mean()), probability)
 
     def _below_mean(self, weight: FloatArray, blocks: list[list[int]]) -> float:
-        """Return the predicted probability of a mean of rows below the one that was measured."""
+        """Return the predicted probability of a mean of rows below the measured mean."""
         from scipy.special import ndtr
 
         rows = [i for block in blocks for i in block]
         loadings = {i: self.loading(i) for i in rows}
         sums = [sum(loadings[i] for i in block) for block in blocks]
-        common, by_block, alone = sum(sums) ** 2, sum(each**2 for each in sums), sum(x**2 for x in loadings.values())
+        common, by_block, alone = (
+            sum(sums) ** 2,
+            sum(block_sum**2 for block_sum in sums),
+            sum(x**2 for x in loadings.values()),
+        )
         gap = self.data.coefficient[rows].sum() - self.mean[rows].sum(axis=0)
-        rounding, found = self.rounding[rows].sum(), 0.0
+        rounding, probability = self.rounding[rows].sum(), 0.0
         for k, (laboratory, interface, block, own) in enumerate(self.shares):
             variance = self.variance * ((laboratory + interface) * common + block * by_block + own * alone) + rounding
-            found += float((weight[..., k] * ndtr(gap / np.sqrt(variance))).sum())  # Eq. 292
-        return found
+            probability += float((weight[..., k] * ndtr(gap / np.sqrt(variance))).sum())  # Eq. 292
+        return probability

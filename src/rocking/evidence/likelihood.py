@@ -13,16 +13,16 @@ _erfc = np.frompyfunc(math.erfc, 1, 1)
 
 
 def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Logarithm of the probability that a normal value lies in the interval that rounding leaves open."""
+    """Return the logarithm of the probability of a normal value in the interval of rounding."""
     # ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast
     from scipy.special import log_ndtr, ndtr
 
     a, b = (low - mean) / sd, (high - mean) / sd
-    # both ends on the same side of zero keep their digits in the lower tail
+    # two ends on one side of zero have full precision in the lower tail
     flip = a > 0.0
     a, b = np.where(flip, -b, a), np.where(flip, -a, b)
     probability = ndtr(b) - ndtr(a)  # Eq. 134
-    deep = ~(probability > 1e-290)  # where the tail itself is too small a number, its logarithm is not
+    deep = ~(probability > 1e-290)  # the probability underflows, its logarithm does not
     if not deep.any():
         return np.log(probability)
     upper, lower = log_ndtr(b[deep]), log_ndtr(a[deep])
@@ -32,7 +32,7 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
 
 
 def normal_cdf(z: FloatArray) -> FloatArray:
-    """Return the cumulative distribution of the normal distribution, without what scipy takes to be imported."""
+    """Return the cumulative normal distribution, without the import time of scipy."""
     return 0.5 * np.asarray(_erfc(-math.sqrt(0.5) * z), dtype=np.float64)
 
 
@@ -51,5 +51,5 @@ def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
 
 
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
-    """Return BIC by the rounding-aware likelihood, -2 ln L + (parameters + 2) ln n: two more are of the scatter."""
+    """Return BIC of the likelihood with rounding, -2 ln L + (parameters + 2) ln n: two parameters of the scatter."""
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138

@@ -1,6 +1,6 @@
-"""Files of measured coefficients of restitution, in TOML or CSV: what may stand in them, read and written.
+"""Files of measured coefficients of restitution, in TOML or CSV: schema, reader and writer.
 
-Imported only when one is read or written: it loads pydantic.
+This module loads pydantic, so it is imported only to read or write a file.
 """
 
 import csv
@@ -23,46 +23,46 @@ from rocking.errors import InvalidValueError, MeasurementError, located
 from rocking.evidence.measurements import DataSet, interface_of, joined
 from rocking.messages import Range
 
-_LARGEST, _MOST = 16 * 2**20, 100_000  # bytes of a file, measurements in it
+_LARGEST, _MOST = 16 * 2**20, 100_000  # maximum bytes of a file, maximum number of measurements
 _RATIOS, _USUAL_RATIOS = (0.5, 200.0), (1.0, 30.0)
-"""h/b that is refused outside, and doubted: below 0.71 a block that keeps to Housner's model does not rock on [-]."""
+"""Allowed and usual range of h/b; below 0.71, a block with Housner's model stops at the first impact [-]."""
 
 _DEVIATIONS, _USUAL_DEVIATIONS = (1e-6, 0.29), (1e-4, 0.1)
-"""Standard deviations of r likewise: all of 0 to 1, each as likely, has 0.29; times are hardly known to 1e-4 [-]."""
+"""Allowed and usual range of the standard deviation of r; a uniform distribution on 0 to 1 has 0.29 [-]."""
 
 Word = Annotated[str, Field(min_length=1, max_length=300)]
 Coefficient = Annotated[float, Field(gt=0.0, le=2.0)]
 
 
 class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a block
-    """One measured coefficient of restitution, or a series of them, of one homogeneous rectangle.
+    """One measured coefficient of restitution, or a series, of one homogeneous rectangle.
 
     Parameters
     ----------
     width, height : float, optional
         Full sizes of the block [m].
     source, licence : str
-        Publication, or whoever measured it; under what others may use it.
+        Publication or author of the measurement; licence for use by others.
     interface : str
-        Materials that touch, with a stroke between them: ``granite/granite``.
+        Materials in contact, separated by a slash: ``granite/granite``.
     method : str
-        How it was measured: sound, video, laser, ...
+        Method of measurement: sound, video, laser, ...
     block : str
-        Name of the block; rows of one block and slenderness deviate together.
+        Name of the block; rows of one block and slenderness have a common deviation.
     laboratory, group, material, doi, note : str, optional
-        Who measured; the set of the row, if not the laboratory; of what the block is; DOI of the source; anything else.
+        Laboratory; data set of the row (default: laboratory); material of the block; DOI of the source; remark.
     slenderness_ratio : float, optional
         h/b; or `width` and `height` [-].
     mass : float, optional
-        Its mass [kg].
+        Mass [kg].
     r : float, optional
         Ratio of velocities, not of energies; or `series` [-].
     series : list of float, optional
-        Coefficients of single impacts or trials, at least two: their mean counts, and its standard error [-].
+        Coefficients of two or more single impacts or trials; the mean and its standard error are used [-].
     uncertainty : float, optional
         Standard deviation of r; or `low` and `high` [-].
     low, high : float, optional
-        Interval that printed digits leave open [-].
+        Interval of rounding [-].
 
     Examples
     --------
@@ -80,20 +80,20 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
     (4.0, [0.93, 0.94, 0.95])
     """
 
-    model_config = ConfigDict(defer_build=False)  # users read its signature
+    model_config = ConfigDict(defer_build=False)  # the signature is documentation
 
-    source: Word = Field(description="publication, or whoever measured it")
-    licence: Word = Field(description="under what others may use it, such as CC BY 4.0")
-    interface: Word = Field(description="materials that touch, such as granite/granite")
-    method: Word = Field(description="how it was measured: sound, video, laser, ...")
-    block: Word = Field(description="name of the block; rows of one block deviate together")
-    laboratory: Word | None = Field(None, description="who measured")
-    group: Word | None = Field(None, description="set of the measurement; the laboratory, or the source, if left out")
-    material: Word | None = Field(None, description="what the block is of")
+    source: Word = Field(description="publication or author of the measurement")
+    licence: Word = Field(description="licence for use by others, such as CC BY 4.0")
+    interface: Word = Field(description="materials in contact, such as granite/granite")
+    method: Word = Field(description="method of measurement: sound, video, laser, ...")
+    block: Word = Field(description="name of the block; rows of one block have a common deviation")
+    laboratory: Word | None = Field(None, description="laboratory of the measurement")
+    group: Word | None = Field(None, description="data set of the measurement; default: laboratory or source")
+    material: Word | None = Field(None, description="material of the block")
     doi: Annotated[str, Field(pattern=r"^10\.\d{4,9}/\S+$", max_length=300)] | None = Field(
         None, description="DOI of the source, such as 10.3390/buildings14072119"
     )
-    note: Word | None = Field(None, description="anything else")
+    note: Word | None = Field(None, description="remark")
     slenderness_ratio: Positive | None = Field(None, description="h/b [-]; or width and height")
     mass: Positive | None = Field(None, description="mass [kg]")
     r: Coefficient | None = Field(None, description="coefficient, a ratio of velocities [-]; or series")
@@ -101,40 +101,40 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
         None, description="coefficients of single impacts or trials [-]"
     )
     uncertainty: Positive | None = Field(None, description="standard deviation of r [-]; or low and high")
-    low: Annotated[float, Field(ge=0.0)] | None = Field(None, description="low end of what printed digits leave open")
-    high: Positive | None = Field(None, description="high end of it [-]")
+    low: Annotated[float, Field(ge=0.0)] | None = Field(None, description="lower end of the interval of rounding [-]")
+    high: Positive | None = Field(None, description="upper end of the interval of rounding [-]")
 
     @model_validator(mode="after")
     def _whole(self) -> "Measurement":
         sizes, ends = (self.width is not None) + (self.height is not None), (self.low, self.high)
         if sizes != (2 if self.slenderness_ratio is None else 0):
-            raise InvalidValueError("give slenderness_ratio, or width and height")
+            raise InvalidValueError("enter slenderness_ratio, or width and height")
         if (self.r is None) == (self.series is None):
-            raise InvalidValueError("give r or series, one of them")
-        open_ = [self.uncertainty is not None, None not in ends, self.series is not None]
-        if sum(open_) != 1 or (not open_[1] and ends != (None, None)):
-            raise InvalidValueError("say how far r is open: give uncertainty, or low and high, or a series alone")
+            raise InvalidValueError("enter either r or series")
+        uncertainties = [self.uncertainty is not None, None not in ends, self.series is not None]
+        if sum(uncertainties) != 1 or (not uncertainties[1] and ends != (None, None)):
+            raise InvalidValueError("enter the uncertainty of r: either uncertainty, or low and high, or a series")
         low, r, high = self.interval
         if not low <= r <= high or low == high:
             raise InvalidValueError(
-                "{parameter} must lie in an interval that is open, got {low:g} <= {r:g} <= {high:g}", parameter="r",
+                "{parameter} must be in an interval low < high, got {low:g} <= {r:g} <= {high:g}", parameter="r",
                 value=r, low=low, r=r, high=high,
             )  # fmt: skip
         if r > 1.0:
             raise InvalidValueError(
-                "{parameter} must be {allowed}: a rectangle that gains energy was not measured, got {value}",
+                "{parameter} must be {allowed} because a rectangle cannot gain energy, got {value}",
                 parameter="r", allowed=Range(-math.inf, 1.0), value=r,
             )  # fmt: skip
         if not _RATIOS[0] <= self.ratio <= _RATIOS[1]:
             raise InvalidValueError(
                 "h/b must be in {low:g} to {high:g}, got {ratio:g}", low=_RATIOS[0], high=_RATIOS[1], ratio=self.ratio,
-                hint="is it b/h, or is one length in another unit?",
+                hint="check that it is not b/h, and check the units of lengths",
             )  # fmt: skip
         if not _DEVIATIONS[0] <= self.deviation <= _DEVIATIONS[1]:
             raise InvalidValueError(
-                "{parameter} must be known to a standard deviation of {low:g} to {high:g}, got {deviation:.3g}",
+                "the standard deviation of {parameter} must be {low:g} to {high:g}, got {deviation:.3g}",
                 parameter="r", low=_DEVIATIONS[0], high=_DEVIATIONS[1], deviation=self.deviation,
-                hint="is it in percent, or that of something else?",
+                hint="check that it is not in percent",
             )  # fmt: skip
         return self
 
@@ -146,15 +146,18 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What was hardly meant."""
-        found = []
+        """Unusual values."""
+        messages = []
         if not _USUAL_RATIOS[0] <= self.ratio <= _USUAL_RATIOS[1]:
-            found.append(f"h/b = {self.ratio:.4g} is outside {_USUAL_RATIOS[0]:g} to {_USUAL_RATIOS[1]:g}; is it b/h?")
+            messages.append(
+                f"h/b = {self.ratio:.4g} is outside {_USUAL_RATIOS[0]:g} to {_USUAL_RATIOS[1]:g}; "
+                "check that it is not b/h"
+            )
         if not _USUAL_DEVIATIONS[0] <= self.deviation <= _USUAL_DEVIATIONS[1]:
             low, high = _USUAL_DEVIATIONS
-            found.append(f"a standard deviation of r of {self.deviation:.3g} is outside {low:g} to {high:g}")
+            messages.append(f"a standard deviation of r of {self.deviation:.3g} is outside {low:g} to {high:g}")
         size = () if self.height is None else plausibility.of_body(0.5 * self.height, self.ratio, ())
-        return (*found, *size, *plausibility.of_coefficient(self.interval[1]))
+        return (*messages, *size, *plausibility.of_coefficient(self.interval[1]))
 
     @property
     def ratio(self) -> float:
@@ -165,7 +168,7 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
 
     @property
     def interval(self) -> tuple[float, float, float]:
-        """Low end, r, high end: of a standard deviation the interval that has it [-]."""
+        """Lower end, r, upper end; a standard deviation gives the uniform interval with this deviation [-]."""
         if self.r is not None and self.low is not None and self.high is not None:
             return self.low, self.r, self.high
         series = np.array([self.r] if self.series is None else self.series)
@@ -180,23 +183,23 @@ def read_measurements(*paths: str | Path) -> DataSet:
     Parameters
     ----------
     *paths : str or Path
-        TOML with tables ``[[measurement]]``, where keys above them hold for all; or CSV, one row a measurement, its
-        columns the keys, a series with spaces between its numbers. See `Measurement`.
+        TOML with tables ``[[measurement]]`` (keys above them apply to all), or CSV with one row per measurement and the
+        keys as columns; numbers of a series are separated by spaces. See `Measurement`.
 
     Returns
     -------
     DataSet
-        All of them.
+        All measurements.
 
     Raises
     ------
     MeasurementError
-        If a file cannot be read, or a measurement is not whole; the sentence names file, row, key and value.
+        If a file cannot be read, or a measurement is incomplete; the message contains file, row, key and value.
     """
     if not paths:
-        raise InvalidValueError("name at least one file of measurements")
+        raise InvalidValueError("enter one or more files of measurements")
     sets = [dataset_of(rows_in(Path(path)), Path(path).stem) for path in paths]
-    return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "measurements of files")
+    return sets[0] if len(sets) == 1 else joined(sets, "+".join(data.name for data in sets), "measurements of files")
 
 
 def rows_in(path: Path) -> list[Measurement]:
@@ -218,28 +221,28 @@ def rows_in(path: Path) -> list[Measurement]:
     kinds = {".toml": _tables, ".csv": _lines}
     if path.suffix.lower() not in kinds:
         raise MeasurementError(
-            "measurements stand in .toml or .csv, got {extension!r}", extension=path.suffix or "no ending"
+            "unsupported extension {extension!r}; use .toml or .csv", extension=path.suffix or "none"
         ).at(str(path))
-    found: list[Measurement] = []
+    measurements: list[Measurement] = []
     doubts: list[str] = []
-    places: dict[str, str] = {}
-    for place, keys in kinds[path.suffix.lower()](path, text):
-        if len(found) == _MOST:
+    first_locations: dict[str, str] = {}
+    for location, keys in kinds[path.suffix.lower()](path, text):
+        if len(measurements) == _MOST:
             raise MeasurementError("has more than {limit} measurements", limit=_MOST).at(str(path))
         try:
-            found.append(Measurement.model_validate(keys))
+            measurements.append(Measurement.model_validate(keys))
         except ValidationError as error:
-            with located(f"{path}, {place}", "file"):
+            with located(f"{path}, {location}", "file"):
                 raise from_pydantic(error.errors(include_url=False), kind=MeasurementError) from error
-        doubts += [f"{path.name}, {place}: {doubt}" for doubt in found[-1].doubts]
-        row = found[-1].model_dump_json()
-        if row in places:
-            doubts.append(f"{path.name}, {place}: it is the same as {places[row]}, and counts twice")
-        places.setdefault(row, place)
-    if not found:
+        doubts += [f"{path.name}, {location}: {doubt}" for doubt in measurements[-1].doubts]
+        row = measurements[-1].model_dump_json()
+        if row in first_locations:
+            doubts.append(f"{path.name}, {location}: duplicate of {first_locations[row]}, counted twice")
+        first_locations.setdefault(row, location)
+    if not measurements:
         raise MeasurementError("has no measurement").at(str(path))
     plausibility.warn(doubts[:3] + ([f"{path.name}: {len(doubts) - 3} more doubts like these"] if doubts[3:] else []))
-    return found
+    return measurements
 
 
 def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
@@ -253,9 +256,9 @@ def _tables(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise MeasurementError("has no tables [[measurement]]").at(str(path))
     for number, row in enumerate(rows, start=1):
-        whole = {**tables, **row}
-        numbers = {key: float(value) for key, value in whole.items() if type(value) is int}
-        yield f"measurement {number}", whole | numbers
+        row_values = {**tables, **row}
+        numbers = {key: float(value) for key, value in row_values.items() if type(value) is int}
+        yield f"measurement {number}", row_values | numbers
 
 
 def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
@@ -263,14 +266,14 @@ def _lines(path: Path, text: str) -> Iterable[tuple[str, dict[str, Any]]]:
     try:
         names = reader.fieldnames or ()
         if twice := [name for name in names if names.count(name) > 1]:
-            raise MeasurementError("names a column twice, {column!r:.60}", column=twice[0]).at(str(path), 1)
+            raise MeasurementError("column {column!r:.60} appears twice", column=twice[0]).at(str(path), 1)
         for row in reader:
-            place = f"line {reader.line_num}"
+            location = f"line {reader.line_num}"
             if "" in row or None in row.values():
-                raise MeasurementError("has not as many fields as the first line has names").at(
+                raise MeasurementError("the number of fields differs from the first line").at(
                     str(path), reader.line_num
                 )
-            yield place, {key: _value(key, field.strip()) for key, field in row.items() if field.strip()}
+            yield location, {key: _value(key, field.strip()) for key, field in row.items() if field.strip()}
     except csv.Error as error:
         raise MeasurementError("is no CSV ({reason})", reason=str(error)).at(str(path), reader.line_num) from error
 
@@ -281,7 +284,7 @@ def _value(key: str, field: str) -> Any:
     try:
         return [float(word) for word in field.split()] if key == "series" else float(field)
     except ValueError:
-        return field  # which is refused as no number
+        return field  # the model rejects it as not a number
 
 
 _NUMBERS = {"slenderness_ratio", "mass", "r", "series", "uncertainty", "low", "high", *BlockSides.model_fields}
@@ -300,72 +303,76 @@ def dataset_of(rows: Sequence[Measurement], name: str) -> DataSet:
     )  # fmt: skip
 
 
-def measurement_of(found: Any, body: Block, **known: Any) -> Measurement:
-    """Return what was identified from a recording as a measurement for the evidence.
+def measurement_of(identification: Any, body: Block, **keys_of_user: Any) -> Measurement:
+    """Return an identification from a recording as a measurement for the evidence.
 
     Parameters
     ----------
-    found : Identification
-        Of `rocking.identification.identify`; its mean coefficient counts.
+    identification : Identification
+        Result of `rocking.identification.identify`; its mean coefficient is used.
     body : Block
-        The block that rocked.
-    **known
-        What a recording does not tell: ``interface``, ``block``, ``method``, ``source``, ``licence`` and more, see
-        `Measurement`.
+        The measured block.
+    **keys_of_user
+        Keys that the recording does not contain: ``interface``, ``block``, ``method``, ``source``, ``licence`` and
+        others of `Measurement`.
 
     Returns
     -------
     Measurement
-        For `write_measurements`.
+        Measurement for `write_measurements`.
 
     Raises
     ------
     InvalidValueError
-        If it was refused, the body is no block, or a key is missing or unknown.
+        If the identification was refused, the body is not a block, or a key is missing or unknown.
     """
-    if found.refused:
-        raise InvalidValueError("what was refused is no measurement: {reason}", reason=found.refused[0])
-    given: object = body
-    if not isinstance(given, Block) or not given.stands_on_corners:
+    if identification.refused:
         raise InvalidValueError(
-            "{parameter} must be {allowed}: evidence is of rectangles, got {value}", parameter="body",
+            "a refused identification cannot be used as a measurement: {reason}", reason=identification.refused[0]
+        )
+    block: object = body
+    if not isinstance(block, Block) or not block.stands_on_corners:
+        raise InvalidValueError(
+            "{parameter} must be {allowed} because the evidence contains rectangles only, got {value}",
+            parameter="body",
             allowed="a Block on its corners", value=body,
         )  # fmt: skip
-    spread = (found.mean.high - found.mean.low) / (2.0 * NORMAL_95)
+    spread = (identification.mean.high - identification.mean.low) / (2.0 * NORMAL_95)
     keys = {
-        "width": body.width, "height": body.height, "mass": body.mass, "r": found.mean.value, "uncertainty": spread,
+        "width": body.width, "height": body.height, "mass": body.mass, "r": identification.mean.value,
+        "uncertainty": spread,
     }  # fmt: skip
     try:
-        row: Measurement = Measurement.model_validate({**keys, **known})
+        row: Measurement = Measurement.model_validate({**keys, **keys_of_user})
     except ValidationError as error:
         raise from_pydantic(error.errors(include_url=False)) from error
     return row
 
 
 def write_measurements(rows: Sequence[Measurement], path: str | Path) -> Path:
-    """Write measurements as CSV, which `read_measurements` reads again to the last digit.
+    """Write measurements as CSV in full precision for `read_measurements`.
 
     Parameters
     ----------
     rows : sequence of Measurement
         The measurements.
     path : str or Path
-        File with the ending ``.csv``.
+        File with extension ``.csv``.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Raises
     ------
     InvalidValueError
-        If there is no row, or the file has another ending.
+        If there is no row, or the extension is not ``.csv``.
     """
     path = Path(path)
     if not rows or path.suffix.lower() != ".csv":
         raise InvalidValueError(
-            "write at least one measurement to a file .csv, got {count} to {file!r:.60}", count=len(rows),
+            "write one or more measurements to a .csv file, got {count} to {file!r:.60}", count=len(rows),
             file=path.name,
         )  # fmt: skip
     names = [name for name in Measurement.model_fields if any(getattr(row, name) is not None for row in rows)]

@@ -1,4 +1,4 @@
-"""The published measurements, with where they come from and how far rounding leaves them open."""
+"""The published measurements, with their sources and intervals of rounding."""
 
 import csv
 import tomllib
@@ -12,10 +12,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 
-GROUPS = ("table1", "S", "M", "L")  # the independent data sets; Table 2 holds means of Table 1
+GROUPS = ("table1", "S", "M", "L")  # the independent data sets; Table 2 contains means of Table 1
 
 BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np.inf))
-"""Slenderness bands of the league table: name, above, up to."""
+"""Slenderness bands of the league table: name, lower limit (excluded), upper limit (included)."""
 
 _COLUMNS = ("slenderness", "coefficient", "low", "high", "mass")
 _WORDS = ("labels", "group", "interface", "laboratory")
@@ -34,9 +34,9 @@ class DataSet:
     coefficient : ndarray, shape (n,)
         Measured r, ratio of velocities [-].
     low, high : ndarray, shape (n,)
-        Interval that the printed digits leave open [-].
+        Interval of rounding [-].
     mass : ndarray, shape (n,)
-        Mass, NaN where the source gives none [kg].
+        Mass, NaN if not stated [kg].
     labels : tuple of str
         Block, or materials at the interface.
     group : tuple of str
@@ -44,9 +44,9 @@ class DataSet:
     printed : dict of str to ndarray
         The paper's own columns: ``housner``, ``ked``, ``relative_error``.
     interface : tuple of str
-        What touches what, in alphabetic order, such as ``granite/granite``; empty where nobody says.
+        Materials in contact, in alphabetic order, such as ``granite/granite``; empty if not stated.
     laboratory : tuple of str
-        Who measured; empty where nobody says, which counts as another one for each group and interface.
+        Laboratory; empty if not stated, which counts as a separate laboratory for each group and interface.
     """
 
     name: str
@@ -64,7 +64,7 @@ class DataSet:
     laboratory: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Let what nobody says be empty words."""
+        """Set missing interfaces and laboratories to empty strings."""
         for name in ("interface", "laboratory"):
             object.__setattr__(self, name, getattr(self, name) or ("",) * len(self.group))
 
@@ -77,11 +77,11 @@ class DataSet:
 
     @cached_property
     def group_number(self) -> IntArray:
-        """Place of each row's group in `GROUPS`."""
+        """Index of each row's group in `GROUPS`."""
         return np.array([GROUPS.index(group) for group in self.group])
 
     def rows(self, chosen: Sequence[int] | FloatArray) -> "DataSet":
-        """Return some rows, in the order given.
+        """Return selected rows, in the stated order.
 
         Parameters
         ----------
@@ -91,7 +91,7 @@ class DataSet:
         Returns
         -------
         DataSet
-            Those rows.
+            Selected rows.
         """
         index = np.arange(len(self))[np.asarray(chosen)]
         chosen_rows: dict[str, Any] = {name: getattr(self, name)[index] for name in _COLUMNS}
@@ -126,7 +126,7 @@ def datasets() -> dict[str, DataSet]:
 
 @lru_cache(maxsize=1)
 def all_measurements() -> DataSet:
-    """Return every independent measurement: Table 1 and the groups S, M, L.
+    """Return all independent measurements: Table 1 and the groups S, M, L.
 
     Returns
     -------
@@ -143,26 +143,26 @@ def all_measurements() -> DataSet:
 
 def joined(sets: Sequence[DataSet], name: str, title: str) -> DataSet:
     """Return the measurements of several sets as one."""
-    rows: dict[str, Any] = {column: np.concatenate([getattr(each, column) for each in sets]) for column in _COLUMNS}
-    rows |= {words: tuple(word for each in sets for word in getattr(each, words)) for words in _WORDS}
-    source = "; ".join(dict.fromkeys(each.source for each in sets))
+    rows: dict[str, Any] = {column: np.concatenate([getattr(data, column) for data in sets]) for column in _COLUMNS}
+    rows |= {text_column: tuple(word for data in sets for word in getattr(data, text_column)) for text_column in _WORDS}
+    source = "; ".join(dict.fromkeys(data.source for data in sets))
     return DataSet(name=name, title=title, source=source, **rows, printed={})
 
 
-def interface_of(words: str) -> str:
-    """Return the materials of an interface in alphabetic order: which of them is on top is not told apart."""
-    return "/".join(sorted(word.strip().lower() for word in words.split("/")))
+def interface_of(text: str) -> str:
+    """Return the materials of an interface in alphabetic order, independent of the upper material."""
+    return "/".join(sorted(word.strip().lower() for word in text.split("/")))
 
 
 @lru_cache(maxsize=1)
 def blocks() -> DataSet:
     """Return the measurements of single blocks, Table 3: 27 rows, of the groups S, M and L."""
-    every = all_measurements()
-    return every.rows([k for k, group in enumerate(every.group) if group != "table1"])
+    data = all_measurements()
+    return data.rows([k for k, group in enumerate(data.group) if group != "table1"])
 
 
 def provenance() -> dict[str, object]:
-    """Return where the measurements come from, and how their rounding was read.
+    """Return the sources of the measurements and the interpretation of their rounding.
 
     >>> provenance()["doi"]
     '10.3390/buildings14072119'

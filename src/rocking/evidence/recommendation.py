@@ -1,4 +1,4 @@
-"""Which restitution model to use for a body, side by side with what speaks for and against every other."""
+"""Recommended restitution model of a body, with the evidence for and against all models."""
 
 import math
 from collections.abc import Mapping
@@ -18,77 +18,76 @@ if TYPE_CHECKING:
     from rocking.tables import Table
 
 LEGEND = (
-    "kept: energy left after two impacts, one onto each foot; to half: impacts that halve the energy; bias, error: "
-    "mean and root mean square of r less the measurement."
+    "kept: fraction of energy after two impacts, one on each foot. to half: impacts that halve the energy. bias, "
+    "error: mean and root mean square of r minus the measurement."
 )
-"""What the columns of the table are, those of r apart."""
-APART = 3.92  # standard errors between two values, so that 97.5 % of measurements lie nearer to the right one
+"""Columns of the table, except those of r."""
+APART = 3.92  # standard errors between two values; 97.5 % of measurements are then nearer to the correct one
 
 
 def product(coefficients: Mapping[str, float]) -> float:
-    """Return the product of coefficients, by the foot landed on [-]."""
+    """Return the product of coefficients of landing feet [-]."""
     return math.prod(coefficients.values())
 
 
 @dataclass(frozen=True, eq=False)
 class ModelForBody:
-    """A model and one body: what it gives, how it stands, what to know."""
+    """A model for one body: coefficients, rank and limitations."""
 
     name: str  # name, title: name with parameters, and the model in one line
     title: str
-    # closest to the measurements, not resolved from the closest, further off, does not hold for this body, or not
-    # measured
+    # closest to the measurements, not resolved, further off, does not hold for this body, or not measured
     standing: Standing
-    # theta_dot_after / theta_dot_before by the foot, or the edge, landed on; empty where there is none [-]
+    # theta_dot_after / theta_dot_before by landing foot or edge; empty if the model does not hold [-]
     coefficients: Mapping[str, float]
-    # low, high: ends of the 95 % interval of one measured body, by foot; empty where nothing was measured [-]
+    # low, high: ends of the 95 % interval of one measured body, by foot; empty without measurements [-]
     low: Mapping[str, float] = field(default_factory=dict)
     high: Mapping[str, float] = field(default_factory=dict)
-    # errors on the measurements of bodies like this one; None where the model was not judged
+    # errors on the measurements of similar bodies; None if the model was not compared
     record: TrackRecord | None = None
-    reasons: tuple[str, ...] = ()  # why the model does not hold for this body; empty if it does
-    concerns: tuple[str, ...] = ()  # which of its known defects matters for this body, and how much
-    outcome: Outcome | None = None  # how the body ends under the motion, if one was given
+    reasons: tuple[str, ...] = ()  # reasons why the model does not hold for this body
+    concerns: tuple[str, ...] = ()  # known defects of the model for this body, with their size
+    outcome: Outcome | None = None  # outcome under the motion, if any
     peak_ratio: float = math.nan  # peak rotation over the slenderness angle of its side, NaN without a motion [-]
 
     @property
     def energy_left(self) -> float:
-        """Share of the energy left after two impacts, one onto each foot; NaN where a coefficient is not known [-]."""
+        """Fraction of energy after two impacts, one on each foot; NaN if a coefficient is missing [-]."""
         return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
 
     def scatter(self, foot: Foot) -> float:
-        """Return how far one measured body may lie from the model onto a foot, as a standard deviation [-]."""
-        # the shorter side may have been cut at 0 or at the energy bound
+        """Return the standard deviation of single measured bodies about the model, landing on a foot [-]."""
+        # the shorter side may be truncated at 0 or at the energy bound
         r = self.coefficients[foot]
         return max(self.high[foot] - r, r - self.low[foot]) / NORMAL_95
 
     @property
     def impacts_to_half(self) -> float:
-        """Impacts that halve the energy, and with it the amplitude of small rotations; 0 where the body stops [-]."""
+        """Number of impacts that halve the energy and the amplitude of small rotations; 0 if the body stops [-]."""
         kept = self.energy_left
         return 0.0 if kept == 0.0 else math.inf if kept >= 1.0 else 2.0 * math.log(0.5) / math.log(kept)
 
     @property
     def with_intervals(self) -> str:
-        """Coefficients with their intervals, in words; once, if both feet have the same."""
-        found = [f"{self.coefficients[foot]:.4f} ({self.low[foot]:.4f} to {self.high[foot]:.4f})" for foot in FEET]
-        return found[0] if found[0] == found[1] else f"{found[0]} onto the left foot, {found[1]} onto the right"
+        """Coefficients with their intervals as text; one entry if both feet have equal coefficients."""
+        texts = [f"{self.coefficients[foot]:.4f} ({self.low[foot]:.4f} to {self.high[foot]:.4f})" for foot in FEET]
+        return texts[0] if texts[0] == texts[1] else f"{texts[0]} on the left foot, {texts[1]} on the right foot"
 
     @property
     def plain(self) -> str:
-        """Name and coefficients alone, in words."""
-        found = [f"{value:.4f}" for value in self.coefficients.values()]
-        return f"{self.name} (r = {' and '.join(dict.fromkeys(found))})"
+        """Name and coefficients as text."""
+        values = [f"{value:.4f}" for value in self.coefficients.values()]
+        return f"{self.name} (r = {' and '.join(dict.fromkeys(values))})"
 
-    def cell(self, place: str) -> str:
-        """Return the coefficient at a place with half of its interval, for a table."""
-        if place not in self.coefficients:
+    def cell(self, landing: str) -> str:
+        """Return the coefficient of a landing foot or edge with half of its interval, for a table."""
+        if landing not in self.coefficients:
             return "-"
-        half = f" +- {0.5 * (self.high[place] - self.low[place]):.3f}" if place in self.low else ""
-        return f"{self.coefficients[place]:.4f}{half}"
+        half = f" +- {0.5 * (self.high[landing] - self.low[landing]):.3f}" if landing in self.low else ""
+        return f"{self.coefficients[landing]:.4f}{half}"
 
     def answer(self) -> Answer:
-        """Return what is shown of the model."""
+        """Return the results of the model."""
         record = self.record
         return Answer({
             "model": self.name,
@@ -112,40 +111,40 @@ class ModelForBody:
 
 @dataclass(frozen=True, slots=True)
 class Overturned:
-    """How many histories overturn whose coefficients scatter as bodies do about the model for a number."""
+    """Number of histories with overturning, for coefficients sampled about the recommended model."""
 
-    count: int  # of them
+    count: int  # histories with overturning
     draws: int  # all histories
-    low: float  # low, high: ends of the 95 % interval of the share [-]
+    low: float  # low, high: ends of the 95 % interval of the fraction [-]
     high: float
 
     def __str__(self) -> str:
         share = percent(self.count / self.draws)
-        return f"{share} of {self.draws} draws overturn (95 % interval {percent(self.low)} to {percent(self.high)})"
+        return f"{share} of {self.draws} samples overturn (95 % interval {percent(self.low)} to {percent(self.high)})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Recommendation(Exported):
-    """Which restitution model to use for a body, and how sure that is.
+    """Recommended restitution model of a body, with its evidence.
 
     Parameters
     ----------
     body : Body or Solid
         The body.
     models : tuple of ModelForBody
-        The calibrated default and every model, closest to the measurements first, what does not hold last.
+        The calibrated default and all models, closest to the measurements first, excluded models last.
     judgement : Judgement or None
-        By which measurements they were judged; None for a body in space.
+        Comparison with the measurements; None for a 3D body.
     outside : tuple of str
-        Why the body is outside of what was measured, so that the measurements set no model aside; empty if it is not.
+        Reasons why the body is outside the measured range; if any, the measurements exclude no model.
     notes : tuple of str
-        What else is not known.
+        Further limitations.
     prediction : str
-        The model for a number; empty where nothing was measured.
+        Model for a single value; empty without measurements.
     envelope : tuple of str
-        The models for a decision, of the lowest and of the highest coefficient of those that remain.
+        Models for a decision: lowest and highest coefficient of the remaining models.
     overturned : Overturned or None
-        Under the motion, with coefficients that scatter; None without one.
+        Overturning under the motion with sampled coefficients; None without a motion.
     """
 
     body: Any
@@ -158,122 +157,137 @@ class Recommendation(Exported):
     overturned: Overturned | None = None
 
     def __getitem__(self, name: str) -> ModelForBody:
-        found = next((each for each in self.models if each.name == name), None)
-        if found is None:
-            raise KeyError(f"{name!r} is none of {', '.join(each.name for each in self.models)}")
-        return found
+        match = next((candidate for candidate in self.models if candidate.name == name), None)
+        if match is None:
+            raise KeyError(f"{name!r} is none of {', '.join(candidate.name for candidate in self.models)}")
+        return match
 
     @property
     def remaining(self) -> tuple[str, ...]:
-        """Names of the models that hold and that nothing sets aside."""
-        return tuple(each.name for each in self.models if self._remains(each))
+        """Names of the models that hold and are not excluded by measurements."""
+        return tuple(candidate.name for candidate in self.models if self._remains(candidate))
 
-    def _remains(self, each: ModelForBody) -> bool:
-        aside = each.standing is Standing.SET_ASIDE and not self.outside
-        return not (aside or each.standing is Standing.EXCLUDED)
+    def _remains(self, candidate: ModelForBody) -> bool:
+        is_set_aside = candidate.standing is Standing.SET_ASIDE and not self.outside
+        return not (is_set_aside or candidate.standing is Standing.EXCLUDED)
 
     @property
     def evidence(self) -> tuple[str, ...]:
-        """What the measurements say of the models, and which do not hold, in sentences."""
-        lines, judged = [], self.judgement
-        if judged is not None:
-            first = next(each for each in self.models if each.standing is Standing.CLOSEST)
+        """Sentences on the comparison with measurements, and on models that do not hold."""
+        lines, judgement = [], self.judgement
+        if judgement is not None:
+            first = next(item for item in self.models if item.standing is Standing.CLOSEST)
             close, off = map(self._behind, (Standing.UNRESOLVED, Standing.SET_ASIDE))
             lines.append(
-                f"Judged by {judged.words}: closest is {first.name}, with a root mean square error of r of "
+                f"Compared with {judgement.description}: the closest model is {first.name}, with an RMSE of r of "
                 f"{first.record.rmse:.4f}."  # type: ignore[union-attr]
             )
             lines.append(
-                f"Not resolved from it: {close} (the 95 % paired bootstrap interval of the difference includes zero, "
-                f"or the difference is below the rounding of what was printed, {judged.rounding:.4f}). "
-                f"Further off: {off}."
+                f"Not distinguishable (95 %) from it: {close} (the paired bootstrap interval of the difference "
+                f"includes zero, or the difference is below the rounding of the printed values, "
+                f"{judgement.rounding:.4f}). Further off: {off}."
             )
             if self.outside and off != "none":
-                lines.append("They are not set aside for this body, which is outside of what was measured.")
-        lines += [f"{each.name} does not hold: {'; '.join(each.reasons)}." for each in self.models if each.reasons]
-        lines += [f"{each.name}: {'; '.join(each.concerns)}." for each in self.models if each.concerns]
-        lines += [f"Extrapolation: {each}." for each in self.outside]
+                lines.append("They are not excluded, because this body is outside the measured range.")
+        lines += [f"{item.name} does not hold: {'; '.join(item.reasons)}." for item in self.models if item.reasons]
+        lines += [f"{item.name}: {'; '.join(item.concerns)}." for item in self.models if item.concerns]
+        lines += [f"Extrapolation: {item}." for item in self.outside]
         return (*lines, *self.notes)
 
     def _behind(self, standing: Standing) -> str:
-        found = [each for each in self.models if each.standing is standing and each.record is not None]
-        return ", ".join(f"{each.name} by {each.record.behind}" for each in found) or "none"  # type: ignore[union-attr]
+        matches = [
+            candidate for candidate in self.models if candidate.standing is standing and candidate.record is not None
+        ]
+        return ", ".join(f"{candidate.name} by {candidate.record.behind}" for candidate in matches) or "none"  # type: ignore[union-attr]
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What to use, for a number and for a decision, and what would settle it, in sentences."""
+        """Sentences on the model for a single value, the models for a decision, and a decisive measurement."""
         if not self.envelope:
             return ("No coefficient is recommended.",)
         low, high = self[self.envelope[0]], self[self.envelope[-1]]
-        number, steps = "For a number: nothing measured prefers a model.", []
+        number, steps = "Single value: there are no measurements to prefer a model.", []
         if self.prediction:
-            why = "" if self.prediction == CALIBRATED else ", because the calibrated default is further off"
-            how = ", an extrapolation" if self.outside else ""
-            number = f"For a number: {self.prediction}, r = {self[self.prediction].with_intervals}{how}{why}."
-            steps.append(f"let r scatter about {self.prediction} from history to history")
+            reason = "" if self.prediction == CALIBRATED else " (the calibrated default is further off)"
+            extrapolation = ", an extrapolation" if self.outside else ""
+            number = (
+                f"Single value: {self.prediction}, r = {self[self.prediction].with_intervals}{extrapolation}{reason}."
+            )
+            steps.append(f"sample r about {self.prediction} for each history")
         if low is high:
-            steps.append(f"run {low.plain}, beside which no model remains")
+            steps.append(f"run {low.plain}, the only remaining model")
         else:
             steps.append(
-                f"run {low.plain} and {high.plain} and report both: what remains lies between them, and none of it is "
-                "resolved better for this body"
+                f"run {low.plain} and {high.plain} and report both; the other remaining models are between them, and "
+                "the measurements do not distinguish them for this body"
             )
-        return (number, f"For a decision: {'; '.join(steps)}.", *self._verdict(), *self._settled(low, high))
+        return (number, f"Decision: {'; '.join(steps)}.", *self._verdict(), *self._settled(low, high))
 
     def _verdict(self) -> list[str]:
-        share = self.overturned
-        if share is None:
+        draws = self.overturned
+        if draws is None:
             return []
-        remains = [each for each in self.models if self._remains(each)]
-        over = [each.name for each in remains if each.outcome is Outcome.OVERTURNED]
+        remains = [candidate for candidate in self.models if self._remains(candidate)]
+        overturned = [candidate.name for candidate in remains if candidate.outcome is Outcome.OVERTURNED]
         if len(remains) == 1:
-            words = f"Under this motion it {'overturns' if over else 'does not overturn'} by the one model that remains"
+            verb = "overturns" if overturned else "does not overturn"
+            text = f"Under this motion the body {verb} with the only remaining model"
         else:
-            words = f"Under this motion {len(over)} of the {len(remains)} models that remain overturn it"
-            words += f" ({', '.join(over)})" if over else ""
-        sure = (len(over) == len(remains) and share.low > 0.95) or (not over and share.high < 0.05)
-        end = "the choice of the model does not decide" if sure else "the coefficient decides: report both verdicts"
-        return [f"{words}, and {share}: {end}."]
+            text = f"Under this motion the body overturns with {len(overturned)} of the {len(remains)} remaining models"
+            text += f" ({', '.join(overturned)})" if overturned else ""
+        is_clear = (len(overturned) == len(remains) and draws.low > 0.95) or (not overturned and draws.high < 0.05)
+        end = (
+            "the result does not depend on the model"
+            if is_clear
+            else "the result depends on the model; report both outcomes"
+        )
+        return [f"{text}, and {draws}: {end}."]
 
     def _settled(self, low: ModelForBody, high: ModelForBody) -> list[str]:
-        """Say what a measurement must be, to tell the models of the envelope apart."""
+        """Return a sentence on the measurement that distinguishes the models of the envelope."""
         if low is high:
-            return ["r measured on this body would replace every model."]
-        apart, place = max((abs(high.coefficients[key] - low.coefficients[key]), key) for key in low.coefficients)
-        words = f"What would settle it: r measured on this body{{}} with a standard error below {apart / APART:.2g}"
+            return ["A measured r of this body would replace all models."]
+        difference, landing = max(
+            (abs(high.coefficients[key] - low.coefficients[key]), key) for key in low.coefficients
+        )
+        text = f"Decisive measurement: r of this body{{}} with a standard error below {difference / APART:.2g}"
         if not self.prediction:
-            return [words.format(",") + "."]
-        spread = self[self.prediction].scatter("left" if place == "left" else "right")
-        if apart < 0.5 * spread:
+            return [text.format(",") + "."]
+        spread = self[self.prediction].scatter("left" if landing == "left" else "right")
+        if difference < 0.5 * spread:
             return [
-                f"The choice hardly matters: what remains differs by {apart:.2g} in r, and bodies scatter by "
-                f"{spread:.2g}; r measured on this body would replace every model."
+                f"The choice has little effect: the remaining models differ by {difference:.2g} in r, and bodies "
+                f"scatter by {spread:.2g}. A measured r of this body would replace all models."
             ]
-        count = math.ceil((APART * spread / apart) ** 2)
-        many = f"the mean of {count} such bodies" if count > 1 else "any one such body"
-        return [words.format("") + f", which then replaces every model; or {many}, since they scatter by {spread:.2g}."]
+        count = math.ceil((APART * spread / difference) ** 2)
+        sample = f"the mean of {count} such bodies" if count > 1 else "any one such body"
+        return [text.format("") + f", which replaces all models; or {sample}, because bodies scatter by {spread:.2g}."]
 
     @property
     def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """Heading and rows of words."""
-        places = list(dict.fromkeys(place for each in self.models for place in each.coefficients))
-        same = all(len({f"{v:.12f}" for v in each.coefficients.values()}) <= 1 for each in self.models)
-        shown = places[:1] if same else places
-        head = ["model", *(["r"] if same else [f"r {place}" for place in shown])]
+        """Heading and rows of text."""
+        landings = list(dict.fromkeys(landing for candidate in self.models for landing in candidate.coefficients))
+        same = all(len({f"{v:.12f}" for v in candidate.coefficients.values()}) <= 1 for candidate in self.models)
+        columns = landings[:1] if same else landings
+        head = ["model", *(["r"] if same else [f"r {landing}" for landing in columns])]
         head += ["kept", "to half", "bias", "error"] if self.judgement is not None else []
         head += ["standing", *(["peak", "ends"] if self.overturned else [])]
         rows = []
-        for each in self.models:
-            cells = [each.name, *map(each.cell, shown)]
+        for candidate in self.models:
+            cells = [candidate.name, *map(candidate.cell, columns)]
             if self.judgement is not None:
-                known, record = bool(each.coefficients), each.record
-                cells += [f"{100.0 * each.energy_left:.1f} %", f"{each.impacts_to_half:.1f}"] if known else ["-", "-"]
+                has_coefficients, record = bool(candidate.coefficients), candidate.record
+                cells += (
+                    [f"{100.0 * candidate.energy_left:.1f} %", f"{candidate.impacts_to_half:.1f}"]
+                    if has_coefficients
+                    else ["-", "-"]
+                )
                 cells += ["-", "-"] if record is None else [f"{record.bias:+.4f}", f"{record.rmse:.4f}"]
-            cells.append(each.standing.value)
+            cells.append(candidate.standing.value)
             if self.overturned:
-                ends = "-" if each.outcome is None else each.outcome.name.lower().replace("_", " ")
-                stood = each.outcome not in (None, Outcome.OVERTURNED)
-                cells += [f"{each.peak_ratio:.2f}" if stood else "-", ends]
+                ends = "-" if candidate.outcome is None else candidate.outcome.name.lower().replace("_", " ")
+                not_overturned = candidate.outcome not in (None, Outcome.OVERTURNED)
+                cells += [f"{candidate.peak_ratio:.2f}" if not_overturned else "-", ends]
             rows.append(tuple(cells))
         return tuple(head), rows
 
@@ -295,31 +309,32 @@ class Recommendation(Exported):
         head, rows = self.table
         lines = ["| " + " | ".join(row) + " |" for row in (head, ("---",) * len(head), *rows)]
         shown = [*lines, "", self._legend, ""] if rows else []
-        return "\n".join([*shown, *(f"- {each}" for each in (*self.evidence, *self.advice))])
+        return "\n".join([*shown, *(f"- {sentence}" for sentence in (*self.evidence, *self.advice))])
 
     def answer(self) -> Answer:
-        """Return everything that is shown.
+        """Return all results.
 
         Returns
         -------
         Answer
-            Models, measurements that judge them, and advice.
+            Models, comparison with measurements, and advice.
         """
-        judged = self.judgement
+        judgement = self.judgement
         return Answer({
             "prediction": self.prediction or None,
             "envelope": self.envelope,
-            "judged_by": None if judged is None else {"measurements": len(judged.rows), "rounding": judged.rounding},
+            "judged_by": None if judgement is None
+            else {"measurements": len(judgement.rows), "rounding": judgement.rounding},
             "outside": self.outside,
             "notes": self.notes,
-            "models": [each.answer() for each in self.models],
+            "models": [candidate.answer() for candidate in self.models],
             "overturned": None if self.overturned is None else [self.overturned.count, self.overturned.draws],
             "evidence": self.evidence,
             "advice": self.advice,
         })  # fmt: skip
 
     def exported(self) -> "Table":
-        """Return one row a model."""
+        """Return a table with one row per model."""
         from rocking.tables import Column, Table, text_array
 
         def column(values: list[Any], meaning: str) -> Column:
@@ -327,25 +342,25 @@ class Recommendation(Exported):
                 return Column(text_array(values), "", meaning)
             return Column(np.array(values, dtype=np.float64), "1", meaning)
 
-        each = self.models
-        places = list(dict.fromkeys(place for row in each for place in row.coefficients))
+        rows = self.models
+        landings = list(dict.fromkeys(landing for row in rows for landing in row.coefficients))
         columns = {
-            "model": column([row.name for row in each], "restitution model"),
-            "standing": column([row.standing.value for row in each], "how it stands against the measurements"),
+            "model": column([row.name for row in rows], "restitution model"),
+            "standing": column([row.standing.value for row in rows], "rank compared with the measurements"),
         }
         for name, meaning in (("coefficients", "coefficient of restitution"), ("low", "2.5 %"), ("high", "97.5 %")):
-            for place in places:
-                values = [getattr(row, name).get(place, math.nan) for row in each]
+            for landing in landings:
+                values = [getattr(row, name).get(landing, math.nan) for row in rows]
                 key = "coefficient" if name == "coefficients" else name
-                columns[f"{key}_{place.replace(' ', '_')}"] = column(values, f"{meaning}, landing on {place}")
-        columns["energy_left"] = column([row.energy_left for row in each], "energy left after both feet")
-        columns["impacts_to_half"] = column([row.impacts_to_half for row in each], "impacts that halve the energy")
+                columns[f"{key}_{landing.replace(' ', '_')}"] = column(values, f"{meaning}, landing on {landing}")
+        columns["energy_left"] = column([row.energy_left for row in rows], "energy left after both feet")
+        columns["impacts_to_half"] = column([row.impacts_to_half for row in rows], "impacts that halve the energy")
         for name, meaning in (("bias", "mean of model minus measurement"), ("rmse", "root mean square error of r")):
-            values = [math.nan if row.record is None else getattr(row.record, name) for row in each]
+            values = [math.nan if row.record is None else getattr(row.record, name) for row in rows]
             columns[name] = column(values, meaning)
         for end in ("value", "low", "high"):
-            values = [math.nan if row.record is None else getattr(row.record.behind, end) for row in each]
-            columns["behind" if end == "value" else f"behind_{end}"] = column(values, "rmse less that of the closest")
+            values = [math.nan if row.record is None else getattr(row.record.behind, end) for row in rows]
+            columns["behind" if end == "value" else f"behind_{end}"] = column(values, "rmse minus that of the closest")
         provenance = {
             "prediction": self.prediction,
             "envelope": ", ".join(self.envelope),

@@ -1,4 +1,4 @@
-"""The rule: which restitution model to use for one body, by the measurements of bodies like it (`judgement`)."""
+"""The recommendation rule: restitution model of one body from the measurements of similar bodies (`judgement`)."""
 
 import math
 import warnings
@@ -45,133 +45,142 @@ def recommend(
     models: Sequence[str | RestitutionModel] | None = None,
     measurements: DataSet | None = None,
 ) -> Recommendation:
-    """Return which restitution model to use for a body, and how sure that is.
+    """Recommend a restitution model for a body, with its evidence.
 
-    The rule is one of the measurements, and nobody's opinion. Models stand against the measurements of similar
-    slenderness; one whose error is above that of the closest by a 95 % paired bootstrap interval, and by more than the
-    measurements were rounded, is set aside, unless the body is outside of what was measured. For a number the
-    calibrated default is taken, which is judged by groups that it has not seen; where it is set aside, the closest
-    model that remains. For a decision its scatter is drawn, and the models of the lowest and of the highest coefficient
-    that remain are run beside it.
+    The rule uses only measurements. Models are compared with the measurements of similar slenderness. A model is
+    excluded if its error exceeds that of the closest by a 95 % paired bootstrap interval and by more than the rounding
+    of the measurements, unless the body is outside the measured range. The model for a single value is the calibrated
+    default, compared with groups not used in its fit; if excluded, the closest remaining model. For a decision, the
+    coefficient is sampled about this model, and compared with the lowest and highest remaining models.
 
     Parameters
     ----------
     body : Body or Solid
-        The body. No body in space was measured: of a Solid it is said what is known.
+        The body. There are no measurements of 3D bodies: for a Solid, the models are not ranked.
     motion : GroundMotion or Pulse, optional
-        A motion, for the verdict under every model and under coefficients that scatter; of bodies in the plane.
+        Motion for the outcome with all models and with sampled coefficients; plane bodies only.
     models : sequence of str or RestitutionModel, optional
-        Models to judge, which may be your own; every registered one if not given.
+        Models to compare, also user models; default: all registered models.
     measurements : DataSet, optional
-        What was measured, if not the 39 published coefficients; the calibrated default is then fitted to it, which
-        takes a second.
+        Measurements; default: the 39 published coefficients. The calibrated default is fitted to other measurements in
+        about 1 s.
 
     Returns
     -------
     Recommendation
-        Models side by side, the model for a number and those for a decision, in words by `print`.
+        Comparison of models, model for a single value, and models for a decision; `print` gives sentences.
 
     Raises
     ------
     InvalidValueError
-        If the body is none, a model is a value given by hand, or a motion is given for a body in space.
+        If the body has another type, a model is a fixed value, or a motion is given for a 3D body.
     UnknownModelError
-        If there is no model of a name.
+        If a model name is unknown.
 
     Examples
     --------
     >>> import rocking as rk
-    >>> found = rk.evidence.recommend(rk.Block(width=0.02, height=0.16, depth=0.02))
-    >>> found.prediction, found["calibrated"].standing.value
+    >>> recommendation = rk.evidence.recommend(rk.Block(width=0.02, height=0.16, depth=0.02))
+    >>> recommendation.prediction, recommendation["calibrated"].standing.value
     ('calibrated', 'closest')
-    >>> [each.name for each in found.models if each.name in found.remaining]
+    >>> [model.name for model in recommendation.models if model.name in recommendation.remaining]
     ['calibrated', 'housner']
     """
     checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
-    given: Any = body
-    if not isinstance(given, Body):
-        return _in_space(given, motion, models)
+    subject: Any = body
+    if not isinstance(subject, Body):
+        return _in_space(subject, motion, models)
     data = all_measurements() if measurements is None else measurements
-    known: object = data
-    if not isinstance(known, DataSet) or not len(known):
+    argument: object = data
+    if not isinstance(argument, DataSet) or not len(argument):
         raise InvalidValueError(parameter="measurements", allowed="a DataSet of at least one row", value=measurements)
     candidates = [
-        each for each in (default_models() if models is None else _chosen(models)) if not isinstance(each, Calibrated)
+        candidate
+        for candidate in (default_models() if models is None else _chosen(models))
+        if not isinstance(candidate, Calibrated)
     ]
-    refused = [(each, _refusals(each, given)) for each in candidates]
-    admitted = [each for each, reasons in refused if not reasons]
-    ratios = tuple(sorted({given.side(foot).slenderness_ratio for foot in FEET}))
-    judged = judge(admitted, ratios, data)
+    refused = [(candidate, _refusals(candidate, subject)) for candidate in candidates]
+    admitted = [candidate for candidate, reasons in refused if not reasons]
+    ratios = tuple(sorted({subject.side(foot).slenderness_ratio for foot in FEET}))
+    judgement = judge(admitted, ratios, data)
     posterior = calibrate_hierarchy(data)
     title = f"default, fitted to the measurements: {posterior.model().label}"
     predicted: list[tuple[str, str, dict[Foot, PredictedCoefficient], TrackRecord, tuple[str, ...]]] = [
-        (CALIBRATED, title, _both(given, posterior.predict), judged.calibrated, ())
+        (CALIBRATED, title, _both(subject, posterior.predict), judgement.calibrated, ())
     ]
-    for each, record in zip(admitted, judged.models, strict=True):
-        interval = _both(given, lambda body, foot, each=each: interval_for(each, body, foot=foot, measurements=data))
-        predicted.append((each.label, each.title, interval, record, _concerns(each, given)))
-    rows = [_row(*each) for each in sorted(predicted, key=lambda each: each[3].rmse)]
+    for candidate, record in zip(admitted, judgement.models, strict=True):
+        interval = _both(
+            subject, lambda body, foot, candidate=candidate: interval_for(candidate, body, foot=foot, measurements=data)
+        )
+        predicted.append((candidate.label, candidate.title, interval, record, _concerns(candidate, subject)))
+    rows = [_row(*candidate) for candidate in sorted(predicted, key=lambda candidate: candidate[3].rmse)]
     rows += [
-        ModelForBody(each.label, each.title, Standing.EXCLUDED, {}, reasons=reasons)
-        for each, reasons in refused
+        ModelForBody(candidate.label, candidate.title, Standing.EXCLUDED, {}, reasons=reasons)
+        for candidate, reasons in refused
         if reasons
     ]
-    outside, notes = _outside(given, data)
-    made = _picked(given, rows, judged, outside, notes)
-    return made if motion is None else _moved(made, motion, posterior)
+    outside, notes = _outside(subject, data)
+    recommendation = _picked(subject, rows, judgement, outside, notes)
+    return recommendation if motion is None else _moved(recommendation, motion, posterior)
 
 
 def _chosen(models: Sequence[Any]) -> list[RestitutionModel]:
-    found = {each.label: each for each in map(model, _several(models))}
-    if not isinstance(found.get(CALIBRATED, Calibrated()), Calibrated):
+    by_label = {candidate.label: candidate for candidate in map(model, _several(models))}
+    if not isinstance(by_label.get(CALIBRATED, Calibrated()), Calibrated):
         raise InvalidValueError(
-            "{name!r} is the default, which is judged anyhow", name=CALIBRATED, hint="give your model another name"
+            "{name!r} is the name of the default, which is always compared", name=CALIBRATED, hint="rename your model"
         )
-    for each in found.values():
-        if isinstance(each.model if isinstance(each, Interface) else each, Fixed):
+    for candidate in by_label.values():
+        if isinstance(candidate.model if isinstance(candidate, Interface) else candidate, Fixed):
             raise InvalidValueError(
-                "{label} is a value given by hand: nothing that was measured on other bodies can judge it",
-                label=each.label, hint="if it was measured on this body it is better than every model",
+                "{label} is a fixed value and cannot be compared with measurements of other bodies",
+                label=candidate.label, hint="a value measured on this body is better than all models",
             )  # fmt: skip
-    return list(found.values())
+    return list(by_label.values())
 
 
 def _several(models: Any) -> list[Any]:
     several = list(models) if isinstance(models, Iterable) and not isinstance(models, str) else [models]
     if not several:
-        raise InvalidValueError("models must be at least one, got none")
+        raise InvalidValueError("models must contain one or more models, got 0")
     return several
 
 
-def _refusals(which: RestitutionModel, body: Body) -> tuple[str, ...]:
-    """Return why a model does not hold for a body: it does not know it, the body stops, or mechanics forbids it."""
-    found: list[str] = []
+def _refusals(candidate: RestitutionModel, body: Body) -> tuple[str, ...]:
+    """Return the reasons why a model does not hold for a body: domain, stop at impact, or laws of mechanics."""
+    objections: list[str] = []
     for foot in FEET:
         try:
-            given = which.evaluate(body, foot)
+            evaluated = candidate.evaluate(body, foot)
         except RockingError as error:
             return (str(error),)
-        found += [flag.value for flag in given.flags]
-        means = implied(body, given.coefficient, foot=foot)
-        # of rectangles a loss was measured that no impulse on the base explains: what an interface factor takes
-        beyond = means.within_energy and (_is_rectangle(body) or isinstance(which, Interface))
-        found += [] if beyond else [f"onto the {foot} foot it {each}" for each in means.objections]
-    return tuple(dict.fromkeys(found))
+        objections += [flag.value for flag in evaluated.flags]
+        means = implied(body, evaluated.coefficient, foot=foot)
+        # measured rectangles lose more energy than an impulse on the base explains: the interface factor
+        beyond = means.within_energy and (_is_rectangle(body) or isinstance(candidate, Interface))
+        objections += [] if beyond else [f"on the {foot} foot it {objection}" for objection in means.objections]
+    return tuple(dict.fromkeys(objections))
 
 
-def _concerns(which: RestitutionModel, body: Body) -> tuple[str, ...]:
-    """Return how far a model depends on how mass is spread, of a body that is not like those measured."""
-    if which.inertia_only or _is_rectangle(body):
+def _concerns(restitution: RestitutionModel, body: Body) -> tuple[str, ...]:
+    """Return the dependence of a model on the mass distribution, for a body unlike the measured ones."""
+    if restitution.inertia_only or _is_rectangle(body):
         return ()
-    found = []
+    differences = []
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     for foot in feet:
-        check = next(each for each in identity_report(body, which, foot=foot) if each.name == "inertia alone")
+        check = next(
+            candidate
+            for candidate in identity_report(body, restitution, foot=foot)
+            if candidate.name == "inertia alone"
+        )
         if not check.holds:
-            where = "" if body.is_symmetric else f" onto the {foot} foot"
-            found.append(f"{check.found:.3f} instead of {check.expected:.3f}{where}")
-    words = "two masses of the same mass, centre, inertia and base would have r ="
-    return (f"{words} {', '.join(found)}; rigid bodies that move alike should not differ",) if found else ()
+            where = "" if body.is_symmetric else f" on the {foot} foot"
+            differences.append(f"{check.found:.3f} instead of {check.expected:.3f}{where}")
+    text = "two point masses with equal total mass, centre, inertia and base would have r ="
+    return (
+        (f"{text} {', '.join(differences)}; rigid bodies with equal motion should have equal r",) if differences else ()
+    )
 
 
 def _both(body: Body, predict: Any) -> dict[Foot, PredictedCoefficient]:
@@ -183,14 +192,14 @@ def _row(
     name: str, title: str, intervals: dict[Foot, PredictedCoefficient], record: TrackRecord, concerns: tuple[str, ...]
 ) -> ModelForBody:
     values, low, high = (
-        {str(foot): float(getattr(each, key)) for foot, each in intervals.items()}
+        {str(foot): float(getattr(prediction, key)) for foot, prediction in intervals.items()}
         for key in ("coefficient", "low", "high")
     )
     return ModelForBody(name, title, record.standing, values, low, high, record, concerns=concerns)
 
 
 def _is_rectangle(body: Body) -> bool:
-    """Whether a body is what was measured: a homogeneous rectangle on its whole base, by its moments."""
+    """Return True for a body like the measured ones: a homogeneous rectangle on its full base, by its moments."""
     geometry = ImpactGeometry.of_body(body, "right")
     b, h = float(geometry.new_lever), float(geometry.height)
     like = math.isclose(geometry.spread_x, b * b / 3.0, rel_tol=1e-6) and math.isclose(
@@ -200,83 +209,85 @@ def _is_rectangle(body: Body) -> bool:
 
 
 def _outside(body: Body, data: DataSet) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return why a body is outside of what was measured, and what else is not known of it."""
+    """Return the reasons why a body is outside the measured range, and further limitations."""
     low, high = float(data.slenderness.min()), float(data.slenderness.max())
-    found, notes = [], []
+    reasons, notes = [], []
     ratios = sorted({body.side(foot).slenderness_ratio for foot in FEET})
     if not all(low <= ratio <= high for ratio in ratios):
-        words = " and ".join(f"{ratio:.3g}" for ratio in ratios)
-        found.append(f"h/b = {words} is outside the measured range {low:.3g} to {high:.3g}")
+        ratios_text = " and ".join(f"{ratio:.3g}" for ratio in ratios)
+        reasons.append(f"h/b = {ratios_text} is outside the measured range {low:.3g} to {high:.3g}")
     if not body.is_symmetric:
-        found.append("its feet are not equally far from its centre, and no such body was measured")
+        reasons.append("its feet have different distances from the centre of mass, and no such body was measured")
     elif not _is_rectangle(body):
-        found.append("it is no homogeneous rectangle on its whole base, and nothing else was measured")
+        reasons.append("it is not a homogeneous rectangle on its full base, and no other bodies were measured")
     weighed = data.mass[np.isfinite(data.mass)]
     if weighed.size and not weighed.min() <= body.mass <= weighed.max():
         notes.append(
-            f"It has a mass of {body.mass:.4g} kg; the specimens whose mass is known have {weighed.min():.3g} to "
-            f"{weighed.max():.3g} kg. No model here depends on size: that none does is not measured."
+            f"The body has a mass of {body.mass:.4g} kg; specimens with known mass have {weighed.min():.3g} to "
+            f"{weighed.max():.3g} kg. No model depends on size; measurements do not confirm this independence."
         )
     notes.append(
-        "What is between base and ground (dust, mortar, rubber) is not known here; it can cost more than shape."
+        "The layer between base and ground (dust, mortar, rubber) is unknown; it can cause more energy loss than shape."
     )
-    return tuple(found), tuple(notes)
+    return tuple(reasons), tuple(notes)
 
 
 def _picked(
-    body: Any, rows: list[ModelForBody], judged: Judgement | None, outside: tuple[str, ...], notes: tuple[str, ...]
+    body: Any, rows: list[ModelForBody], judgement: Judgement | None, outside: tuple[str, ...], notes: tuple[str, ...]
 ) -> Recommendation:
-    """Apply the rule: the calibrated default for a number unless it is set aside, then the closest that remains."""
-    open_ = Recommendation(body, tuple(rows), judged, outside, notes, "", ())
-    remains = [each for each in rows if each.name in open_.remaining]
-    holds = [each for each in rows if each.standing is not Standing.EXCLUDED]
-    number = CALIBRATED if CALIBRATED in open_.remaining else (remains or holds)[0].name if judged and holds else ""
-    by_value = sorted(remains or holds, key=lambda each: product(each.coefficients))
-    envelope = tuple(dict.fromkeys(each.name for each in (by_value[:1] + by_value[-1:])))
-    return replace(open_, prediction=number, envelope=envelope)
+    """Apply the rule: the calibrated default for a single value; if excluded, the closest remaining model."""
+    undecided = Recommendation(body, tuple(rows), judgement, outside, notes, "", ())
+    remains = [row for row in rows if row.name in undecided.remaining]
+    holds = [row for row in rows if row.standing is not Standing.EXCLUDED]
+    number = (
+        CALIBRATED if CALIBRATED in undecided.remaining else (remains or holds)[0].name if judgement and holds else ""
+    )
+    by_value = sorted(remains or holds, key=lambda row: product(row.coefficients))
+    envelope = tuple(dict.fromkeys(row.name for row in (by_value[:1] + by_value[-1:])))
+    return replace(undecided, prediction=number, envelope=envelope)
 
 
-def _moved(made: Recommendation, motion: Any, posterior: Calibration) -> Recommendation:
-    """Return it with the verdict of every model under a motion, and of coefficients that scatter."""
+def _moved(recommendation: Recommendation, motion: Any, posterior: Calibration) -> Recommendation:
+    """Return the recommendation with the outcomes under a motion, for all models and sampled coefficients."""
     from rocking.dynamics import simulate_many
     from rocking.statistics.counts import share_interval
 
-    body, holds = made.body, [each for each in made.models if each.coefficients]
-    drawn = _draws(made, posterior)
-    pairs = [dict(each.coefficients) for each in holds]
-    pairs += [dict(zip(FEET, each, strict=True)) for each in drawn.T.tolist()]
+    body, holds = recommendation.body, [item for item in recommendation.models if item.coefficients]
+    drawn = _draws(recommendation, posterior)
+    pairs = [dict(item.coefficients) for item in holds]
+    pairs += [dict(zip(FEET, item, strict=True)) for item in drawn.T.tolist()]
     with warnings.catch_warnings():
-        # what scatters below what was ever measured was not given by anybody
+        # sampled coefficients may be below all measurements; they are not user input
         warnings.simplefilter("ignore", PlausibilityWarning)
-        found = simulate_many(body, motion, pairs).squeeze(["body", "motion", "scale"])
-    outcomes = [list(Outcome)[code] for code in found["outcome"].values.tolist()]
-    moved: dict[str, Any] = {}
-    for each, outcome, peak in zip(holds, outcomes, found["peak_rotation"].values.tolist(), strict=False):
+        results = simulate_many(body, motion, pairs).squeeze(["body", "motion", "scale"])
+    outcomes = [list(Outcome)[code] for code in results["outcome"].values.tolist()]
+    by_name: dict[str, Any] = {}
+    for item, outcome, peak in zip(holds, outcomes, results["peak_rotation"].values.tolist(), strict=False):
         alpha = body.side("right" if peak > 0.0 else "left").slenderness_angle
-        moved[each.name] = {"outcome": outcome, "peak_ratio": abs(peak) / alpha}
-    models = tuple(replace(each, **moved.get(each.name, {})) for each in made.models)
-    known = [each for each in outcomes[len(holds) :] if each is not Outcome.FAILED]
-    count = sum(each is Outcome.OVERTURNED for each in known)
-    share = Overturned(count, len(known), *share_interval(count, len(known)))
-    return replace(made, models=models, overturned=share)
+        by_name[item.name] = {"outcome": outcome, "peak_ratio": abs(peak) / alpha}
+    models = tuple(replace(item, **by_name.get(item.name, {})) for item in recommendation.models)
+    valid = [item for item in outcomes[len(holds) :] if item is not Outcome.FAILED]
+    count = sum(item is Outcome.OVERTURNED for item in valid)
+    share = Overturned(count, len(valid), *share_interval(count, len(valid)))
+    return replace(recommendation, models=models, overturned=share)
 
 
-def _draws(made: Recommendation, posterior: Calibration) -> FloatArray:
-    """Return coefficients of bodies about the model for a number, onto the left and the right foot: shape (2, n)."""
+def _draws(recommendation: Recommendation, posterior: Calibration) -> FloatArray:
+    """Return sampled coefficients about the recommended model, left and right foot, shape (2, n) [-]."""
     random = np.random.default_rng(_SEED)
     z, parameters = random.standard_normal(_DRAWS), posterior.draw(_DRAWS, _SEED).T
-    found = []
+    draws = []
     for foot in FEET:
-        bound = energy_bound(made.body, foot)
-        if made.prediction == CALIBRATED:
+        bound = energy_bound(recommendation.body, foot)
+        if recommendation.prediction == CALIBRATED:
             eta, k, s, gamma = parameters
-            mean = np.clip(eta * shifted(ImpactGeometry.of_body(made.body, foot), k), 0.0, bound)
+            mean = np.clip(eta * shifted(ImpactGeometry.of_body(recommendation.body, foot), k), 0.0, bound)
             values = mean + scatter(mean, s, gamma) * z  # Eq. 137
         else:
-            row = made[made.prediction]
+            row = recommendation[recommendation.prediction]
             values = row.coefficients[foot] + row.scatter(foot) * z
-        found.append(np.clip(values, 0.0, bound))
-    return np.array(found)
+        draws.append(np.clip(values, 0.0, bound))
+    return np.array(draws)
 
 
 def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recommendation:
@@ -286,41 +297,43 @@ def _in_space(solid: Solid, motion: Any, models: Sequence[Any] | None) -> Recomm
 
     if motion is not None:
         raise InvalidValueError(
-            "a motion is for bodies in the plane; rk.simulate follows a Solid in space, under one model each time"
+            "motion is allowed for plane bodies only; use rk.simulate for a Solid, with one model per call"
         )
-    outside = ("it rocks in space, and every measurement is of a block that rocks in one plane",)
+    outside = ("it is a 3D body, and all measurements are of blocks that rock in one plane",)
     base, notes = solid.base, []
     if not isinstance(base, SupportPolygon):
         notes.append(
-            "A round base rolls round its rim and has no impact in one plane: the ideal model keeps its energy, and "
-            "what a real rim costs is not measured. rk.simulate follows it as it rolls."
+            "A round base rolls on its rim without impacts. The ideal model conserves energy; the loss of a real rim "
+            "is not measured. rk.simulate computes rolling."
         )
         return Recommendation(solid, (), None, outside, tuple(notes), "", ())
     start = min(range(len(base.edges)), key=lambda i: _reach(solid, base.edges[i]))
     edge = base.edges[start]
     try:
         onto: Any = base.opposite(start)
-        place = "the opposite edge"
+        landing = "the opposite edge"
     except GeometryError:
         depth = [float(np.cross(edge.direction, corner.point - edge.point)[2]) for corner in base.corners]
-        onto, place = base.corners[depth.index(max(depth))], "the far corner"
+        onto, landing = base.corners[depth.index(max(depth))], "the far corner"
     rows = []
-    for each in [spatial_model(name) for name in _several(spatial_models() if models is None else models)]:
-        if each.needs_solid and solid.known is not None:
-            rows.append(ModelForBody(each.name, each.title, Standing.EXCLUDED, {}, reasons=(NO_MATTER,)))
+    for candidate in [spatial_model(name) for name in _several(spatial_models() if models is None else models)]:
+        if candidate.needs_solid and solid.known is not None:
+            rows.append(ModelForBody(candidate.name, candidate.title, Standing.EXCLUDED, {}, reasons=(NO_MATTER,)))
             continue
-        found = impact_in_space(solid, -edge.direction, pivot=edge, onto=onto, model=each)
-        reasons = tuple(flag.value for flag in found.flags)
+        impact = impact_in_space(solid, -edge.direction, pivot=edge, onto=onto, model=candidate)
+        reasons = tuple(flag.value for flag in impact.flags)
         standing = Standing.EXCLUDED if reasons else Standing.UNJUDGED
-        rows.append(ModelForBody(each.name, each.title, standing, {place: found.coefficient}, reasons=reasons))
-    rows.sort(key=lambda each: each.standing is Standing.EXCLUDED)
+        rows.append(
+            ModelForBody(candidate.name, candidate.title, standing, {landing: impact.coefficient}, reasons=reasons)
+        )
+    rows.sort(key=lambda candidate: candidate.standing is Standing.EXCLUDED)
     notes.append(
-        f"The coefficients are those of a fall back onto {place} from edge {start}, over which it overturns most "
-        "easily; rocking restitution lists every edge."
+        f"The coefficients apply to the return from edge {start}, the edge of easiest overturning, with landing on "
+        f"{landing}. rocking restitution lists all edges."
     )
     return _picked(solid, rows, None, outside, tuple(notes))
 
 
 def _reach(solid: Solid, edge: Any) -> float:
-    """Distance of the plumb line of the centre from an edge [m], without the last digits, which tell sides apart."""
+    """Return the horizontal distance of the centre of mass from an edge, rounded to 1e-9 m for equal sides [m]."""
     return round(abs(float(np.cross(edge.direction, solid.centre - edge.point)[2])), 9)

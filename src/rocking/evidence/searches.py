@@ -1,4 +1,4 @@
-"""Searches of the minima of many functions at once, which take their steps together."""
+"""Simultaneous searches for the minima of many functions, with vectorised steps."""
 
 import math
 from collections.abc import Callable
@@ -13,12 +13,12 @@ Values = Callable[[FloatArray, IntArray], FloatArray]
 def minimise_many(
     function: Values, starts: FloatArray, sizes: IntArray, *, tolerance: float, evaluations: int
 ) -> FloatArray:
-    """Return the lowest point that each search finds, of shape (searches, n).
+    """Return the lowest point of each search, shape (searches, n).
 
-    Each search takes the steps of ``scipy.optimize.minimize(method="Nelder-Mead", options={"adaptive": True})`` and
-    ends where that ends: where its simplex is smaller than the tolerance in place and value, or after a number of
-    evaluations. A search of fewer than n variables has zeros behind them. The function takes points, of shape
-    (points, n), and the number of the search of each, and returns their values.
+    Each search has the steps of ``scipy.optimize.minimize(method="Nelder-Mead", options={"adaptive": True})`` and the
+    same end: a simplex smaller than the tolerance in position and value, or a maximum number of evaluations. Searches
+    with fewer than n variables are padded with zeros. The function has points, shape (points, n), and the index of the
+    search of each point as arguments, and returns values.
     """
     count, width = starts.shape
     simplices = np.repeat(starts[:, None], width + 1, axis=1)
@@ -31,7 +31,7 @@ def minimise_many(
     best = np.empty_like(starts)
     search = np.arange(count)
     while search.size:
-        order = np.argsort(values, axis=1)  # corners that a search of fewer variables does not have are last
+        order = np.argsort(values, axis=1)  # corners beyond the variables of a search are last
         simplices = np.take_along_axis(simplices, order[:, :, None], axis=1)
         values = np.take_along_axis(values, order, axis=1)
         has = np.arange(1, width + 1) <= sizes[:, None]
@@ -40,7 +40,9 @@ def minimise_many(
         ends = (left <= 0) | ((reach <= tolerance) & (rise <= tolerance))
         if ends.any():
             best[search[ends]] = simplices[ends, 0]
-            search, sizes, simplices, values, left = (each[~ends] for each in (search, sizes, simplices, values, left))
+            search, sizes, simplices, values, left = (
+                array[~ends] for array in (search, sizes, simplices, values, left)
+            )
         if search.size:
             _step(function, search, sizes, simplices, values, left)
     return best
@@ -49,7 +51,7 @@ def minimise_many(
 def _step(
     function: Values, search: IntArray, sizes: IntArray, simplices: FloatArray, values: FloatArray, left: IntArray
 ) -> None:
-    """Replace the highest corner of each sorted simplex, or shrink the simplex, as far as evaluations are left."""
+    """Replace the highest corner of each sorted simplex, or shrink the simplex, within the remaining evaluations."""
     own, number = np.arange(search.size), sizes[:, None]
     expand, contract = 1.0 + 2.0 / number, 0.75 - 1.0 / (2.0 * number)  # Gao and Han 2012
     highest, last, second_last = simplices[own, sizes], values[own, sizes], values[own, sizes - 1]
@@ -59,20 +61,25 @@ def _step(
     value = function(first, search)
     left -= 1
     lowest, worst = value < values[:, 0], value >= last
-    kept = ~lowest & (value < second_last)
+    is_kept = ~lowest & (value < second_last)
     # a second point: beyond the first, between the middle and the first, or before the middle
     factor = np.where(lowest[:, None], expand, np.where(worst[:, None], -contract, contract))
     second = (1.0 + factor) * middle - factor * highest
-    tried = ~kept & (left > 0)
-    found = np.full(search.size, np.inf)
-    if tried.any():
-        found[tried] = function(second[tried], search[tried])
-        left -= tried
-    lower = tried & np.where(lowest, found < value, np.where(worst, found < last, found <= value))
-    for taken, points, at in ((kept | (tried & lowest & ~lower), first, value), (lower, second, found)):
+    is_tried = ~is_kept & (left > 0)
+    second_value = np.full(search.size, np.inf)
+    if is_tried.any():
+        second_value[is_tried] = function(second[is_tried], search[is_tried])
+        left -= is_tried
+    lower = is_tried & np.where(
+        lowest, second_value < value, np.where(worst, second_value < last, second_value <= value)
+    )
+    for taken, points, point_values in (
+        (is_kept | (is_tried & lowest & ~lower), first, value),
+        (lower, second, second_value),
+    ):
         simplices[taken, sizes[taken]] = points[taken]
-        values[taken, sizes[taken]] = at[taken]
-    for lane in np.flatnonzero(tried & ~lowest & ~lower).tolist():
+        values[taken, sizes[taken]] = point_values[taken]
+    for lane in np.flatnonzero(is_tried & ~lowest & ~lower).tolist():
         size = int(sizes[lane])
         count = min(size, int(left[lane]))
         simplices[lane, 1:] = simplices[lane, 0] + (1.0 - 1.0 / size) * (simplices[lane, 1:] - simplices[lane, 0])
@@ -84,46 +91,50 @@ _GOLDEN, _ROOT = 0.5 * (3.0 - math.sqrt(5.0)), math.sqrt(2.2e-16)
 
 
 def minimise_between(function: Values, bounds: tuple[float, float], count: int, *, tolerance: float) -> FloatArray:
-    """Return the lowest place that each of some searches finds between bounds, of shape (count,).
+    """Return the lowest point of each search between bounds, shape (count,).
 
-    Each search takes the steps of ``scipy.optimize.minimize_scalar(method="bounded")``: parabolas and golden sections
-    (Brent 1973). The function takes places and the number of the search of each, and returns their values.
+    Each search has the steps of ``scipy.optimize.minimize_scalar(method="bounded")``: parabolas and golden sections
+    (Brent 1973). The function has points and the index of the search of each point as arguments, and returns values.
     """
     low, high = np.repeat(np.array(bounds)[:, None], count, axis=1)
     lowest = low + _GOLDEN * (high - low)
     value = function(lowest, np.arange(count))
-    places, values = np.tile(lowest, (3, 1)), np.tile(value, (3, 1))  # the lowest place, the second and the third
+    points, values = np.tile(lowest, (3, 1)), np.tile(value, (3, 1))  # the lowest point, the second and the third
     step, before = np.zeros((2, count))
     while True:
-        best, middle = places[0], 0.5 * (low + high)
-        least = _ROOT * np.abs(best) + tolerance / 3.0
-        goes_on = np.abs(best - middle) > 2.0 * least - 0.5 * (high - low)
-        if not goes_on.any():
+        best, middle = points[0], 0.5 * (low + high)
+        min_step = _ROOT * np.abs(best) + tolerance / 3.0
+        is_active = np.abs(best - middle) > 2.0 * min_step - 0.5 * (high - low)
+        if not is_active.any():
             return np.asarray(best)
         section = np.where(best >= middle, low, high) - best
-        parabolic, fits = _parabola(places, values, low, high, np.where(np.abs(before) > least, before, 0.0))
-        at_edge = np.minimum(best + parabolic - low, high - best - parabolic) < 2.0 * least
-        parabolic = np.where(at_edge, np.where(middle >= best, least, -least), parabolic)
+        parabolic, fits = _parabola(points, values, low, high, np.where(np.abs(before) > min_step, before, 0.0))
+        at_edge = np.minimum(best + parabolic - low, high - best - parabolic) < 2.0 * min_step
+        parabolic = np.where(at_edge, np.where(middle >= best, min_step, -min_step), parabolic)
         step, before = np.where(fits, parabolic, _GOLDEN * section), np.where(fits, step, section)
-        place = best + np.where(step >= 0.0, 1.0, -1.0) * np.maximum(np.abs(step), least)
+        trial = best + np.where(step >= 0.0, 1.0, -1.0) * np.maximum(np.abs(step), min_step)
         value = np.full(count, np.inf)
-        value[goes_on] = function(place[goes_on], np.flatnonzero(goes_on))
-        lower, right = value <= values[0], place >= best
-        low = np.where(goes_on & (lower == right), np.where(lower, best, place), low)
-        high = np.where(goes_on & (lower != right), np.where(lower, best, place), high)
-        second = ~lower & ((value <= values[1]) | (places[1] == best))
-        third = ~lower & ~second & ((value <= values[2]) | (places[2] == best) | (places[2] == places[1]))
-        for held, new in ((places, place), (values, value)):
-            held[2] = np.where(goes_on & (lower | second), held[1], np.where(goes_on & third, new, held[2]))
-            held[1] = np.where(goes_on & lower, held[0], np.where(goes_on & second, new, held[1]))
-            held[0] = np.where(goes_on & lower, new, held[0])
+        value[is_active] = function(trial[is_active], np.flatnonzero(is_active))
+        lower, right = value <= values[0], trial >= best
+        low = np.where(is_active & (lower == right), np.where(lower, best, trial), low)
+        high = np.where(is_active & (lower != right), np.where(lower, best, trial), high)
+        second = ~lower & ((value <= values[1]) | (points[1] == best))
+        third = ~lower & ~second & ((value <= values[2]) | (points[2] == best) | (points[2] == points[1]))
+        for best_three, trial_values in ((points, trial), (values, value)):
+            best_three[2] = np.where(
+                is_active & (lower | second), best_three[1], np.where(is_active & third, trial_values, best_three[2])
+            )
+            best_three[1] = np.where(
+                is_active & lower, best_three[0], np.where(is_active & second, trial_values, best_three[1])
+            )
+            best_three[0] = np.where(is_active & lower, trial_values, best_three[0])
 
 
 def _parabola(
-    places: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray, before: FloatArray
+    points: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray, before: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the step to the minimum of the parabola through three places, and where it is to be taken."""
-    best, second, third = places
+    """Return the step to the minimum of the parabola through three points, and flags of valid steps."""
+    best, second, third = points
     r = (best - second) * (values[0] - values[2])
     q = (best - third) * (values[0] - values[1])
     p = (best - third) * q - (best - second) * r

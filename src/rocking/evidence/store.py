@@ -1,4 +1,4 @@
-"""A user's own evidence: files of measurements in a folder of this user's, never in the package; and selections."""
+"""The user's own evidence: files of measurements in a folder of the user, outside the package; and selections."""
 
 import hashlib
 import os
@@ -11,11 +11,11 @@ from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, dat
 from rocking.tables.table import writing, written_whole
 
 PUBLISHED, OWN = "published", "own"
-"""Words of a selection: the 39 coefficients of the package, and all files of the store."""
+"""Names of selections: the 39 coefficients of the package, and all files of the store."""
 
 
 def data_folder() -> Path:
-    """Return where what belongs to this user is kept, under the system's folder for data; not created here."""
+    """Return the folder of this user's data, in the system's folder for data; the folder may not exist."""
     if sys.platform == "win32":
         root = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
     else:
@@ -29,42 +29,42 @@ def store() -> Path:
 
 
 def own_files() -> list[Path]:
-    """Return the files of the store, in the order of their names."""
+    """Return the files of the store, sorted by name."""
     return sorted(path for path in store().glob("[!.]*") if path.suffix in {".toml", ".csv"})
 
 
 def own_sets() -> list[tuple[Path, DataSet]]:
-    """Return the files of the store with what they hold; one that cannot be used is named, and no row counts twice."""
+    """Return the files of the store with their data; raise an error for unusable files and duplicate rows."""
     from rocking.evidence.measurement_file import read_measurements
 
-    found = []
+    sets = []
     for path in own_files():
         try:
-            found.append((path, read_measurements(path)))
+            sets.append((path, read_measurements(path)))
         except MeasurementError as error:
-            error.add_hint("it is part of your own evidence: delete the file to go on")
+            error.add_hint("this file is in your own evidence; delete it to continue")
             raise
-    _once([(str(path), data) for path, data in found])
-    return found
+    _once([(str(path), data) for path, data in sets])
+    return sets
 
 
 def _once(sets: Sequence[tuple[str, DataSet]]) -> None:
-    """Refuse measurements that are in two sets; an interface may be written in several ways, so it tells none apart."""
-    seen: dict[tuple[object, ...], str] = {}
+    """Raise an error for measurements in two sets; the interface is not compared, because its spelling varies."""
+    first_source: dict[tuple[object, ...], str] = {}
     for name, data in sets:
-        ratios, values = ([f"{value:.9g}" for value in each] for each in (data.slenderness, data.coefficient))
+        ratios, values = ([f"{value:.9g}" for value in column] for column in (data.slenderness, data.coefficient))
         rows = set(zip(data.group, data.labels, ratios, values, strict=True))
-        if both := rows & seen.keys():
-            row = min(both)
+        if common := rows & first_source.keys():
+            row = min(common)
             raise InvalidValueError(
-                "the measurement {row} (group, block, h/b, r) is in {first} and in {second}: it would count twice",
-                row=", ".join(map(str, row)), first=seen[row], second=name, hint="leave out or delete one of them",
+                "the measurement {row} (group, block, h/b, r) is in both {first} and {second}",
+                row=", ".join(map(str, row)), first=first_source[row], second=name, hint="omit or delete one of them",
             )  # fmt: skip
-        seen |= dict.fromkeys(rows, name)
+        first_source |= dict.fromkeys(rows, name)
 
 
 def add(path: Path) -> tuple[Path, DataSet, bool]:
-    """Check a file of measurements and copy it into the store; return the copy, its data, and whether it is new."""
+    """Check a file of measurements and copy it into the store; return the copy, its data, and True if it is new."""
     from rocking.evidence.measurement_file import read_measurements
 
     data = read_measurements(path)
@@ -72,7 +72,7 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
     target = store() / f"{path.stem}-{hashlib.sha256(content).hexdigest()[:8]}{path.suffix.lower()}"
     if target.exists():
         return target, data, False
-    _once([*((str(kept), each) for kept, each in own_sets()), (str(path), data)])
+    _once([*((str(kept), data_of_file) for kept, data_of_file in own_sets()), (str(path), data)])
     with writing(f"to {target.parent}"):
         target.parent.mkdir(parents=True, exist_ok=True)
         with written_whole(target) as unfinished:
@@ -80,28 +80,28 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
     return target, data, True
 
 
-def selected(words: Sequence[str] = ()) -> DataSet:
-    """Return the measurements of a selection: files, published sets, `published`, `own`; both of these if empty."""
+def selected(names: Sequence[str] = ()) -> DataSet:
+    """Return the measurements of a selection: files, published sets, `published`, `own`; empty: the last two."""
     from rocking.evidence.measurement_file import read_measurements
 
-    known, sets = {name: datasets()[name] for name in GROUPS}, []
-    for word in dict.fromkeys(words or ((PUBLISHED, OWN) if own_files() else (PUBLISHED,))):
-        if word == PUBLISHED:
+    published, sets = {name: datasets()[name] for name in GROUPS}, []
+    for choice in dict.fromkeys(names or ((PUBLISHED, OWN) if own_files() else (PUBLISHED,))):
+        if choice == PUBLISHED:
             sets.append(all_measurements())
-        elif word == OWN:
-            if not (kept := [each for _, each in own_sets()]):
+        elif choice == OWN:
+            if not (own := [data for _, data in own_sets()]):
                 raise InvalidValueError(
-                    "{folder} has no measurements. Add them: rocking measurements add FILE", folder=str(store())
+                    "{folder} has no measurements; add them with rocking measurements add FILE", folder=str(store())
                 )
-            sets.append(kept[0] if len(kept) == 1 else joined(kept, OWN, "measurements of files"))
-        elif word in known:
-            sets.append(known[word])
-        elif Path(word).suffix:
-            sets.append(read_measurements(word))
+            sets.append(own[0] if len(own) == 1 else joined(own, OWN, "measurements of files"))
+        elif choice in published:
+            sets.append(published[choice])
+        elif Path(choice).suffix:
+            sets.append(read_measurements(choice))
         else:
             raise InvalidValueError(
-                "no measurements named {name!r:.60}; there are {names}, and files .toml and .csv", name=word,
-                names=", ".join((PUBLISHED, OWN, *known)),
+                "unknown measurements {name!r:.60}; use {names}, or a .toml or .csv file", name=choice,
+                names=", ".join((PUBLISHED, OWN, *published)),
             )  # fmt: skip
-    _once([(each.name, each) for each in sets])
-    return sets[0] if len(sets) == 1 else joined(sets, "+".join(each.name for each in sets), "a selection")
+    _once([(data.name, data) for data in sets])
+    return sets[0] if len(sets) == 1 else joined(sets, "+".join(data.name for data in sets), "a selection")

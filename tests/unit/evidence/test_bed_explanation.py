@@ -61,11 +61,11 @@ def test_every_explanation_says_what_it_computes():
 
     expected = {
         "one bed": ((zeta, hard), lambda row, name: bed(row)),
-        "loss beside the bed": (
+        "additional loss on tape": (
             (zeta, hard, w),
             lambda row, name: bed(row) * (1.0 if unshaken(name) else w),
         ),
-        "loss that does not grow with mass": (
+        "loss independent of mass": (
             (zeta, hard, 0.03),
             lambda row, name: bed(row) * (1.0 if unshaken(name) else np.sqrt(1.0 - 0.03 / data.mass[row])),
         ),
@@ -85,8 +85,8 @@ def test_every_explanation_says_what_it_computes():
     groups = ("S", "M", "L")
     fitted = {
         "one bed": ("damping", "hardness"),
-        "loss beside the bed": ("damping", "hardness", "eta"),
-        "loss that does not grow with mass": ("damping", "hardness", "tape"),
+        "additional loss on tape": ("damping", "hardness", "eta"),
+        "loss independent of mass": ("damping", "hardness", "tape"),
         "loss by group": ("damping", "hardness", *(f"eta {group}" for group in groups)),
         "damping by group": ("hardness", "damping Table 1", *(f"damping {group}" for group in groups)),
         "hardness by group": ("damping", "hardness Table 1", *(f"hardness {group}" for group in groups)),
@@ -116,10 +116,10 @@ def test_factors_are_found_again():
 
 def test_a_tape_is_told_from_factors():
     """Rows made with a loss that falls as 1/mass prefer that explanation, and its size comes back."""
-    data = simulated("loss that does not grow with mass", [1.5, 100.0, 0.03], 5)
-    tape = fit_bed(PHYSICS["loss that does not grow with mass"], data, points=(5,))
+    data = simulated("loss independent of mass", [1.5, 100.0, 0.03], 5)
+    tape = fit_bed(PHYSICS["loss independent of mass"], data, points=(5,))
     assert tape.values["tape"] == pytest.approx(0.03, abs=0.003)
-    assert tape.bic < fit_bed(PHYSICS["loss beside the bed"], data, points=(5,)).bic - 10.0
+    assert tape.bic < fit_bed(PHYSICS["additional loss on tape"], data, points=(5,)).bic - 10.0
 
 
 def test_without_a_mass_effect_one_bed_wins():
