@@ -320,7 +320,7 @@ def test_a_body_in_space():
     assert "no measurements to prefer a model" in found.advice[0]
     drum = recommend(Solid(cylinder(1.0, 2.0)))
     assert drum.models == ()
-    assert "rolls around its rim" in drum.notes[0]
+    assert "rolls on its rim" in drum.notes[0]
 
 
 def test_a_leaning_tower_in_space_rocks_over_its_weakest_edge():
