@@ -61,5 +61,5 @@ for label, each in found.items():
     assert all((one.acceleration[1:] > one.acceleration[:-1]).all() for one in each)
 
 names = [str(k + 1) for k in range(COUNT)]
-picture = transitions_of_many_picture(found, names, lane_title="motion, by the least of housner", until=3.0 * conventions.g)
+picture = transitions_of_many_picture(found, names, lane_title="motion, sorted by housner", until=3.0 * conventions.g)
 write(picture, "crossings_under_many_motions.png")

@@ -288,7 +288,7 @@ def test_what_spoils_the_store_is_named(own):
         store.selected()
     twin.write_text(TOML.replace("ratio = 5", "ratio = 1e300"), "utf-8")
     for word in ((), ("own",)):
-        with pytest.raises(MeasurementError, match=rf"{re.escape(str(twin))}, measurement 2: h/b .*delete it to continue"):
+        with pytest.raises(MeasurementError, match=rf"{re.escape(str(twin))}, measurement 2: h/b .*delete it"):
             store.selected(word)
     twin.unlink()
     assert len(store.selected()) == 41
