@@ -9,6 +9,7 @@ import typer
 
 from rocking.answers import Answer
 from rocking.cli import completion, options
+from rocking.cli.help import SHAKING
 from rocking.cli.page import Page, bar, deliver
 from rocking.errors import InvalidValueError
 from rocking.spec.questions.inventory import InventoryTable
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.inventory.assessment import Assessment
 
-_SHAKING = "How it shakes"
 _MOST_PLANNED = 5
 _MOST_REASONS = 5
 NOTHING_ASSESSED = 1
@@ -28,7 +28,7 @@ _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
 @options.takes(
     options.keys(InventoryTable, "map_columns"),
-    options.keys(InventoryTable, "pga", "pgv", panel=_SHAKING),
+    options.keys(InventoryTable, "pga", "pgv", panel=SHAKING),
     before="motion",
 )
 def inventory(
@@ -36,19 +36,19 @@ def inventory(
     objects: Annotated[Path, typer.Argument(help="Object list: .xlsx, .ods or CSV, with name, width, depth, height.")],
     motion: Annotated[
         list[str] | None,
-        typer.Option(help="Record file; repeatable.", rich_help_panel=_SHAKING),
+        typer.Option(help="Record file; repeatable.", rich_help_panel=SHAKING),
     ] = None,
     synthetic: Annotated[
         str | None,
         typer.Option(
             help="Synthetic motions: firm-ground, soft-ground, kanai-tajimi, point-source, pulse-like. "
             "[default: firm-ground]",
-            rich_help_panel=_SHAKING,
+            rich_help_panel=SHAKING,
         ),
     ] = None,
-    count: Annotated[int | None, options.count(200, _SHAKING)] = None,
+    count: Annotated[int | None, options.count(200, SHAKING)] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Random seed of the synthetic motions. [default: 1]", rich_help_panel=_SHAKING)
+        int | None, typer.Option(help="Random seed of the synthetic motions. [default: 1]", rich_help_panel=SHAKING)
     ] = None,
     restitution: Annotated[
         str | None,

@@ -80,8 +80,8 @@ def test_messages_are_found_in_modules_and_scripts():
     assert {"Some text", "more"} <= {text.strip() for text in SCRIPT["literals_of_script"](script)}
 
 
-UNTRANSLATED = {"CSV", "GIF", "--out", "question.toml"}
-"""Texts of templates that are the same in every language: names of formats, an option, a file."""
+UNTRANSLATED = {"CSV", "GIF", "question.toml"}
+"""Texts of templates that are the same in every language: names of formats, a file."""
 
 
 def without_message(scripts):
