@@ -115,8 +115,8 @@ def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
     """Return an error of this package as JSON, with Retry-After if a retry is useful."""
     own = error if isinstance(error, Refused) else None
     kind = kind_of_status(own.status) if own else kind_of(error)
-    told = {"kind": kind, **error.data()} | ({"needs": list(own.needs)} if own and own.needs else {})
-    answer = JsonAnswer({"error": told}, status_code=own.status if own else 422)
+    document = {"kind": kind, **error.data()} | ({"needs": list(own.needs)} if own and own.needs else {})
+    answer = JsonAnswer({"error": document}, status_code=own.status if own else 422)
     if own and (own.seconds is not None or own.status == 429):
         answer.headers["Retry-After"] = str(math.ceil(own.seconds or 1.0))
     if close:
@@ -148,7 +148,7 @@ def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     that is a quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such
     as a default, is a `Field` in place of the words.
     """
-    base = next((each for each in more if not isinstance(each, str)), AnswerShape)
+    base = next((item for item in more if not isinstance(item, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
     if "units" in fields:
         fields["messages"] = Messages
@@ -157,20 +157,20 @@ def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
 
 
 def _of_names(names: str) -> Iterator[tuple[str, Any]]:
-    for each in names.split():
-        key = each.removesuffix("[]")
+    for name in names.split():
+        key = name.removesuffix("[]")
         entry = quantity_of(key)
         assert entry is not None, key
         kind = str if entry.is_text else float
-        yield key, list[kind] if key != each else kind  # type: ignore[valid-type]
+        yield key, list[kind] if key != name else kind  # type: ignore[valid-type]
 
 
 def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: Any) -> Any:
     """Return a dataclass as a table of an answer; its annotations hold the words: `Annotated[str, "of what"]`."""
     # more: keys as of `shape`, in place of those of the dataclass
     hints = {key: hint for key, hint in get_type_hints(kind, include_extras=True).items() if key not in without}
-    told = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
-    return shape(name, inspect.getdoc(kind) or "", **{**told, **more})
+    types = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
+    return shape(name, inspect.getdoc(kind) or "", **{**types, **more})
 
 
 def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:

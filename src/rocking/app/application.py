@@ -59,11 +59,11 @@ own address. Errors are `{{"error": {{"kind", "message", ...}}}}`: `message` is 
 
 def refused_input(error: ValidationError | RequestValidationError) -> RockingError:
     """Return the first validation error as an error of this package."""
-    errors: list[dict[str, Any]] = [dict(each) for each in error.errors()]
-    for each in errors:
-        if each["loc"] and each["loc"][0] in {"body", "query", "path", "header"}:
-            each["loc"] = tuple(each["loc"][1:])
-        each["type"] = _SAME_AS.get(each["type"], each["type"])
+    errors: list[dict[str, Any]] = [dict(item) for item in error.errors()]
+    for item in errors:
+        if item["loc"] and item["loc"][0] in {"body", "query", "path", "header"}:
+            item["loc"] = tuple(item["loc"][1:])
+        item["type"] = _SAME_AS.get(item["type"], item["type"])
     if errors and errors[0]["loc"] == ():
         errors[0]["loc"] = ("the body of the request",)
     match getattr(error, "body", None):
@@ -150,10 +150,10 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_exception_handler(HTTPException, _handler(_refused))
     of_results = (tables, documents, projects, questions, studies)
     computed = {impact, response, tables, documents}
-    for part in (session, info, body, impact, contact_bed, records, motion, response, *of_results):
-        known = [Depends(_own_models if part in computed else _own_models_if_sound)]
+    for module in (session, info, body, impact, contact_bed, records, motion, response, *of_results):
+        dependencies = [Depends(_own_models if module in computed else _own_models_if_sound)]
         app.include_router(
-            part.router, responses=ERRORS, dependencies=known if part in {*computed, info, studies} else []
+            module.router, responses=ERRORS, dependencies=dependencies if module in {*computed, info, studies} else []
         )
     describe_api(app)
     _add_pages(app)
@@ -186,6 +186,6 @@ def _add_pages(app: FastAPI) -> None:
     def words(code: str) -> JsonAnswer:
         return JsonAnswer(page_words(code))
 
-    built = next((each for each in _MANUALS if (each / "index.html").exists()), STATIC / "manual")
+    built = next((folder for folder in _MANUALS if (folder / "index.html").exists()), STATIC / "manual")
     app.mount("/manual", StaticFiles(directory=built, html=True), name="manual")
     app.mount("/", StaticFiles(directory=STATIC, html=True), name="pages")

@@ -105,17 +105,17 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
     """Refuse subnormal numbers, which have lost digits."""
     match value:
         case float() if 0.0 < abs(value) < sys.float_info.min:
-            least = f"{sys.float_info.min:.3g}"
+            smallest = f"{sys.float_info.min:.3g}"
             raise InvalidValueError(
                 "{parameter} is {number!r}, below the smallest normal number ({limit})", parameter=key,
-                number=value, limit=least, hint="Check the unit.",
+                number=value, limit=smallest, hint="Check the unit.",
             )  # fmt: skip
         case dict():
-            for name, each in value.items():
-                _refuse_subnormal(each, f"{key}.{name}" if key else name)
+            for name, item in value.items():
+                _refuse_subnormal(item, f"{key}.{name}" if key else name)
         case list() | tuple():
-            for place, each in enumerate(value):
-                _refuse_subnormal(each, f"{key}[{place}]")
+            for index, item in enumerate(value):
+                _refuse_subnormal(item, f"{key}[{index}]")
 
 
 def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
@@ -170,8 +170,8 @@ def _announced(record: bytes) -> int:
 
 def check_samples(count: int) -> None:
     """Refuse a record of too many samples."""
-    what = "a record holds up to {most} numbers"
-    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut the record or remove columns; Python reads longer records")
+    limit = "a record holds up to {most} numbers"
+    refuse_more(count, MOST_RECORD_SAMPLES, limit, "cut the record or remove columns; Python reads longer records")
 
 
 def size_of(table: BodyFile) -> int:
@@ -182,13 +182,13 @@ def size_of(table: BodyFile) -> int:
 def _polygons(table: BodyFile) -> tuple[int, int, int]:
     regions = holes = vertices = 0
     for region in table.section.region if table.section else ():
-        words = region.wkt or ""
+        text = region.wkt or ""
         # each polygon of a text begins with two brackets; commas separate its points
-        polygons = 1 if region.outline is not None else max(1, words.count("(("))
+        polygons = 1 if region.outline is not None else max(1, text.count("(("))
         regions += polygons
-        holes += len(region.holes or ()) + max(0, words.count(",(") + words.count(", (") - polygons + 1)
+        holes += len(region.holes or ()) + max(0, text.count(",(") + text.count(", (") - polygons + 1)
         rings = [region.outline or [], *(region.holes or ())]
-        vertices += sum(map(len, rings)) + (words.count(",") + 1 if words else 0)
+        vertices += sum(map(len, rings)) + (text.count(",") + 1 if text else 0)
     for shape in (table.ellipse, table.regular_polygon):
         vertices += shape.sides if shape is not None else 0
     return regions, holes, vertices
@@ -333,7 +333,7 @@ def parsed_toml(text: str) -> dict[str, Any]:
         for value in level:
             if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
                 raise Refused("an integer in the TOML has {count} bits, 64 are allowed", count=value.bit_length())
-            texts = [each for each in (value if isinstance(value, dict) else [value]) if isinstance(each, str)]
+            texts = [item for item in (value if isinstance(value, dict) else [value]) if isinstance(item, str)]
             if any("\0" in text for text in texts):
                 raise Refused("a text in the TOML contains a NUL character")
     return tables
@@ -344,7 +344,7 @@ def levels(value: Any) -> Iterator[list[Any]]:
     level = [value]
     while level:
         yield level
-        level = [item for each in level for item in _inside(each)]
+        level = [item for child in level for item in _inside(child)]
 
 
 def _inside(value: Any) -> list[Any]:
@@ -383,8 +383,8 @@ def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
 def _body(table: BodyInput) -> Body:
     with located("body"):
         body = body_of(table.table(), None)
-        what = "a base can have up to {most} separate contact segments"
-        refuse_more(len(body.local_contact), MOST_STRETCHES, what, "remove segments that are not feet")
+        limit = "a base can have up to {most} separate contact segments"
+        refuse_more(len(body.local_contact), MOST_STRETCHES, limit, "remove segments that are not feet")
         mass, inertia = body.mass, body.moment_of_inertia
         if min(mass, inertia or mass) < _LIGHTEST:
             raise InvalidValueError(

@@ -28,7 +28,7 @@ def plain_line(text: str, longest: int = 160) -> str:
     >>> plain_line("a\n[b]\x1b[31m\u202e")
     'a [b][31m'
     """
-    seen = "".join(each for each in text if each.isprintable() or each.isspace())
+    seen = "".join(character for character in text if character.isprintable() or character.isspace())
     line = " ".join(seen.split())
     return line if len(line) <= longest else f"{line[: longest - 3]}..."
 
@@ -94,10 +94,10 @@ def toml_value(value: Any) -> str:
     if isinstance(value, str):
         return _quoted(value)
     if isinstance(value, Mapping):
-        pairs = [f"{_key(key)} = {toml_value(one)}" for key, one in value.items() if one is not None]
+        pairs = [f"{_key(key)} = {toml_value(item)}" for key, item in value.items() if item is not None]
         return "{" + ", ".join(pairs) + "}"
     if isinstance(value, Sequence):
-        return "[" + ", ".join(toml_value(one) for one in value) + "]"
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
     raise InvalidValueError("an input file cannot contain {entry!r:.60}", entry=value)
 
 
@@ -121,14 +121,14 @@ def _is_table(value: Any) -> bool:
 
 
 def _is_tables(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(one, Mapping) for one in value)
+    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(item, Mapping) for item in value)
 
 
 def _value(value: Any) -> str:
-    words = toml_value(value)
-    if len(words) <= _ONE_LINE or not isinstance(value, (list, tuple)):
-        return words
-    return "[\n" + "".join(f"  {toml_value(one)},\n" for one in value) + "]"
+    text = toml_value(value)
+    if len(text) <= _ONE_LINE or not isinstance(value, (list, tuple)):
+        return text
+    return "[\n" + "".join(f"  {toml_value(item)},\n" for item in value) + "]"
 
 
 def _key(key: str) -> str:

@@ -177,9 +177,9 @@ class RecordStore:
 
     def _sweep(self) -> None:
         """Remove unfinished files of an earlier server."""
-        for place in (self.folder, *(each for each in self.folder.iterdir() if is_hash(each.name))):
-            if not place.is_symlink():
-                remove_unfinished(place)
+        for folder in (self.folder, *(path for path in self.folder.iterdir() if is_hash(path.name))):
+            if not folder.is_symlink():
+                remove_unfinished(folder)
 
     def _check_room(self, record: StoredRecord) -> None:
         others = [other for other in self.stored() if other.record != record.record]

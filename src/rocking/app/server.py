@@ -86,11 +86,11 @@ def listen(host: str, port: int, *, search: bool) -> socket.socket:
 
 
 def _bound(host: str, port: int) -> socket.socket:
-    family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     door = socket.socket(family, kind, protocol)
     try:
         door.setsockopt(socket.SOL_SOCKET, _OPTION, 1)
-        door.bind(place)
+        door.bind(address)
         door.listen(256)
     except OSError:
         door.close()
@@ -121,9 +121,9 @@ def _response() -> None:
     from rocking.plots.labels import fine_samples
     from rocking.spec.response import problem_of
 
-    words = "sine:amplitude=3,period=0.8"
-    inputs = ResponseRequest.model_validate({"body": _BLOCK, "motion": {"pulse": words}})
-    motion = pulse(words)
+    option = "sine:amplitude=3,period=0.8"
+    inputs = ResponseRequest.model_validate({"body": _BLOCK, "motion": {"pulse": option}})
+    motion = pulse(option)
     responses_answer(problem_of(inputs, body_from(inputs.body), motion), 10)
     response_spectrum(fine_samples(motion), [1.0], 0.05)
 
@@ -214,8 +214,8 @@ def serve(settings: ServerSettings, started: Callable[[Started], None], *, port:
     """Serve until the process is stopped."""
     check_host(settings.host, allow_remote=settings.allow_remote)
     with DataFolder(settings.folder) as folder:
-        wanted = DEFAULT_PORT if port is None else port
-        with contextlib.closing(listen(settings.host, wanted, search=port is None)) as door:
+        wanted_port = DEFAULT_PORT if port is None else port
+        with contextlib.closing(listen(settings.host, wanted_port, search=port is None)) as door:
             left = _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
     if left.busy and threading.current_thread() is threading.main_thread():
         # end without the threads that still compute: Python itself would wait for them, however long that takes

@@ -66,8 +66,8 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
     try:
         return await asyncio.wrap_future(queue.submit(function, *args, **kwargs))
     except asyncio.CancelledError as error:  # only a server that ends cancels a request
-        words = "the server is shutting down; restart it, then compute again"
-        raise Refused(words, status=503) from error
+        message = "the server is shutting down; restart it, then compute again"
+        raise Refused(message, status=503) from error
 
 
 async def sized(
@@ -99,12 +99,12 @@ class Remembered(Generic[T]):
     def get(self, key: Hashable, compute: Callable[[], T]) -> T:
         """Return the result of a key, computed once; failures are not kept."""
         with self._lock:
-            known = self._held.get(key)
-            future: Future[T] = Future() if known is None else known
+            held = self._held.get(key)
+            future: Future[T] = Future() if held is None else held
             self._held[key] = future
             self._held.move_to_end(key)
-        if known is not None:
-            return known.result()
+        if held is not None:
+            return held.result()
         try:
             future.set_result(compute())
         except BaseException as error:

@@ -52,7 +52,7 @@ def test_an_edited_file_is_asked_as_it_is(client, own):
     own(1.2)
     refused = client.post("/api/response", json=document)
     assert refused.status_code >= 400
-    assert "r must lie in [0, 1], is 1.2" in refused.json()["error"]["message"]
+    assert "r must be in [0, 1], got 1.2" in refused.json()["error"]["message"]
     info = client.get("/api/info")
     assert info.status_code == 200
     assert "mine" not in {each["name"] for each in info.json()["models"]}

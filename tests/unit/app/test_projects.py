@@ -292,7 +292,7 @@ def test_files_that_are_no_project_are_refused(client):
     count = len(client.get("/api/projects").json()["projects"])
     sha = "0" * 64
     for files, words in (
-        ({"readme.txt": "x"}, "holds no project.json"),
+        ({"readme.txt": "x"}, "project.json is missing"),
         ({"project.json": "{"}, "project.json"),
         ({"project.json": json.dumps({**whole, "format": "rocking project 9"})}, "rocking project 1"),
         ({"project.json": json.dumps({**whole, "records": {sha: "a.txt"}})}, "is missing in the archive"),

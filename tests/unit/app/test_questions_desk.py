@@ -56,7 +56,7 @@ def test_the_answer_is_that_of_the_command_line(desk, tmp_path, run):
     assert json.loads(desk.answer(asked.id)) == json.loads(run("predict", tmp_path / "same.toml", "--json")[1])
     assert desk.file(asked.id, "picture.svg").read_bytes().startswith(b"<?xml")
     assert desk.file(asked.id, "report.pdf").read_bytes().startswith(b"%PDF")
-    with pytest.raises(NotFound, match="has no file"):
+    with pytest.raises(NotFound, match="unknown file"):
         desk.file(asked.id, "state.json")
 
 
@@ -270,7 +270,7 @@ def test_a_record_is_corrected(desk, tmp_path):
         assert wrong.state == "refused"
         assert why in wrong.message
     for command, form in (("record convert", "word"), ("record batch", "peer")):
-        with pytest.raises(Refused, match="format is that of a record"):
+        with pytest.raises(Refused, match="is allowed with"):
             desk.ask(command, tables, {}, format=form)
 
 
@@ -334,7 +334,7 @@ def test_what_cannot_be_run_stops_no_other(desk):
     cache = desk.folder.with_name("cache")
     cache.write_text("in the way")
     found = ended(desk, desk.ask("predict", TABLES, {}).id)
-    assert (found.state, "could not be run" in found.message) == ("refused", True)
+    assert (found.state, "could not start" in found.message) == ("refused", True)
     cache.unlink()
     assert ended(desk, desk.ask("predict", TABLES, {}).id).state == "done"
 

@@ -219,7 +219,7 @@ def test_too_many_restitutions_are_refused(client):
         document = {"body": BODY, "motion": PULSE, "restitution": {"values": [0.01 * k for k in range(25)]}}
         answer = client.post(f"/api/{path}", json=document)
         assert (answer.status_code, answer.json()["error"]["kind"]) == (413, "too-large")
-        assert "up to 24 restitutions, got 25" in answer.json()["error"]["message"]
+        assert "up to 24 restitutions can be compared, got 25" in answer.json()["error"]["message"]
     assert len(asked(client, restitution={"values": [0.5 + 0.01 * k for k in range(24)]})["answers"]) == 24
 
 

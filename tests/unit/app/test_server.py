@@ -162,7 +162,7 @@ def test_taken_port_gives_the_next_only_if_none_was_asked_for():
     """A taken port: the next one where any serves, a sentence where that one was asked for."""
     with listen("127.0.0.1", 0, search=False) as first:
         taken = first.getsockname()[1]
-        with pytest.raises(InvalidValueError, match=f"port {taken} is taken"):
+        with pytest.raises(InvalidValueError, match=f"port {taken} is in use"):
             listen("127.0.0.1", taken, search=False)
         with listen("127.0.0.1", taken, search=True) as second:
             assert taken < second.getsockname()[1] < taken + 50

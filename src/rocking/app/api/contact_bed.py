@@ -73,15 +73,15 @@ class ContactBedRequest(JobTable):
 
     @model_validator(mode="after")
     def _range(self) -> "ContactBedRequest":
-        ends = [each for each in (self.start, self.stop) if each is not None]
+        ends = [end for end in (self.start, self.stop) if end is not None]
         may_vanish = self.varied in {"damping", "amplitude", "seed"}
-        for each in ends:
-            if each < 0.0 or (each == 0.0 and not may_vanish):
+        for end in ends:
+            if end < 0.0 or (end == 0.0 and not may_vanish):
                 raise InvalidValueError(
-                    parameter=self.varied, allowed=Range(0.0, math.inf, low_open=not may_vanish), value=each
+                    parameter=self.varied, allowed=Range(0.0, math.inf, low_open=not may_vanish), value=end
                 )
-            if self.varied == "points" and each > MOST_POINTS:
-                raise InvalidValueError(parameter="points", allowed=f"at most {MOST_POINTS}", value=each)
+            if self.varied == "points" and end > MOST_POINTS:
+                raise InvalidValueError(parameter="points", allowed=f"at most {MOST_POINTS}", value=end)
         return self
 
 
@@ -125,7 +125,7 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
     start = Laboratory(**inputs.model_dump(include=_OF_LABORATORY))
     if inputs.friction:
         start = start.but(friction=Coulomb(inputs.friction))
-    found = study(inputs.varied, values, start, **options)
+    dataset = study(inputs.varied, values, start, **options)
     slender = [each if inputs.varied == "slenderness" else inputs.slenderness for each in values.tolist()]
     return JsonAnswer(plain({
         "varied": inputs.varied, "unit": _unit(STUDIES[inputs.varied][0]), "values": values,
@@ -134,7 +134,7 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
                 "unit": _unit(each.attrs["units"]), "words": each.attrs.get("long_name", ""),
                 "values": each.values,
             }
-            for name, each in found.data_vars.items()
+            for name, each in dataset.data_vars.items()
         },
         "rigid": {
             name: [model.coefficient(start.but(slenderness=each).block) for each in slender]

@@ -165,23 +165,23 @@ def _constant(*kinds: type) -> dict[str, Any]:
         "gravity": g,
         "models": _models(),
         "pulses": {
-            name: {"summary": (inspect.getdoc(one) or "").partition("\n")[0], "parameters": _parameters(one)}
-            for name, one in sorted(catalogue().items())
+            name: {"summary": (inspect.getdoc(entry) or "").partition("\n")[0], "parameters": _parameters(entry)}
+            for name, entry in sorted(catalogue().items())
         },
         "families": [
             {
-                "name": name, "title": one.title, "origin": one.origin, "generator": one.generator,
-                "time_step": one.time_step,
+                "name": name, "title": entry.title, "origin": entry.origin, "generator": entry.generator,
+                "time_step": entry.time_step,
             }
-            for name, one in families().items()
+            for name, entry in families().items()
         ],
         "formats": [
-            {"name": name, "suffixes": list(one.suffixes), **{key: getattr(one, key) for key in _OF_FORMATS}}
-            for name, one in formats().items()
+            {"name": name, "suffixes": list(entry.suffixes), **{key: getattr(entry, key) for key in _OF_FORMATS}}
+            for name, entry in formats().items()
         ],
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
-        "axes": [{**_quantity(one), "usual": one.usual} for one in axes().values()],
+        "axes": [{**_quantity(entry), "usual": entry.usual} for entry in axes().values()],
         "study_kinds": [
             {"name": kind, "table": question.own_table(), "has_body": issubclass(question, BodyQuestion)}
             for kind, question in launched.items()
@@ -201,11 +201,11 @@ def listed_measures() -> list[dict[str, str]]:
     """Return the measures of intensity that have names."""
     from rocking.motions.intensity import measures
 
-    return [_quantity(one) for one in measures().values()]
+    return [_quantity(measure) for measure in measures().values()]
 
 
-def _quantity(one: Any) -> dict[str, str]:
-    return {"name": one.name, "words": one.words, "unit": one.unit}
+def _quantity(quantity: Any) -> dict[str, str]:
+    return {"name": quantity.name, "words": quantity.words, "unit": quantity.unit}
 
 
 def _models() -> list[dict[str, Any]]:
@@ -236,9 +236,11 @@ def _dash(linestyle: str | tuple[int, tuple[int, ...]]) -> list[float]:
 def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
     """Return the parameters of a callable, with unit and default."""
     parameters = {}
-    for name, one in inspect.signature(kind).parameters.items():
-        unit, words = PARAMETERS.get(name, ("-", name.replace("_", " ")))
-        default = None if one.default is inspect.Parameter.empty else one.default  # None: a value must be given
+    for name, parameter in inspect.signature(kind).parameters.items():
+        unit, text = PARAMETERS.get(name, ("-", name.replace("_", " ")))
+        default = (
+            None if parameter.default is inspect.Parameter.empty else parameter.default
+        )  # None: a value must be given
         unlimited = isinstance(default, float) and math.isinf(default)
-        parameters[name] = {"unit": unit, "words": words, "default": UNLIMITED if unlimited else default}
+        parameters[name] = {"unit": unit, "words": text, "default": UNLIMITED if unlimited else default}
     return parameters

@@ -105,7 +105,7 @@ def _facts(inputs: MotionRequest, records: RecordStore) -> Answer:
             "samples": int(curves.time.size),
         },
         "spectrum": spectrum_answer(spectrum_of(samples)) if inputs.spectrum else None,
-        "measures": [{"name": key, "words": one.name} for key, one in measures.items()],
+        "measures": [{"name": key, "words": measure.name} for key, measure in measures.items()],
     }
 
 

@@ -89,7 +89,7 @@ async def add_record(
 @router.get("", summary="All record files", responses=answered(list[RecordKept], "The files."))
 def list_records(request: Request) -> JsonAnswer:
     """Return the stored records, newest first."""
-    return JsonAnswer([asdict(one) for one in state_of(request).records.stored()])
+    return JsonAnswer([asdict(record) for record in state_of(request).records.stored()])
 
 
 @router.get(
@@ -143,17 +143,17 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
     except RecordError as error:
         if error.hint is not STATIONS:
             raise
-        words = "the samples are instrument counts; the instrument response is in a separate StationXML file"
-        raise RecordError(words, hint=_WAY).at(name) from error
+        message = "the samples are instrument counts; the instrument response is in a separate StationXML file"
+        raise RecordError(message, hint=_WAY).at(name) from error
     components = [] if record is None else record.components
     choices = {
         "format": list(formats()),
         "units": list(ACCELERATION_UNITS),
-        "component": [each.name for each in components],
+        "component": [component.name for component in components],
     }
     return {
         "format": None if record is None else record.format,
-        "components": [_component(each, reasons) for each in components],
+        "components": [_component(component, reasons) for component in components],
         "needs": sorted(reasons, key=_ORDER.index),
         "choices": {name: choices[name] for name in reasons if name in choices},
         "message": f"{safe_name(name, 'record')}: {'; '.join(reasons.values())}" if reasons else "",
@@ -180,10 +180,10 @@ def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, 
             stated[missing] = _STAND_IN[missing]
         else:
             break
-    check_samples(sum(each.acceleration.size for each in record.components))
+    check_samples(sum(component.acceleration.size for component in record.components))
     _check_motions(record, path.name, unit_is_known="units" not in reasons)
     if len(record.components) > 1:
-        names = ", ".join(each.name for each in record.components)
+        names = ", ".join(component.name for component in record.components)
         reasons["component"] = Message(
             "the file has the components {names}; choose the horizontal component", {"names": names}
         )
@@ -210,13 +210,13 @@ def _component(component: Component, missing: dict[str, str]) -> dict[str, Any]:
 
 def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
     """Refuse implausible motions, in the unit of the file or in the smallest unit."""
-    if max(part.peak for part in record.components) < _QUIETEST:
+    if max(component.peak for component in record.components) < _QUIETEST:
         raise RecordError("{name}: the acceleration is zero throughout", name=name)
-    for part in record.components:
-        factor = ACCELERATION_UNITS[part.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
+    for component in record.components:
+        factor = ACCELERATION_UNITS[component.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
         with np.errstate(over="ignore"):  # overflow gives infinity, which is rejected
-            values = part.acceleration * factor
+            values = component.acceleration * factor
         try:
-            GroundMotion(values, part.time_step)
+            GroundMotion(values, component.time_step)
         except InvalidValueError as error:
-            raise error.copied(RecordError).at(f"{name}, {part.name}") from error
+            raise error.copied(RecordError).at(f"{name}, {component.name}") from error

@@ -146,13 +146,15 @@ def responses_answer(
     """Return the responses for all restitutions; window: time window of the curves [s]."""
     assert not isinstance(problem.motion, dict)  # the page has one component
     answers = responses_of(problem)
-    verdict = ModelAgreement.of({label: one for label, one in answers.items() if isinstance(one, Response)})
+    verdict = ModelAgreement.of(
+        {label: response for label, response in answers.items() if isinstance(response, Response)}
+    )
     return Answer({
         "answers": [
-            {"label": label, "error": one}
-            if isinstance(one, str)
-            else response_answer(label, one, problem, points, window)
-            for label, one in answers.items()
+            {"label": label, "error": response}
+            if isinstance(response, str)
+            else response_answer(label, response, problem, points, window)
+            for label, response in answers.items()
         ],
         "verdict": {
             "decides": verdict.models_differ, "sentence": verdict.verdict, "doubts": list(verdict.doubts),
@@ -168,8 +170,8 @@ def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
     answers: dict[str, Response | str] = {}
     samples = 0
     for label, restitution in problem.restitutions.items():
-        answers[label] = one = _tried(problem, restitution)
-        samples += one.segments.count if isinstance(one, Response) else 0
+        answers[label] = response = _tried(problem, restitution)
+        samples += response.segments.count if isinstance(response, Response) else 0
         if samples > MOST_TOGETHER:
             raise TooLarge(
                 "{answered} of {count} responses have {steps} steps in total, {limit} are allowed",
@@ -212,15 +214,15 @@ def _tried(problem: ResponseProblem, restitution: Any) -> Response | str:
 
 def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
     """Return the curves of a response, `ResponseSeries`; window: time window [s]."""
-    whole, curves = _states(response)
-    kept = thinned(whole, list(curves.values()), points, window)
-    time = whole[kept]
+    states, curves = _states(response)
+    kept = thinned(states, list(curves.values()), points, window)
+    time = states[kept]
     return {
         "time": time,
         **{name: values[kept] for name, values in curves.items()},
         "ground_displacement": _moved(response, time),
         "samples_shown": int(time.size),
-        "samples": int(whole.size),
+        "samples": int(states.size),
     }
 
 
@@ -306,8 +308,8 @@ def thinned(
     ends = np.flatnonzero(np.diff(run))
     kept = [inside[[0, -1]], inside[ends], inside[ends + 1]]
     for curve in curves:
-        known = np.isfinite(curve[inside])
-        kept += [_ends_of_runs(curve, inside[rows], run[rows]) for rows in (known, ~known)]
+        finite = np.isfinite(curve[inside])
+        kept += [_ends_of_runs(curve, inside[rows], run[rows]) for rows in (finite, ~finite)]
     return np.unique(np.concatenate(kept))
 
 

@@ -121,7 +121,9 @@ def _finder(records: RecordStore) -> FindRecord:
             return records.get(word).record
         except NotFound:
             name = record_file_name(word)
-            return next((one.record for one in records.stored() if record_file_name(one.file_name) == name), None)
+            return next(
+                (stored.record for stored in records.stored() if record_file_name(stored.file_name) == name), None
+            )
 
     return find
 

@@ -93,7 +93,7 @@ def report_of(evaluation: Evaluation, date: str) -> bytes:
     results = ResponseReport(
         evaluation.impact, motion, {} if motion is None else measures_of(motion, fine_samples(motion)),
         evaluation.responses, evaluation.refused, evaluation.problem.assumed_friction, evaluation.name, date,
-        inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)], fingerprint(inputs),
+        inputs_as_toml(inputs), [plain_line(line, 2000) for line in commands(inputs)], fingerprint(inputs),
     )  # fmt: skip
     stems = [stem for stem in PICTURES if motion is not None or stem != "motion"]
     pictures = {stem: drawn(partial(figure_of, stem, evaluation)) for stem in stems}

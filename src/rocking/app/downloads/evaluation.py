@@ -80,12 +80,12 @@ class Evaluation:
     @property
     def responses(self) -> dict[str, Response]:
         """Available responses by label, at least one."""
-        return {label: one for label, one in self.answers.items() if isinstance(one, Response)}
+        return {label: response for label, response in self.answers.items() if isinstance(response, Response)}
 
     @property
     def refused(self) -> dict[str, str]:
         """Reasons for missing responses, by label."""
-        return {label: why for label, why in self.answers.items() if isinstance(why, str)}
+        return {label: reason for label, reason in self.answers.items() if isinstance(reason, str)}
 
     def chosen(self, index: int | None) -> Response:
         """Return one response by index."""
@@ -94,10 +94,10 @@ class Evaluation:
         answers = list(self.answers.values())
         if not 0 <= index < len(answers):
             raise InvalidValueError(parameter="restitution", allowed=f"0 to {len(answers) - 1}", value=index)
-        one = answers[index]
-        if isinstance(one, str):
-            raise InvalidValueError(one)
-        return one
+        response = answers[index]
+        if isinstance(response, str):
+            raise InvalidValueError(response)
+        return response
 
     def file_stem(self, what: str, index: int | None) -> str:
         """Return the file name of one response, with its restitution if there are several."""

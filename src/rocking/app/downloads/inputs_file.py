@@ -35,8 +35,8 @@ def plain_inputs(inputs: Inputs) -> dict[str, Any]:
 
 def fingerprint(inputs: Inputs) -> str:
     """Return the SHA-256 of inputs, independent of their format."""
-    words = json.dumps(inputs.model_dump(exclude_none=True), sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(words.encode()).hexdigest()
+    text = json.dumps(inputs.model_dump(exclude_none=True), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def record_name(inputs: Inputs) -> str | None:
@@ -50,8 +50,8 @@ def commands(inputs: Inputs) -> list[str]:
     """Return commands for the same result: with the input file, and with options if possible."""
     if inputs.motion is None and inputs.response.initial_rotation is None:
         return []
-    words = simulate_words(plain_inputs(inputs), record_name(inputs))
-    return [f"rocking simulate {FILE_NAME}", *([] if words is None else [words])]
+    command = simulate_words(plain_inputs(inputs), record_name(inputs))
+    return [f"rocking simulate {FILE_NAME}", *([] if command is None else [command])]
 
 
 def inputs_as_toml(inputs: Inputs) -> str:
@@ -132,16 +132,16 @@ def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str 
     if body is None or start is None or restitution is None:
         return None
     if "--units" in start:  # those of body and record are one option
-        place = start.index("--units")
-        body[-1] += f",{start[place + 1]}"
-        start = start[:place] + start[place + 2 :]
+        position = start.index("--units")
+        body[-1] += f",{start[position + 1]}"
+        start = start[:position] + start[position + 2 :]
     settings = dict(inputs.get("settings") or {})
     if settings.get("engine") == "auto":
         del settings["engine"]
     if not settings.get("linear"):
         settings.pop("linear", None)
-    words = [*body, *start, *restitution, *_sets("settings", settings)]
-    return " ".join(["rocking simulate", *map(quote, words)])
+    options = [*body, *start, *restitution, *_sets("settings", settings)]
+    return " ".join(["rocking simulate", *map(quote, options)])
 
 
 def _body(body: Mapping[str, Any]) -> list[str] | None:

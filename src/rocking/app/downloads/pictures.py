@@ -93,14 +93,14 @@ def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
     """Replace restitution labels in a picture by their names."""
     from matplotlib.text import Text
 
-    known = {label: restitution_words(label) for label in labels}
-    rows = {label.replace(":", "\n"): words.replace(", ", ",\n", 1) for label, words in known.items()}
+    texts = {label: restitution_words(label) for label in labels}
+    rows = {label.replace(":", "\n"): words.replace(", ", ",\n", 1) for label, words in texts.items()}
     for axes in figure.axes:
         names = [text.get_text() for text in axes.get_yticklabels()]
         if any(text in rows for text in names):
             axes.set_yticks(axes.get_yticks(), [rows.get(text, text) for text in names], fontsize=6)
     for text in figure.findobj(Text):
-        for label, words in known.items():
+        for label, words in texts.items():
             text.set_text(text.get_text().replace(f"restitution: {label};", f"restitution: {words};"))
     return figure
 
@@ -140,16 +140,17 @@ def drawn_text(text: str, longest: int) -> str:
 
 def _draw_response(axes: "list[Axes]", label: str, response: Response, look: dict[str, object]) -> None:
     (time, rotation, velocity), energy = motion_curves(response), response.energy
-    words = drawn_text(f"{restitution_words(label)}: {_SHORT[response.outcome]}", 60)
+    text = drawn_text(f"{restitution_words(label)}: {_SHORT[response.outcome]}", 60)
     style = {**look, "linewidth": 1.0}
-    axes[1].plot(time, over_slenderness(response, rotation), label=words, **style)  # type: ignore[arg-type]
+    axes[1].plot(time, over_slenderness(response, rotation), label=text, **style)  # type: ignore[arg-type]
     axes[2].plot(time, velocity, **style)  # type: ignore[arg-type]
     axes[3].plot(energy.time, energy.lost, drawstyle="steps-post", **style)  # type: ignore[arg-type]
 
 
 def _rotations(axes: "Axes", responses: Mapping[str, Response]) -> None:
     peak = max(
-        float(np.abs(over_slenderness(one, motion_curves(one)[1])).max(initial=0.0)) for one in responses.values()
+        float(np.abs(over_slenderness(response, motion_curves(response)[1])).max(initial=0.0))
+        for response in responses.values()
     )
     if 0.0 < peak < _SMALL:
         axes.set_ylim(-1.25 * peak, 1.25 * peak)

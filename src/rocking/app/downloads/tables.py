@@ -120,7 +120,9 @@ def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> 
 
 def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
     """Return the coefficients of a body under every model."""
-    rows = [{"foot": foot, **row.answer().values} for foot, each in answer.tables.items() for row in each]
+    rows = [
+        {"foot": foot, **row.answer().values} for foot, rows_of_foot in answer.tables.items() for row in rows_of_foot
+    ]
     joined = [{**row, "warnings": "; ".join(row["warnings"]), "admissible": int(row["admissible"])} for row in rows]
     return as_table(about, {name: (_unit(name), [row[name] for row in joined]) for name in joined[0]})
 
@@ -150,9 +152,9 @@ def measures_table(motion: Motion, about: dict[str, str]) -> Table:
     return as_table(about, {
         "motion": ("", [motion.name] * len(measures)),
         "key": ("", list(measures)),
-        "measure": ("", [one.name for one in measures.values()]),
-        "value": ("unit of its row", [one.value for one in measures.values()]),
-        "unit": ("", ["1" if one.unit == "-" else one.unit for one in measures.values()]),
+        "measure": ("", [measure.name for measure in measures.values()]),
+        "value": ("unit of its row", [measure.value for measure in measures.values()]),
+        "unit": ("", ["1" if measure.unit == "-" else measure.unit for measure in measures.values()]),
     })  # fmt: skip
 
 
@@ -185,8 +187,8 @@ def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> 
     answers = [response.outcome_answer() for response in responses.values()]
     names = ("outcome", "summary", "peak_rotation", "peak_ratio", "overturning_time", "impacts")
     columns: dict[str, Any] = {"restitution": ("", list(responses))}
-    columns |= {f"coefficient_{foot}": ("-", [one["coefficient"][foot] for one in answers]) for foot in FEET}
-    columns |= {name: (_unit(name), [one[name] for one in answers]) for name in names}
+    columns |= {f"coefficient_{foot}": ("-", [row["coefficient"][foot] for row in answers]) for foot in FEET}
+    columns |= {name: (_unit(name), [row[name] for row in answers]) for name in names}
     return as_table(about, {**columns, "outcome": ("", columns["outcome"][1])})
 
 
@@ -223,18 +225,18 @@ def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
                     "a workbook may have up to {limit} cells, got {count}; use csv or mat", limit=MOST_CELLS,
                     count=cells,
                 )  # fmt: skip
-            to_excel([(plain_line(name), one) for name, one in sheets], path, others="csv or mat", dressed=True)
+            to_excel([(plain_line(name), sheet) for name, sheet in sheets], path, others="csv or mat", dressed=True)
         elif kind == "mat":
             to_mat(_doubles(first), path)
         else:
-            units = {name: replace(each, unit=each.unit or "1") for name, each in _doubles(first).columns.items()}
+            units = {name: replace(column, unit=column.unit or "1") for name, column in _doubles(first).columns.items()}
             to_netcdf(to_dataset(replace(first, columns=units)), path)
         return path.read_bytes()
 
 
-def _doubles(one: Table) -> Table:
+def _doubles(table: Table) -> Table:
     columns = {
-        name: each if each.is_text else replace(each, values=each.values.astype(np.float64))
-        for name, each in one.columns.items()
+        name: column if column.is_text else replace(column, values=column.values.astype(np.float64))
+        for name, column in table.columns.items()
     }
-    return replace(one, columns=columns)
+    return replace(table, columns=columns)

@@ -136,4 +136,4 @@ def _entry(archive: Archive, sha: str) -> str:
 
 
 def _hashes(value: Any) -> list[str]:
-    return list(dict.fromkeys(each for level in levels(value) for each in level if is_hash(each)))
+    return list(dict.fromkeys(item for level in levels(value) for item in level if is_hash(item)))

@@ -101,8 +101,8 @@ async def create_project(request: Request, new: NewProject) -> JsonAnswer:
     def made(store: ProjectStore) -> Project:
         if new.copy_of is None:
             return store.create(new.name, new.document)
-        words = new.words or f"a copy of {store.get(new.copy_of).name}"
-        return store.create(new.name, store.document(new.copy_of), words)
+        description = new.words or f"a copy of {store.get(new.copy_of).name}"
+        return store.create(new.name, store.document(new.copy_of), description)
 
     return await _whole(request, made, 201)
 

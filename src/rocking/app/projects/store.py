@@ -63,9 +63,9 @@ def _alone(method: Callable[..., Project]) -> Callable[..., Project]:
     """Lock the store until a change and its answer are complete."""
 
     @wraps(method)
-    def locked(self: "ProjectStore", *given: Any, **named: Any) -> Project:
+    def locked(self: "ProjectStore", *args: Any, **named: Any) -> Project:
         with self.lock:
-            return method(self, *given, **named)
+            return method(self, *args, **named)
 
     return locked
 
@@ -137,7 +137,7 @@ class ProjectStore:
             rows = self._database.execute(
                 "SELECT number, words, time FROM states WHERE project = ? ORDER BY number DESC", (project,)
             ).fetchall()
-        return [ProjectState(number, words, time, number == here) for number, words, time in rows]
+        return [ProjectState(number, description, time, number == here) for number, description, time in rows]
 
     @_alone
     def create(self, name: str, document: dict[str, Any], words: str = "begun") -> Project:
@@ -159,13 +159,13 @@ class ProjectStore:
     def save(self, project: str, version: int, document: dict[str, Any], words: str) -> Project:
         """Save a new state of a project after its current state."""
         packed = _packed(document)
-        with self._followed(project, version) as (database, now, known):
+        with self._followed(project, version) as (database, now, saved):
             (last,) = database.execute("SELECT max(number) FROM states WHERE project = ?", (project,)).fetchone()
             database.execute(
                 "INSERT INTO states VALUES (?, ?, ?, NULL, ?, ?, ?)",
-                (project, last + 1, known.state, shown(words), now, packed),
+                (project, last + 1, saved.state, shown(words), now, packed),
             )
-            self._lead(project, known.state, last + 1)
+            self._lead(project, saved.state, last + 1)
             database.execute(
                 "DELETE FROM states WHERE project = ? AND number <= ? AND number <> ?",
                 (project, last + 1 - MOST_STATES, last + 1),
@@ -190,9 +190,9 @@ class ProjectStore:
     @_alone
     def rename(self, project: str, version: int, name: str) -> Project:
         """Rename a project."""
-        words = _name(name)
+        new_name = _name(name)
         with self._followed(project, version) as (database, _, _):
-            database.execute("UPDATE projects SET name = ? WHERE id = ?", (words, project))
+            database.execute("UPDATE projects SET name = ? WHERE id = ?", (new_name, project))
         return self.get(project)
 
     @_alone
@@ -218,14 +218,14 @@ class ProjectStore:
         return self.get(project)
 
     def _step(self, project: str, version: int, way: str, nowhere: str) -> Project:
-        with self._followed(project, version) as (database, _, known):
-            if not (known.can_undo if way == "before" else known.can_redo):
+        with self._followed(project, version) as (database, _, saved):
+            if not (saved.can_undo if way == "before" else saved.can_redo):
                 raise Refused(nowhere)
             (number,) = database.execute(
-                f"SELECT {way} FROM states WHERE project = ? AND number = ?", (project, known.state)
+                f"SELECT {way} FROM states WHERE project = ? AND number = ?", (project, saved.state)
             ).fetchone()
             if way == "before":
-                self._lead(project, number, known.state)
+                self._lead(project, number, saved.state)
             database.execute("UPDATE projects SET here = ? WHERE id = ?", (number, project))
         return self.get(project)
 
@@ -238,12 +238,12 @@ class ProjectStore:
     def _followed(self, project: str, version: int) -> Iterator[tuple[sqlite3.Connection, str, Project]]:
         """Change a project if its version is current."""
         with self._changing() as database:
-            known, now = self.get(project), _instant()
-            if known.deleted is not None:
+            saved, now = self.get(project), _instant()
+            if saved.deleted is not None:
                 raise Conflict("the project is deleted; restore it first")
-            if known.version != version:
+            if saved.version != version:
                 raise Conflict("the project was changed in another tab or browser; load it again")
-            yield database, now, known
+            yield database, now, saved
             database.execute("UPDATE projects SET version = version + 1, changed = ? WHERE id = ?", (now, project))
 
     @contextmanager

@@ -51,23 +51,23 @@ def main() -> None:
     """Run the received command."""
     from rocking.app.studies.child import end_with_the_server
 
-    told, question = threading.Event(), b""
+    received, question = threading.Event(), b""
 
     def listen() -> None:
         nonlocal question
         while not question.endswith(b"\n"):
-            if not (part := os.read(0, 1)):
+            if not (byte := os.read(0, 1)):
                 os._exit(0)  # the server has ended without a command
-            question += part
-        told.set()
+            question += byte
+        received.set()
         end_with_the_server()
 
     threading.Thread(target=listen, daemon=True).start()
     _limit()
     imports = _imports()
-    while not told.is_set() and next(imports, "done") is None:
+    while not received.is_set() and next(imports, "done") is None:
         pass
-    told.wait()
+    received.wait()
     _answer(**json.loads(question))
 
 
@@ -97,7 +97,7 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list
 def keep_inside(*folders: Path) -> None:
     """Refuse to open files outside the folders and the installation."""
     own = [sys.prefix, sys.base_prefix, sys.exec_prefix, *filter(None, sys.path), str(Path(__file__).parents[3])]
-    allowed = tuple(f"{Path(each).resolve()}{os.sep}" for each in [*own, *_SYSTEM, *map(str, folders)])
+    allowed = tuple(f"{Path(folder).resolve()}{os.sep}" for folder in [*own, *_SYSTEM, *map(str, folders)])
 
     def look(event: str, details: tuple[Any, ...]) -> None:
         if event in {"subprocess.Popen", "os.posix_spawn", "os.exec"} and details[0] not in {None, sys.executable}:
@@ -122,8 +122,8 @@ def _limit() -> None:
         return
     for which, most in ((resource.RLIMIT_AS, _MEMORY), (resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_FSIZE, _FILE)):
         hard = resource.getrlimit(which)[1]
-        least = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(which, (least, hard))
+        limit = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(which, (limit, hard))
 
 
 if __name__ == "__main__":

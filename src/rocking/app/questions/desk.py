@@ -96,8 +96,8 @@ class QuestionDesk:
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._stores, self._limits = stores, limits
         self._changed = threading.Condition(threading.RLock())
-        self._questions = {each.id: each for each in self._kept()}
-        self._line = [each.id for each in sorted(self._questions.values(), key=_age) if each.state == "waiting"]
+        self._questions = {run.id: run for run in self._kept()}
+        self._line = [run.id for run in sorted(self._questions.values(), key=_age) if run.state == "waiting"]
         self._process: tuple[str, subprocess.Popen[bytes]] | None = None
         self._ahead: tuple[subprocess.Popen[bytes], dict[str, str]] | None = None  # of the next one, and around it
         self._closed = False
@@ -127,7 +127,7 @@ class QuestionDesk:
                 command=command,
             )  # fmt: skip
         refuse_outside(tables)
-        known = self._paths(files)
+        paths = self._paths(files)
         with self._changed:
             if len(self._line) >= MOST_WAITING:
                 raise Busy("{count} runs are queued; try again later", count=len(self._line), seconds=5)
@@ -139,15 +139,15 @@ class QuestionDesk:
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
         asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
         question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked, format=format)
-        place = self.folder / question.id
+        folder = self.folder / question.id
         try:
             with room_on_disk():
-                (place / FOLDER).mkdir(mode=0o700, parents=True)
-                for word, source in known.items():
-                    _link(source, place / word)
-                (place / QUESTION).write_text(toml_of(tables), encoding="utf-8")
+                (folder / FOLDER).mkdir(mode=0o700, parents=True)
+                for word, source in paths.items():
+                    _link(source, folder / word)
+                (folder / QUESTION).write_text(toml_of(tables), encoding="utf-8")
         except BaseException:
-            shutil.rmtree(place, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
             raise
         with self._changed:
             self._become(question)
@@ -162,15 +162,15 @@ class QuestionDesk:
 
     def get(self, question: str) -> HostedQuestion:
         with self._changed:
-            known = self._questions.get(question)
-        if known is None:
+            run = self._questions.get(question)
+        if run is None:
             raise NotFound("run not found; it was deleted, or it is in another data folder")
-        return known
+        return run
 
     def answer(self, question: str) -> bytes | None:
         """Return the answer as JSON, or None."""
-        known = self.get(question)
-        return (self.folder / known.id / _ANSWER).read_bytes() if known.state == "done" else None
+        run = self.get(question)
+        return (self.folder / run.id / _ANSWER).read_bytes() if run.state == "done" else None
 
     def tables(self, question: str) -> str:
         """Return the inputs of a run as an input file."""
@@ -178,33 +178,33 @@ class QuestionDesk:
 
     def file(self, question: str, name: str) -> Path:
         """Return the path of an output file."""
-        known = self.get(question)
-        if name not in known.files:
+        run = self.get(question)
+        if name not in run.files:
             raise NotFound(
                 "unknown file {name!r:.40}; the run has {files}", name=name,
-                files=", ".join(known.files) or "none",
+                files=", ".join(run.files) or "none",
             )  # fmt: skip
-        return self.folder / known.id / name
+        return self.folder / run.id / name
 
     def stop(self, question: str) -> HostedQuestion:
         """Stop a running or queued run."""
         with self._changed:
-            known = self.get(question)
-            if known.state not in {"waiting", "running"}:
-                return known
-            if known.id in self._line:
-                self._line.remove(known.id)
-            self._become(replace(known, state="stopped", message="stopped"))
-            if self._process is not None and self._process[0] == known.id:
+            run = self.get(question)
+            if run.state not in {"waiting", "running"}:
+                return run
+            if run.id in self._line:
+                self._line.remove(run.id)
+            self._become(replace(run, state="stopped", message="stopped"))
+            if self._process is not None and self._process[0] == run.id:
                 kill(self._process[1])
         return self.get(question)
 
     def delete(self, question: str) -> None:
         """Delete a run and its answer."""
-        known = self.stop(question)
+        run = self.stop(question)
         with self._changed:
-            self._questions.pop(known.id, None)
-        shutil.rmtree(self.folder / known.id, ignore_errors=True)
+            self._questions.pop(run.id, None)
+        shutil.rmtree(self.folder / run.id, ignore_errors=True)
 
     def close(self) -> None:
         """Stop the current run; it restarts with the next server."""
@@ -218,22 +218,22 @@ class QuestionDesk:
 
     def _kept(self) -> list[HostedQuestion]:
         """Return the runs of an earlier server; an interrupted run is queued."""
-        found = []
-        for place in list(self.folder.iterdir()):
+        runs = []
+        for folder in list(self.folder.iterdir()):
             try:
-                question = _QUESTION.validate_python(_migrated(json.loads((place / _NOTE).read_bytes())))
+                question = _QUESTION.validate_python(_migrated(json.loads((folder / _NOTE).read_bytes())))
             except FileNotFoundError:  # half written when that server ended
-                if not place.is_symlink():
-                    shutil.rmtree(place, ignore_errors=True)
+                if not folder.is_symlink():
+                    shutil.rmtree(folder, ignore_errors=True)
                 continue
             except (OSError, ValueError):  # possibly of a later version: kept unchanged
                 continue
-            if question.id == place.name:
+            if question.id == folder.name:
                 if question.state == "running" and question.starts >= _MOST_STARTS:
-                    why = f"the server ended {question.starts} times beneath it: does it need too much memory?"
-                    question = replace(question, state="refused", message=why)
-                found.append(replace(question, state="waiting") if question.state == "running" else question)
-        return found
+                    message = f"the server ended {question.starts} times during the run; the run may need more memory than available"
+                    question = replace(question, state="refused", message=message)
+                runs.append(replace(question, state="waiting") if question.state == "running" else question)
+        return runs
 
     def _paths(self, files: Mapping[str, str]) -> dict[str, Path]:
         if len(files) > MOST_FILES:
@@ -272,10 +272,10 @@ class QuestionDesk:
                         self._let_go()
                 if self._closed:
                     return
-                known = self._questions.get(self._line.pop(0))
-                if known is None:
+                run = self._questions.get(self._line.pop(0))
+                if run is None:
                     continue
-                question = replace(known, state="running", starts=known.starts + 1)
+                question = replace(run, state="running", starts=run.starts + 1)
                 self._become(question)
             try:
                 self._run(question)
@@ -308,15 +308,15 @@ class QuestionDesk:
         )  # fmt: skip
 
     def _run(self, question: HostedQuestion) -> None:
-        place, begun = self.folder / question.id, datetime.now(UTC)
-        own = place / ".own"
+        folder, begun = self.folder / question.id, datetime.now(UTC)
+        own = folder / ".own"
         own.mkdir(mode=0o700, exist_ok=True)
-        told = {
-            "folder": str(place), "file": QUESTION, "answer": _ANSWER, "log": _LOG, "own": own.name,
+        job = {
+            "folder": str(folder), "file": QUESTION, "answer": _ANSWER, "log": _LOG, "own": own.name,
             "words": _command(question),
         }  # fmt: skip
         for name in (_ANSWER, _LOG):
-            (place / name).write_bytes(b"")
+            (folder / name).write_bytes(b"")
         with self._changed:
             self.prepare()
             ahead, self._ahead = self._ahead, None
@@ -326,7 +326,7 @@ class QuestionDesk:
                 kill(process)
         try:
             with suppress(OSError):  # ended: see its exit code
-                process.stdin.write(json.dumps(told).encode() + b"\n")  # type: ignore[union-attr]
+                process.stdin.write(json.dumps(job).encode() + b"\n")  # type: ignore[union-attr]
                 process.stdin.flush()  # type: ignore[union-attr]
             code = process.wait(_SECONDS)
         except subprocess.TimeoutExpired:
@@ -343,25 +343,25 @@ class QuestionDesk:
                 return
             seconds = (datetime.now(UTC) - begun).total_seconds()
             names = [name.rpartition("=")[2] for name in _written(question)]
-            there = [name for name in names if (place / name).is_file()]
-            state, refusal = ("done", None) if code == 0 else ("refused", _refusal(place, code))
-            why = refusal["message"] if refusal else ""
+            there = [name for name in names if (folder / name).is_file()]
+            state, refusal = ("done", None) if code == 0 else ("refused", _refusal(folder, code))
+            message = refusal["message"] if refusal else ""
             self._become(
-                replace(question, state=state, message=why, refusal=refusal, seconds=seconds, files=there)  # type: ignore[arg-type]
+                replace(question, state=state, message=message, refusal=refusal, seconds=seconds, files=there)  # type: ignore[arg-type]
             )
 
     def _fail(self, question: HostedQuestion) -> None:
         with self._changed:
             self._process = None
             if self._state(question.id) == "running":
-                why = "the run could not start; check the free disk space and the log of the server"
-                self._become(replace(question, state="refused", message=why))
+                message = "the run could not start; check the free disk space and the log of the server"
+                self._become(replace(question, state="refused", message=message))
 
     def _state(self, question: str) -> str | None:
         """Return the state of a run; None if deleted."""
         with self._changed:
-            known = self._questions.get(question)
-        return None if known is None else known.state
+            run = self._questions.get(question)
+        return None if run is None else run.state
 
 
 def _migrated(note: Any) -> dict[str, Any]:
@@ -403,11 +403,11 @@ def refuse_outside(tables: dict[str, Any]) -> None:
 def _refusal(place: Path, code: int | None) -> dict[str, Any]:
     """Return the reason for a missing answer as data."""
     if code is None:
-        why = Message(
+        message = Message(
             ("the run exceeded {minutes:.0f} minutes; use the command line"),
             {"minutes": _SECONDS / 60.0},
         )
-        return RockingError(why).data()
+        return RockingError(message).data()
     log = (place / _LOG).read_text(encoding="utf-8", errors="replace").replace(f"{place}{os.sep}", "")
     for line in reversed(log.splitlines()):
         with suppress(ValueError, TypeError, KeyError):

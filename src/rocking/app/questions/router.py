@@ -100,10 +100,10 @@ async def get_question(request: Request, question: str) -> JsonAnswer:
 
     def whole() -> dict[str, Any]:
         desk = _desk(request)
-        known = desk.get(question)  # once: it may be done a moment later
-        answer = desk.answer(question) if known.state == "done" else None
+        run = desk.get(question)  # once: it may be done a moment later
+        answer = desk.answer(question) if run.state == "done" else None
         return {
-            **_facts(known), "toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)
+            **_facts(run), "toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)
         }  # fmt: skip
 
     return JsonAnswer(await run_in_threadpool(whole))

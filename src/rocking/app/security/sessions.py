@@ -177,15 +177,15 @@ class Sessions:
         except (OSError, ValueError):
             return {}
         now = self._clock()
-        live = sorted((seen, each) for each, seen in kept.items() if 0.0 <= now - seen <= self._limits.session_seconds)
-        return {bytes.fromhex(each): seen for seen, each in live[-_MOST_SESSIONS:]}
+        live = sorted((seen, key) for key, seen in kept.items() if 0.0 <= now - seen <= self._limits.session_seconds)
+        return {bytes.fromhex(key): seen for seen, key in live[-_MOST_SESSIONS:]}
 
     def _write(self) -> None:
         """Keep the sessions, for this user alone; where the disk takes nothing, a restart asks to sign in again."""
         self._written = self._clock()
         if self._kept is not None:
             with suppress(OSError):
-                content = json.dumps({each.hex(): seen for each, seen in self._sessions.items()})
+                content = json.dumps({key.hex(): seen for key, seen in self._sessions.items()})
                 write_new(self._kept, content.encode())
                 self._kept.chmod(0o600)
 

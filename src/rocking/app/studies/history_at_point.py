@@ -165,8 +165,8 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
             break
         place -= table.size
     if table.pulse is not None:
-        words = stretched_words(table.pulse[place], stretch)
-        return pulse(words), {"pulse": words}, table.scale
+        text = stretched_words(table.pulse[place], stretch)
+        return pulse(text), {"pulse": text}, table.scale
     if table.records is not None:
         name = table.records[place]
         alone = table.model_copy(update={"records": [name], "scale": 1.0})
@@ -190,7 +190,7 @@ def stretched_words(words: str, stretch: float) -> str:
     if stretch == 1.0:
         return words
     name, _, tail = words.partition(":")
-    pairs = [tuple(part.strip() for part in item.partition("=")[::2]) for item in filter(None, tail.split(","))]
+    pairs = [tuple(word.strip() for word in item.partition("=")[::2]) for item in filter(None, tail.split(","))]
     changed = [(key, repr(whole_or_number(key, value) * stretch) if key in _TIMES else value) for key, value in pairs]
     stretched = f"{name}:{','.join(f'{key}={value}' for key, value in changed)}"
     before, after = pulse(words), pulse(stretched)
@@ -227,8 +227,8 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
         return cell | {"note": Message("there is no response: {reason}", {"reason": response.status.value})}
     difference = abs(response.peak_rotation - abs(cell["stored"]["peak_rotation"]))
     answer = response_answer(variation.label, response, problem, points)
-    told = Answer({"stored": cell["stored"], "answer": answer, "difference": difference}).plain()
-    return cell | told
+    document = Answer({"stored": cell["stored"], "answer": answer, "difference": difference}).plain()
+    return cell | document
 
 
 def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:

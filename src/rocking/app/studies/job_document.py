@@ -57,8 +57,8 @@ class JobDocument:
         _refuse_files(tables)
         campaign = tables.get("campaign")
         kind = campaign.get("kind") if isinstance(campaign, dict) else None
-        if isinstance(kind, str) and kind not in (known := launched_kinds()):
-            raise InvalidValueError(parameter="campaign.kind", allowed=f"one of {', '.join(known)}", value=kind)
+        if isinstance(kind, str) and kind not in (kinds := launched_kinds()):
+            raise InvalidValueError(parameter="campaign.kind", allowed=f"one of {', '.join(kinds)}", value=kind)
         with located("job"):
             job = cls(tables, question_in(tables))
         job._check_counts()
@@ -134,8 +134,8 @@ def _check_extent(tables: Any) -> None:
 
 def _refuse_files(tables: dict[str, Any]) -> None:
     """Refuse file names; files are uploaded and named by hash."""
-    for each in chain.from_iterable(levels(tables.get("body"))):
-        for key in each if isinstance(each, dict) else ():
+    for item in chain.from_iterable(levels(tables.get("body"))):
+        for key in item if isinstance(item, dict) else ():
             if key in _FILES:
                 raise InvalidValueError(
                     "body: {key} names a file, which is not allowed here", key=key, hint="upload the file instead"

@@ -63,8 +63,8 @@ class StudyManager:
                 "the study has {count} simulations, {limit} are allowed; use fewer values, or `rocking campaign` on "
                 "the command line", count=count, limit=self._limits.histories,
             )  # fmt: skip
-        words = name or document.document.campaign.name
-        return self.queue.enter(lambda: self._new_study(words, document, project), brought=brought).folder.id
+        title = name or document.document.campaign.name
+        return self.queue.enter(lambda: self._new_study(title, document, project), brought=brought).folder.id
 
     def of_project(self, project: str) -> list[tuple[str, dict[str, Any]]]:
         """Return names and jobs of the studies of a project, oldest first."""
@@ -178,7 +178,7 @@ def studies_in(folder: Path) -> dict[str, HostedStudy]:
 def _is_half_written(path: Path) -> bool:
     """Return True if the folder was created incompletely."""
     try:
-        return not {META, CAMPAIGN} & {each.name for each in path.iterdir()}
+        return not {META, CAMPAIGN} & {entry.name for entry in path.iterdir()}
     except OSError:
         return False
 

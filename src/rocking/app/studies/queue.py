@@ -92,8 +92,10 @@ class StudyQueue:
     def publish(self) -> None:
         """Publish changes to subscribers."""
         with self.lock:
-            studies = sorted(self._studies.values(), key=lambda each: (each.meta.created, each.folder.id), reverse=True)
-            now = {each.folder.id: each.facts for each in studies}
+            studies = sorted(
+                self._studies.values(), key=lambda study: (study.meta.created, study.folder.id), reverse=True
+            )
+            now = {study.folder.id: study.facts for study in studies}
             if now == self.published:
                 return
             self.published = now
@@ -121,13 +123,13 @@ class StudyQueue:
     def _watch(self) -> None:
         while not self.closed:
             try:
-                for each in self._running():
-                    self._tend(each)
+                for study in self._running():
+                    self._tend(study)
                 self._begin_next()
                 with self.lock:  # write again after a full disk
-                    for each in self._studies.values():
-                        each.save()
-                    unsaved = not all(each.saved for each in self._studies.values())
+                    for study in self._studies.values():
+                        study.save()
+                    unsaved = not all(study.saved for study in self._studies.values())
                 self.publish()
             except Exception:  # noqa: BLE001 - whatever it is, the studies go on
                 _LOG.exception("the queue of studies stumbled")
@@ -135,32 +137,32 @@ class StudyQueue:
             self._wake.wait(LOOK if self._running() else SAVE_AGAIN if unsaved else None)
             self._wake.clear()
 
-    def _tend(self, each: HostedStudy) -> None:
+    def _tend(self, study: HostedStudy) -> None:
         """Update a running study; an error does not affect other studies."""
-        process = each.process
+        process = study.process
         try:
-            each.look()
-            if process is not None and process.code is not None and not each.cancelled:
-                self.end(each, process)
+            study.look()
+            if process is not None and process.code is not None and not study.cancelled:
+                self.end(study, process)
         except Exception as error:  # noqa: BLE001 - whatever it is, the other studies go on
-            _LOG.exception("study %s could not be looked at", each.folder.id)
+            _LOG.exception("study %s could not be looked at", study.folder.id)
             with self.lock:
-                if each.process is None and each.meta.state == RUNNING:
-                    each.become(FAILED, f"its end could not be noted ({type(error).__name__}); resume it")
+                if study.process is None and study.meta.state == RUNNING:
+                    study.become(FAILED, f"its end could not be noted ({type(error).__name__}); resume it")
 
     def _running(self) -> list[HostedStudy]:
         with self.lock:
-            return [each for each in self._studies.values() if each.process is not None]
+            return [study for study in self._studies.values() if study.process is not None]
 
     def _begin_next(self) -> None:
         with self.lock:
-            waiting = [each for each in self._studies.values() if each.meta.state == WAITING]
+            waiting = [study for study in self._studies.values() if study.meta.state == WAITING]
             room = max(0, self._at_once - len(self._running()))
-            for each in sorted(waiting, key=lambda one: one.meta.created)[:room]:
+            for study in sorted(waiting, key=lambda waiting_study: waiting_study.meta.created)[:room]:
                 try:
-                    each.begin(self._workers)
+                    study.begin(self._workers)
                 except Exception as error:  # noqa: BLE001 - the others wait for their turn
-                    why = (isinstance(error, OSError) and error.strerror) or type(error).__name__
-                    _LOG.warning("study %s could not be begun", each.folder.id, exc_info=True)
-                    each.become(FAILED, f"its process could not be started ({why}); resume it")
+                    reason = (isinstance(error, OSError) and error.strerror) or type(error).__name__
+                    _LOG.warning("study %s could not be begun", study.folder.id, exc_info=True)
+                    study.become(FAILED, f"its process could not be started ({reason}); resume it")
                     self._wake.set()  # there is room for the next one

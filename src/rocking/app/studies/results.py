@@ -33,9 +33,9 @@ def plain(value: Any) -> Any:
     """Return tables and arrays as plain values, with None where there is no finite number."""
     match value:
         case dict():
-            return {str(name): plain(each) for name, each in value.items()}
+            return {str(name): plain(item) for name, item in value.items()}
         case list() | tuple():
-            return [plain(each) for each in value]
+            return [plain(item) for item in value]
         case np.ndarray() | np.generic():
             if value.dtype.kind != "f" or np.isfinite(value).all():
                 return value.tolist()
@@ -54,7 +54,7 @@ def packed(values: np.ndarray) -> Any:
     kind = "float32"
     if values.dtype.kind != "f":
         ends = np.array([values.min(), values.max()])
-        kind = next(each for each in _WHOLE if (ends == ends.astype(each)).all())
+        kind = next(kind_of_number for kind_of_number in _WHOLE if (ends == ends.astype(kind_of_number)).all())
     data = base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
     return {"kind": kind, "shape": values.shape, "base64": data}
 
@@ -101,8 +101,8 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
     """Return the tables of an adaptive study."""
     return {
         name: [
-            {"name": title, "unit": each.unit, "words": each.meaning, "values": each.values}
-            for title, each in table.columns.items()
+            {"name": title, "unit": column.unit, "words": column.meaning, "values": column.values}
+            for title, column in table.columns.items()
         ]
         for name, table in study.answer.tables.items()
     }
@@ -111,16 +111,16 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
 def product_result(study: OpenStudy) -> dict[str, Any]:
     """Return the counts of plain histories."""
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
-    known = modes != -3
+    computed = modes != -3
     with warnings.catch_warnings():  # where no motion leaves the body standing there is no median
         warnings.simplefilter("ignore", RuntimeWarning)
-        median = np.nanmedian(np.where(known & (modes < 0), peaks, np.nan), axis=1)
+        median = np.nanmedian(np.where(computed & (modes < 0), peaks, np.nan), axis=1)
     return {
         **coordinates(study, motions="motion", bodies="body", scales="scale", slenderness_angles="slenderness_angle"),
-        "shares": [mode_shares(each) for each in modes],
+        "shares": [mode_shares(mode) for mode in modes],
         "cells": {
-            "computed": known.sum(axis=1),
-            "lifted": (known & (modes > -2)).sum(axis=1),
+            "computed": computed.sum(axis=1),
+            "lifted": (computed & (modes > -2)).sum(axis=1),
             "overturned": (modes >= 0).sum(axis=1),
             "median_peak": median,
         },
@@ -137,14 +137,14 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     curves = []
     for k, label in enumerate(job.problem.restitutions):
         spectra = study.dataset(k)
-        for place, angle in enumerate(job.study.coordinates["slenderness_angle"].values):
-            low, middle, high = fractiles(spectra, place)
-            mode = modes[k][:, place]
+        for index, angle in enumerate(job.study.coordinates["slenderness_angle"].values):
+            low, middle, high = fractiles(spectra, index)
+            mode = modes[k][:, index]
             with np.errstate(invalid="ignore"):  # NaN without a computed value
                 share = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
             curves.append({
                 "restitution": label, "angle": angle, "low": low, "median": middle, "high": high, "overturned": share,
-                "coefficient": coefficient[place, :, k] if coefficient.ndim > 2 else coefficient[place],
+                "coefficient": coefficient[index, :, k] if coefficient.ndim > 2 else coefficient[index],
             })  # fmt: skip
     return {
         **coordinates(study, x="period", angles="slenderness_angle", motions="motion", semi_diagonals="semi_diagonal"),
@@ -155,10 +155,10 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
 
 def outcomes_result(study: OpenStudy) -> dict[str, Any]:
     """Return the outcomes of a study without a picture, `OutcomesResult`."""
-    known = study.job.study.coordinates
+    coordinates = study.job.study.coordinates
     return {
-        "dimensions": [coordinate(study, name) for name in study.axes if name in known],
-        "shares": [mode_shares(each) for each in by_restitution(study, "mode")],
+        "dimensions": [coordinate(study, name) for name in study.axes if name in coordinates],
+        "shares": [mode_shares(mode) for mode in by_restitution(study, "mode")],
         "tables": {} if study.job.study.search is None else tables_of(study),
     }
 
@@ -220,8 +220,8 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
         "analyses": [
-            {"restitution": label, **_analysis(one, question.export.crossing_curves, unit)}
-            for label, one in study.analyses.items()
+            {"restitution": label, **_analysis(analysis, question.export.crossing_curves, unit)}
+            for label, analysis in study.analyses.items()
         ],
     }
 
@@ -261,8 +261,8 @@ def _fine(levels: FloatArray) -> FloatArray:
 def _fit(fit: Any, shared: Any) -> dict[str, Any]:
     scarce = fit.counts.scarcity if fit.counts.is_clustered else ""
     if shared is not None:
-        known = {"exists": True, "intervals_hold": False, "scarcity": ""}
-        return {**fit.summary(), **shared.facts, **known}
+        facts = {"exists": True, "intervals_hold": False, "scarcity": ""}
+        return {**fit.summary(), **shared.facts, **facts}
     return {**fit.summary(), "exists": fit.exists, "intervals_hold": fit.exists and not scarce, "scarcity": scarce}
 
 
@@ -318,7 +318,7 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
     document = study.job.document
     kind = document.kind
     if kind == "minimum-acceleration":
-        lost = [np.empty(0), *(each.lost_contact for each in study.answer.value if each is not None)]
+        lost = [np.empty(0), *(step.lost_contact for step in study.answer.value if step is not None)]
         contact = contact_words(np.concatenate(lost))
     else:
         contact = contact_words(lost_contact(study.raw))

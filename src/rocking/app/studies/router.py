@@ -120,8 +120,8 @@ async def study_result(request: Request, study: str) -> Response:
     """Return the result of a finished study."""
     manager = _studies(request)
     manager.finished(study)
-    known = manager.answers.known((study, "result"))
-    data = known if known is not None else await heavy(request, _result, manager, study)
+    cached = manager.answers.known((study, "result"))
+    data = cached if cached is not None else await heavy(request, _result, manager, study)
     return Response(data, media_type="application/json")
 
 

@@ -78,9 +78,9 @@ def test_hostile_jobs_are_refused(tables, map_job):
 
 @pytest.mark.parametrize("file", ["/etc/passwd", "../x.txt", None])
 def test_a_vertical_part_in_a_file_is_refused_unread(file, map_job):
-    with pytest.raises(InvalidValueError, match=r"motions\.vertical_file names a file, which a page cannot do"):
+    with pytest.raises(InvalidValueError, match=r"motions\.vertical_file names a file, which is not allowed here"):
         JobDocument.of(map_job(motions=[{"records": [SHA], "vertical_file": file}]))
-    with pytest.raises(InvalidValueError, match=r"motions\.x names a file, which a page cannot do"):
+    with pytest.raises(InvalidValueError, match=r"motions\.x names a file, which is not allowed here"):
         JobDocument.of(map_job(motions=[{"x": {"record": file}, "y": {"record": file}}]))
     with pytest.raises(InvalidValueError, match=r"motions\.files is not allowed here; write one table of motions per"):
         JobDocument.of(map_job(motions=[{"records": [SHA], "files": {SHA: {"units": "g"}}}]))

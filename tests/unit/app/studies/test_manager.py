@@ -128,7 +128,7 @@ def test_too_many_histories_are_refused_with_the_number(tmp_path, map_job, idle)
         manager.create(None, map_job(7))
     refined = map_job(restitution={"model": "ked"})
     refined["map"]["refine"] = 12
-    with pytest.raises(TooLarge, match="histories"):
+    with pytest.raises(TooLarge, match="simulations"):
         manager.create(None, refined)
     huge = map_job()
     huge["map"]["x"]["count"] = huge["map"]["y"]["count"] = 10_000_000
@@ -238,7 +238,7 @@ def test_nothing_is_finished_that_is_not(map_job, idle):
     """Results of a study that waits are refused with how far it is."""
     manager = idle()
     study = manager.create(None, map_job())
-    with pytest.raises(Refused, match="waiting, not done: 0 of 72 histories"):
+    with pytest.raises(Refused, match="is waiting: 0 of 72 simulations"):
         manager.finished(study)
 
 
