@@ -230,7 +230,7 @@ class QuestionDesk:
                 continue
             if question.id == folder.name:
                 if question.state == "running" and question.starts >= _MOST_STARTS:
-                    message = f"the server ended {question.starts} times during the run; the run may need more memory than available"
+                    message = f"the server ended {question.starts} times during the run; it may need more memory"
                     question = replace(question, state="refused", message=message)
                 runs.append(replace(question, state="waiting") if question.state == "running" else question)
         return runs

@@ -78,7 +78,7 @@ def test_studies_of_a_closed_server_go_on_by_themselves(tmp_path, records, long_
     manager.close()
     told = [json.loads((tmp_path / "studies" / study / "meta.json").read_text()) for study in studies]
     assert [each["state"] for each in told] == ["interrupted", "interrupted", "cancelled"]
-    assert all("when the server starts again" in each["message"] for each in told[:2])
+    assert all("with the next server" in each["message"] for each in told[:2])
     again = StudyManager(tmp_path, Limits(), records, workers=1)
     assert [again.get(study)["state"] for study in studies] in (
         ["waiting", "waiting", "cancelled"], ["running", "waiting", "cancelled"],
