@@ -238,9 +238,8 @@ def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
     parameters = {}
     for name, parameter in inspect.signature(kind).parameters.items():
         unit, text = PARAMETERS.get(name, ("-", name.replace("_", " ")))
-        default = (
-            None if parameter.default is inspect.Parameter.empty else parameter.default
-        )  # None: a value must be given
+        # None: a value must be given
+        default = None if parameter.default is inspect.Parameter.empty else parameter.default
         unlimited = isinstance(default, float) and math.isinf(default)
         parameters[name] = {"unit": unit, "words": text, "default": UNLIMITED if unlimited else default}
     return parameters
