@@ -37,6 +37,7 @@ RULES = {
     "chain of semicolons": r";[^.;\n]{3,}(?:\n[^.;\n]+)*;",
 }
 """Rules of this project, as regular expressions; more of proselint are checked in the manual."""
+PLAIN = re.compile(r"(?i)\bat least\b|\bleast[ -]squares\b")  # words in their usual meaning
 CODE = re.compile(r"`[^`]*`|\{[^{}]*\}|\$[^$]*\$|https?://\S+|\[@[^\]]*\]")
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|\${2}|:{3,}).*?^\1\2`*$|^---\n.*?^---$", re.M | re.S)
 
@@ -118,7 +119,7 @@ def hits(path: Path) -> Iterator[Hit]:
     """Yield the hits of all rules in one file."""
     checks = _checks()
     for text in texts(path):
-        plain = CODE.sub(lambda code: "X" + "\n" * code[0].count("\n"), text.text)
+        plain = CODE.sub(lambda code: "X" + "\n" * code[0].count("\n"), PLAIN.sub("X", text.text))
         for check in checks:
             if check.path not in RULES and text.kind != "manual":
                 continue
