@@ -18,7 +18,7 @@ QUESTIONS = {
     "resume a campaign": "Resume a campaign",
     "center of mass": "Set the mass, the centre of mass and the inertia",  # another spelling
     "draw overturing map": "Compute an overturning map",  # a misspelling
-    "which command": "Choose a tool",
+    "which command": "Command line",
     "meaning of margin": "Read the results",
 }
 
