@@ -214,7 +214,7 @@ def refined_map_picture(
         Result of `boundary` on the same axes, one or more.
     window : pair of pairs of float, optional
         Limits along x and along y of an enlarged second panel, in the units of the axes.
-    words : str
+    title : str
         Text above the map, such as motion and restitution.
 
     Returns
