@@ -44,7 +44,7 @@ def offered(line, shell="bash"):
         ("rocking map --set settings.o", {"settings.order="}, "settings.gravity="),
         ("rocking simulate --set res", {"response.initial_rotation=", "restitution.value="}, "settings.order="),
         ("rocking map --set ", {"map.refine=", "motion.scale="}, "restitution.value="),
-        ("rocking simulate --set response.f", {"response.initial_rotation=", "response.friction="}, "map.x="),
+        ("rocking simulate --set response.f", {"response.friction="}, "map.x="),
     ],
 )
 def test_names_are_completed(line, some, other):
