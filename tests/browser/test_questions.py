@@ -44,7 +44,7 @@ def test_does_it_stand(open_page: Callable[..., Any], shot: Callable[..., Any], 
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
     shot(page, "decide")
     page.reload()
-    page.locator("#view-decide").get_by_role("button", name="Show Does").click()
+    page.locator("#view-decide").get_by_role("button", name="Show Assessment").click()
     expect(page.get_by_test_id("verdict")).to_have_text(verdict)
 
 
@@ -139,7 +139,7 @@ def test_the_paper(open_page: Callable[..., Any], tmp_path: Path) -> None:
         outcome.get_by_role("button", name="Report (PDF)").click()
     told.value.save_as(tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
-    expect(outcome.locator("pre")).to_have_text("rocking reproduce --output paper")
+    expect(outcome.locator("pre")).to_have_text("rocking reproduce -o reproduce")
 
 
 def test_records_are_sent_together(open_page: Callable[..., Any], tmp_path: Path) -> None:
