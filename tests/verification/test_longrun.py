@@ -80,6 +80,7 @@ def cascade(system, doublings):
     return bifurcations
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="6e-10")
 @pytest.mark.parametrize("case", BRANCHES)
 def test_bifurcations_of_the_symmetric_branch(case):
     """Fold, pitchfork and two period doublings to the digits of the table, also where the pitchfork is subcritical."""
@@ -89,12 +90,14 @@ def test_bifurcations_of_the_symmetric_branch(case):
     assert values == pytest.approx(BRANCHES[case], abs=6e-10)
 
 
+@pytest.mark.verifies("negative control", "the branches of another restitution model")
 def test_the_other_model_is_another_branch():
     """Negative control: with KED's coefficient the table of Housner is rejected by every column."""
     values = np.array([item.value for item in cascade(system_of(2, 1.2, 2, "ked"), 2)])
     assert np.abs(values / BRANCHES[2, "H", 2] - 1.0).min() > 0.02
 
 
+@pytest.mark.verifies("computed anew", "independent code of 40 digits", within="1e-9")
 def test_doubling_cascade_of_a_slender_body():
     """Period doublings of 2-, 4-, 8- and 16-cycles; their ratios approach Feigenbaum's 4.6692."""
     values = [item.value for item in cascade(system_of(4, 1.5, 2.0, 0.5, linear=True), 4)][1:]
@@ -110,6 +113,7 @@ def test_doubling_cascade_of_a_slender_body():
     assert gaps[:-1] / gaps[1:] == pytest.approx([4.781, 4.691], abs=1e-3)
 
 
+@pytest.mark.verifies("computed anew", "independent code of 40 digits", within="1e-9")
 @pytest.mark.parametrize(
     ("amplitude", "frequency", "restitution"),
     [
@@ -126,6 +130,7 @@ def test_pitchforks_of_slender_bodies(amplitude, frequency, restitution):
     assert branch.first("pitchfork").value == pytest.approx(amplitude, abs=1e-9)
 
 
+@pytest.mark.verifies("closed form", "the symmetric orbit of slender bodies", within="1e-10")
 @pytest.mark.parametrize(
     ("frequency", "restitution", "fold"),
     [(2, 0.9, 0.1129065769837577850), (3, 0.9, 0.1211540103402213183917), (5, 0.85, 0.1936330474438083581761)],
@@ -149,6 +154,7 @@ TWO_PARAMETERS = {
 }
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="6e-10")
 @pytest.mark.parametrize("frequency", TWO_PARAMETERS)
 def test_bifurcations_over_frequency(frequency):
     """Slenderness 4 with KED at other frequencies; the branch is reached by continuation in frequency from 2."""
@@ -162,6 +168,7 @@ def test_bifurcations_over_frequency(frequency):
     assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(TWO_PARAMETERS[frequency], abs=6e-10)
 
 
+@pytest.mark.verifies("closed form", "Spanos and Koh (1984)", within="1e-10")
 def test_orbits_in_closed_form():
     """Speed of the symmetric orbit of slender bodies; determinant r^2; modulus r of the multipliers of a focus."""
     for (amplitude, frequency, r), speed in {
@@ -176,6 +183,7 @@ def test_orbits_in_closed_form():
         )
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="1e-9")
 def test_speed_dependent_restitution():
     """r = .95 - .2 |rate| / p: determinant r R' with R' = d(r v) / dv; with r in place of R' it would be .8144."""
     plain = system_of(4, 1.5, 3.0, 0.95)
@@ -200,6 +208,7 @@ CASES = st.tuples(
 )  # fmt: skip
 
 
+@pytest.mark.verifies("computed anew", "central differences", within="1e-5")
 @settings(max_examples=40, deadline=None)
 @given(CASES)
 def test_derivatives_are_those_of_differences(case):
@@ -235,6 +244,7 @@ def test_derivatives_are_those_of_differences(case):
         )
 
 
+@pytest.mark.verifies("computed anew", "central differences", within="1e-6")
 @pytest.mark.parametrize("linear", [False, True])
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_derivatives_by_parameters_of_a_rectangle(name, linear):
@@ -257,6 +267,7 @@ EXPONENTS = {
 }
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853")
 @pytest.mark.parametrize("case", EXPONENTS)
 def test_exponents_of_chaos(case):
     """Within three standard errors of both programs; the sum rule to 1e-10 in each run."""
@@ -290,6 +301,7 @@ REGULAR = {
 }  # fmt: skip
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="2e-10")
 @pytest.mark.parametrize("case", REGULAR)
 def test_exponents_of_periodic_orbits(case):
     """From the multipliers of the symmetric orbit, the 2-cycle and the 4-cycle: ten digits."""
@@ -310,6 +322,7 @@ def test_exponents_of_periodic_orbits(case):
     assert exact.exponents[0] / exact.system.p == pytest.approx(value, abs=2e-10)
 
 
+@pytest.mark.verifies("behaviour")
 def test_a_rest_erases_memory():
     """An orbit that comes to rest in each period has exponents of minus infinity: it is never called chaotic."""
     system = system_of(2, 1.1, 2.0, "housner")
@@ -329,6 +342,7 @@ BASINS = {
 }
 
 
+@pytest.mark.verifies("computed anew", "two independent programs, cell for cell")
 @pytest.mark.parametrize("case", BASINS)
 def test_basins_cell_for_cell(case):
     """Counts of 10,000 cells over 120 impacts as by two programs; no cell changes with the step error."""
@@ -341,6 +355,7 @@ def test_basins_cell_for_cell(case):
     assert low < fraction < high
 
 
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="1e-9")
 def test_the_orbit_to_hit_by_simulation():
     """A stable 4-cycle of slenderness 2 is kept for 2,000 periods to 1e-9."""
     system = system_of(2, 2.986, 2, "housner")
@@ -361,6 +376,7 @@ def test_the_orbit_to_hit_by_simulation():
     assert np.abs(np.sort(speeds[-4:]) - np.sort([speed for _, speed in cycle])).max() < 1e-9
 
 
+@pytest.mark.verifies("second engine", "the same engine for other instruction sets", within="1e-9")
 def test_engines_of_all_processors_agree():
     """Every instruction set gives the same verdicts, and the same bits on two that fuse multiplications."""
     from rocking.dynamics import _longrun
@@ -386,6 +402,7 @@ def test_engines_of_all_processors_agree():
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(tables["avx2"], tables["avx512"], strict=True))
 
 
+@pytest.mark.verifies("closed form", "Lenci and Rega (2006); the half sine", within="1e-13")
 def test_thresholds_in_closed_form():
     """Lenci and Rega (2006) and the half sine; Melnikov's is the limit of the exact one for r near 1."""
     assert slender_thresholds(2, 0.5).heteroclinic == pytest.approx(1.386750490563072805, rel=1e-14)
@@ -395,6 +412,7 @@ def test_thresholds_in_closed_form():
     assert near.melnikov == pytest.approx(near.heteroclinic, rel=1e-5)
 
 
+@pytest.mark.verifies("invariant", "the same ratios at another size")
 def test_basins_and_rest_in_other_units():
     """A body ten times as large, in slow motion, ends as the small one: only ratios count."""
     small, large = (
@@ -405,6 +423,7 @@ def test_basins_and_rest_in_other_units():
     assert kinds[0] == kinds[1]
 
 
+@pytest.mark.verifies("damage")
 def test_bad_input_is_refused():
     """Values out of range name their parameter; orbits of asymmetric bodies have an even number of impacts."""
     with pytest.raises(ValueError, match="period"):
@@ -421,6 +440,7 @@ def test_bad_input_is_refused():
         bifurcation(system, [1.0, 2.0], starts=np.zeros((2, 2)))
 
 
+@pytest.mark.verifies("closed form", "the fold of the branch")
 def test_sweeps_with_memory_show_hysteresis():
     """Below uplift a body at rest stays at rest, while a sweep down keeps the large orbit to its fold."""
     system = system_of(4, 1.0, 3.0, "ked")
