@@ -19,7 +19,7 @@ TEMPLATE = FOLDER / "messages.pot"
 DATE = datetime(2000, 1, 1, tzinfo=UTC)  # of every compiled catalogue: files change with their messages alone
 HEADER = 'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"\n'
 LABEL = (
-    r'\b(?:aria-label|title|placeholder|alt|aria-description|aria-valuetext|label|help|caption|lead|words)="([^"\0]*)"'
+    r'\b(?:aria-label|title|placeholder|alt|aria-description|aria-valuetext|label|help|caption|lead|text)="([^"\0]*)"'
 )
 """Attributes of a template that are read."""
 STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
