@@ -161,7 +161,7 @@ def _solid() -> Any:
     edges, corners = SOLID.base.edges, SOLID.base.corners
     impacts = [
         rk.restitution.space.impact_in_space(
-            SOLID, -edges[0].direction, pivot=edges[0], foot=foot, model=model
+            SOLID, -edges[0].direction, pivot=edges[0], onto=foot, model=model
         ).velocity
         for foot in (edges[2], corners[3])
         for model in ("housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point")
