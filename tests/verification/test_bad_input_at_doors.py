@@ -116,9 +116,9 @@ def test_no_poisoned_record(part: str, poison: Any) -> None:
 @pytest.mark.verifies("behaviour")
 def test_the_value_is_named() -> None:
     """The message shows the number that was given and says what it may have been."""
-    with pytest.raises(RockingError, match=r"rotation.*got 15.*degrees"):
+    with pytest.raises(RockingError, match=r"rotation.*got 15.*radians"):
         rk.free_rocking(BODY, 15.0)
-    with pytest.raises(RockingError, match=r"angular_velocity.*got 720.*degrees"):
+    with pytest.raises(RockingError, match=r"angular_velocity.*got 720.*radians"):
         rk.simulate(BODY, MOTION, angular_velocity=720.0)
     with pytest.raises(RockingError, match=r"restitution.*got 85.*percent"):
         rk.simulate(BODY, MOTION, 85.0)

@@ -33,7 +33,7 @@ def models(
     if name is not None and name not in known:
         near = checks.nearest(name, known)
         raise UnknownModelError(
-            "no restitution model named {value}; there are {names}", parameter="restitution", value=name,
+            "unknown restitution model {name!r}; models: {names}", parameter="restitution", name=name,
             names=", ".join(known), hint=near,
         )  # fmt: skip
     deliver(_Models({key: kind for key, kind in known.items() if name in {None, key}}), as_json=as_json)

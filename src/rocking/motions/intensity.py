@@ -367,7 +367,7 @@ class IntensityMeasure:
         if self.power == 0:
             raise InvalidValueError(
                 "{parameter} must grow with the scale factor, got {value}",
-                parameter="measure", value=self.name, hint='use analysis="cloud"',
+                parameter="im", value=self.name, hint='use analysis="cloud"',
             )  # fmt: skip
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:

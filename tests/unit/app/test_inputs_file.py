@@ -326,11 +326,11 @@ HOSTILE = {
     "two inputs": (packed([("a.toml", TOML), ("b.toml", TOML)]), 422, "got 2"),
     "no text": (packed([("response.toml", b"\xff\xfe")]), 422, "UTF-8"),
     "no record": (packed([("response.toml", TOML)]), 422, "is not stored here"),
-    "a record that is none": (packed([("response.toml", TOML), ("wave.txt", b"hello")]), 422, "not recognised"),
+    "a record that is none": (packed([("response.toml", TOML), ("wave.txt", b"hello")]), 422, "unknown format"),
     "an infinite record": (packed([("response.toml", TOML), ("wave.txt", b"0 0\n0.01 1e308")]), 422, "within 1e+06"),
     "an empty record": (packed([("response.toml", TOML), ("wave.txt", b" ")]), 422, "empty"),
     "bad inputs": (packed([("response.toml", TOML + "furlong = 1\n"), ("wave.txt", COLUMN)]), 422, "furlong"),
-    "it names itself": (packed([("a.toml", TOML.replace("wave.txt", "a.toml"))]), 422, "not recognised"),
+    "it names itself": (packed([("a.toml", TOML.replace("wave.txt", "a.toml"))]), 422, "unknown format"),
     "the host's file": (packed([("a.toml", TOML.replace("wave.txt", "/etc/passwd"))]), 422, "not stored here"),
 }
 

@@ -323,7 +323,7 @@ def test_models_in_space_that_need_the_distribution_refuse():
     with pytest.raises(InvalidValueError, match=r"needs the distribution of mass.*housner-3d"):
         edge_coefficient(body, "ked-3d")
     edges = body.base.edges
-    result = impact_in_space(body, -edges[0].direction, pivot=edges[0], foot=body.base.opposite(0), model="housner-3d")
+    result = impact_in_space(body, -edges[0].direction, pivot=edges[0], onto=body.base.opposite(0), model="housner-3d")
     with pytest.raises(InvalidValueError, match="needs the distribution of mass"):
         unit_energies(result)
     with pytest.raises(InvalidValueError, match="needs the distribution of mass"):

@@ -145,7 +145,7 @@ REFUSED = {
         "SIZE --restitution raises.py:Mine": "ZeroDivisionError",
         "SIZE --restitution lacks.py:Mine": "has no restitution model",
         "SIZE --restitution fails.py:Mine": "fails.py, line 5: ZeroDivisionError",
-        "SIZE --recommend --restitution fixed:r=0.9": "a value given by hand",
+        "SIZE --recommend --restitution fixed:r=0.9": "is a fixed value and cannot be compared",
         "--width -1 --height 4": "--width must be a number > 0 m, got -1",
         "--width 0 --height 4": "--width must be a number > 0 m, got 0",
         "--width nan --height 4": "--width must be a finite number [m]",
@@ -351,7 +351,7 @@ REFUSED = {
         "SIZE PULSE --samples 9 --set minimum.samples=20": "--samples and --set minimum.samples say the same",
     },
     "models": {
-        "kde": "no restitution model named 'kde'",
+        "kde": "unknown restitution model 'kde'",
         "hausner": "did you mean 'housner'",
     },
     "record show": {

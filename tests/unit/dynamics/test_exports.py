@@ -299,7 +299,7 @@ def test_rounded_digits_are_seen():
 def test_what_is_no_file_is_refused(kind, write, tmp_path):
     """A folder, a file in none, and what is no path: one sentence, nothing written."""
     pytest.importorskip("h5netcdf")
-    folder, none = "the path of a file, got the folder", r"no folder .*none to write out"
+    folder, none = "the path of a file, got the folder", r"no folder .*none for out"
     refused = [(tmp_path, folder), ("", folder), (tmp_path / "none" / "out", none)]
     refused += [(path, "path must be the path of a file, got") for path in (None, 3, b"out.csv", ["out.csv"])]
     for path, words in refused:

@@ -146,7 +146,7 @@ def test_a_command_and_a_server_refuse_the_file(own, run, monkeypatch):
     """A file that is not there, or is no code, stops every command, serve too, with words and no traceback."""
     monkeypatch.setattr("rocking.cli.serve._serve", lambda *_, **__: pytest.fail("it serves"))
     path = own("(")
-    for words in (["cor", "--width", "1", "--height", "4"], ["serve", "--no-browser"]):
+    for words in (["restitution", "--width", "1", "--height", "4"], ["serve", "--no-browser"]):
         code, _, err = run(*words)
         assert (code, f"rocking: {path}" in err) == (2, True)
     path.unlink()

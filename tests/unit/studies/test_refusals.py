@@ -153,5 +153,5 @@ def test_what_looks_alike_is_taken():
     assert checked_levels("levels", 1.5, "m/s2").tolist() == [1.5]
     assert checked_levels("levels", (1.5, 1.6, 6.0), "m/s2").tolist() == [1.5, 1.6, 6.0]
     assert MotionList(SINE)[0] is SINE
-    with pytest.raises(RockingError, match="no restitution model"):
+    with pytest.raises(RockingError, match="unknown restitution model"):
         named_restitutions({"a": "ked", "b": "nonsense"})

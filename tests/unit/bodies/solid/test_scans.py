@@ -364,7 +364,7 @@ def test_thin_parts_stay_solid(tmp_path):
 def test_on_the_command_line(tmp_path, run, printed):
     """An open statue in mm, by one command: what was mended is printed; refusals name the options as they are typed."""
     trimesh.Trimesh(1000.0 * V[:-1], SIDES, process=False).export(tmp_path / "statue.stl")
-    command = ["cor", tmp_path / "statue.stl", "--units", "mm"]
+    command = ["restitution", tmp_path / "statue.stl", "--units", "mm"]
     assert "! closed the open bottom" in printed(*command)
     assert "--set body.repair=safe closes an open bottom" in run(*command, "--set", "body.repair=none")[2]
     assert "leaves nothing hollow" in run(*command, "--set", "body.wall=200")[2]

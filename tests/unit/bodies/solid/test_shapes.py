@@ -195,7 +195,7 @@ def test_moments_add_up():
     [
         (lambda: box(1.0, 0.0, 1.0), "depth must be > 0"),
         (lambda: box(math.nan, 1.0, 1.0), "width must be finite"),
-        (lambda: cylinder(1e10, 1.0), "wrong unit"),
+        (lambda: cylinder(1e10, 1.0), "check the unit"),
         (lambda: ellipsoid(1, 1, 1, cut_below=0.6, cut_above=0.5), "leave nothing"),
         (lambda: sphere_cap(1.0, 1.5), "height must be in"),
         (lambda: revolution([(1, 0), (-1, 1)]), "radii"),

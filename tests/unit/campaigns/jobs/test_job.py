@@ -242,7 +242,7 @@ ELSEWHERE = {
     "falling": ("stripes", "from = 2, to = 10", "from = 10, to = 2",
         r"fragility: levels must increase \[m/s2\] from value to value; reverse the order"),
     "measure": ("stripes", '"pga"', '"pgaa"', r"fragility: measure must be one of pga, .*got 'pgaa'"),
-    "ratio": ("stripes", '"pga"', '"pgv/pga"', r"fragility: measure must be one that grows with the motion"),
+    "ratio": ("stripes", '"pga"', '"pgv/pga"', r"fragility: im must grow with the scale factor"),
     "states": ("stripes", "limit_states = [0.3]", "limit_states = [0.3, -1]",
         r"fragility\.limit_states\[1\] must be a number > 0, got -1"),
     "factor": ("stripes", "limit_states", "scale = 2\nlimit_states", r'fragility\.scale goes with kind = "cloud" only'),
