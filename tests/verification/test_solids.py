@@ -38,7 +38,7 @@ def over_the_base(solid):
     base = solid.base
     start = base.edge(3 if isinstance(base, SupportPolygon) else 0.0)
     foot = base.opposite(3) if isinstance(base, SupportPolygon) else base.edge(np.pi)
-    return impact_in_space(solid, -start.direction, pivot=start, foot=foot, model="ked-3d")
+    return impact_in_space(solid, -start.direction, pivot=start, onto=foot, model="ked-3d")
 
 
 @pytest.mark.verifies(

@@ -168,7 +168,7 @@ def test_doubted_and_refused() -> None:
         RockingParameters.of_body(body, RandomRestitution.normal(0.9, 0.05, seed=1), 9.81)
     with pytest.warns(PlausibilityWarning, match="right foot lies outside"):
         restitution_distribution(body, calibration=one_point(1.0, 0.0, 0.02))
-    with pytest.raises(InvalidValueError, match=r"right foot must be in \[0, 0\.959\d+\], and 100 % of the"):
+    with pytest.raises(InvalidValueError, match=r"right foot must be in \[0, 0\.959\d+\], and 100 % of its"):
         RockingParameters.of_body(body, SampledRestitution([0.97, 0.98], seed=1), 9.81)
 
     class Own(RandomRestitution):

@@ -189,7 +189,7 @@ DOUBTS = {
     "b/h": ({"slenderness_ratio": 0.6}, "h/b = 0.6 is outside 1 to 30"),
     "hardly known": ({"uncertainty": 0.2}, "r of 0.2 is outside"),
     "known to the last digit": ({"uncertainty": 1e-5}, "r of 1e-05 is outside"),
-    "a loss": ({"r": 0.1}, "0.1 is less than 0.25"),
+    "a loss": ({"r": 0.1}, "0.1 is below 0.25"),
 }
 
 

@@ -156,7 +156,7 @@ def test_a_squat_block_is_outside_of_every_measurement():
     """Housner's equation gives r <= 0 below h/b = 1/sqrt(2): the model does not hold, and the rest is extrapolation."""
     found = recommend(rk.Block(width=1.0, height=0.6))
     assert found["housner"].standing.value == "does not hold"
-    assert "stops (r = 0)" in found["housner"].reasons[0]
+    assert "the body stops at the impact (r = 0)" in found["housner"].reasons[0]
     assert found["housner"].coefficients == {}
     assert math.isnan(found["housner"].energy_left)
     assert found.outside == ("h/b = 0.6 is outside the measured range 1.5 to 9.75",)
@@ -372,7 +372,7 @@ def test_an_own_model_takes_part():
         (lambda: recommend(SLENDER, models=0.9), UnknownModelError, "got 0.9"),
         (lambda: recommend(SLENDER, models=[Calibrated()]), InvalidValueError, "rename your model"),
         (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=[]), InvalidValueError, "one or more models"),
-        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=0.9), UnknownModelError, "called 0.9"),
+        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=0.9), UnknownModelError, "unknown restitution model in space 0.9"),
         (lambda: recommend(SLENDER, measurements=[0.9]), InvalidValueError, "measurements must be a DataSet"),
         (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), 1.0), InvalidValueError, "plane bodies only"),
         (lambda: recommend(SLENDER)["husner"], KeyError, "husner"),
