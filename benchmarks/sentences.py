@@ -17,14 +17,14 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 PROSE = runpy.run_path(str(ROOT / "packaging" / "prose.py"))
 DOCS = {
-    "manual: get started": ("index.md", "install.md", "choose_a_tool.md", "read_results.md"),
-    "manual: tutorials": ("tutorials/*.md",),
-    "manual: how-to guides": ("how_to/*.md",),
-    "manual: command line": ("commands/*.md",),
-    "manual: reference": ("questions.md", "terms.md", "record_formats.md", "conventions.md", "application.md"),
-    "manual: background": ("theory/*.md",),
-    "manual: quality": ("limits.md", "verified.md", "speed.md", "predictions.md", "which_model.md", "measurements.md"),
-    "manual: development": ("architecture.md", "extending.md", "contributing.md", "releasing.md", "governance.md"),
+    "manual: get started": ("index", "install", "choose_a_tool", "read_results"),
+    "manual: tutorials": ("tutorials/*",),
+    "manual: how-to guides": ("how_to/*",),
+    "manual: command line": ("commands/*",),
+    "manual: reference": ("questions", "terms", "record_formats", "conventions", "application"),
+    "manual: background": ("theory/*",),
+    "manual: quality": ("limits", "verified", "speed", "predictions", "which_model", "measurements"),
+    "manual: development": ("architecture", "extending", "contributing", "releasing", "governance"),
 }
 """Pages of the manual by their part, below docs/."""
 FEWEST_WORDS = 4  # of a sentence that is drawn
@@ -57,7 +57,7 @@ def sources() -> dict[str, list[tuple[str, int, str]]]:
 
     add("README", [ROOT / "README.md"])
     for part, patterns in DOCS.items():
-        add(part, [path for pattern in patterns for path in sorted((ROOT / "docs").glob(pattern))])
+        add(part, [path for pattern in patterns for path in sorted((ROOT / "docs").glob(f"{pattern}.md"))])
     add("changes", [ROOT / "CHANGELOG.md", *sorted((ROOT / "docs/changes").glob("*.md"))])
     python = [path for path in PROSE["files"]([ROOT / "src"]) if path.suffix == ".py"]
     add("docstrings: public", python, "docstrings", r"\n +Parameters\n")

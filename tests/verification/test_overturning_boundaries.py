@@ -75,7 +75,7 @@ def test_full_sines_with_their_gap(omega, agreement):
 @pytest.mark.verifies("closed form", "modes I and II of Zhang and Makris 2001", within="1e-10")
 def test_the_thin_gap_of_a_slow_sine():
     """REF: at Omega = 1 mode I begins at its lower boundary and mode II ends a gap of 0.14 % that no sample met."""
-    found = crossings(rk.pulses.sine(1.0, period(1)), 0.9, points=50)
+    found = crossings(rk.pulses.sine(1.0, period(1)), 0.9, samples=50)
     assert found.resolution > 0.05
     assert found.ratio[[0, 2]] == pytest.approx([LOWER_AT_ONE, SINE_NO_IMPACT[1]], rel=1e-10, abs=0.0)
     assert found.modes.tolist() == [[-1, 1], [1, -1], [-1, 0]]
