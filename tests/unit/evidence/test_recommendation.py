@@ -372,7 +372,7 @@ def test_an_own_model_takes_part():
         (lambda: recommend(SLENDER, models=0.9), UnknownModelError, "got 0.9"),
         (lambda: recommend(SLENDER, models=[Calibrated()]), InvalidValueError, "rename your model"),
         (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=[]), InvalidValueError, "one or more models"),
-        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=0.9), UnknownModelError, "unknown restitution model in space 0.9"),
+        (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), models=0.9), UnknownModelError, "model in space 0.9"),
         (lambda: recommend(SLENDER, measurements=[0.9]), InvalidValueError, "measurements must be a DataSet"),
         (lambda: recommend(Solid(box(1.0, 1.0, 4.0)), 1.0), InvalidValueError, "plane bodies only"),
         (lambda: recommend(SLENDER)["husner"], KeyError, "husner"),
