@@ -135,8 +135,7 @@ def test_a_rim_nearly_flat_is_held_down(monkeypatch):
     assert held.outcome is Outcome.ROCKED
     assert 0.0 < held.trajectory.held < 0.02
     assert held.near_flat_passages > 0
-    assert "take many motions" in held.summary
-    assert "hopped or slipped" in held.summary
+    assert f"passed {held.near_flat_passages} times through a nearly flat position" in held.summary
     assert held.energy.closure < 1e-9
     monkeypatch.setattr(event_functions, "nearly_flat", lambda _body, _up: False)
     assert _reference(117).status is Status.LOST_CONTACT

@@ -182,6 +182,6 @@ def test_the_label_says_what_is_cut_off():
     words = " (of the distribution 9.78 % onto right cut off, where impacts would create energy)"
     assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
     assert str(many["restitution"].values[0]).endswith(words)
-    refused = r"restitution: the coefficient .* right foot .* 100 % of the distribution"
+    refused = r"restitution: the coefficient .* right foot .* 100 % of its distribution"
     with pytest.raises(InvalidValueError, match=refused):
         job_of("mean = 0.99\ndeviation = 0.001", "histories", body=text, rest="")

@@ -115,12 +115,12 @@ def test_the_same_bytes_whatever_the_chunks(text, tmp_path):
         (
             ".xlsx",
             "rocking.tables.rows.MOST_ROWS_OF_EXCEL",
-            "a sheet of Excel has 10 rows, these are 48 histories",
+            "a sheet of Excel has at most 10 rows, these are 48 histories",
         ),
         (
             ".mat",
             "rocking.tables.arrays.MOST_BYTES_OF_MATLAB",
-            "MATLAB files take arrays up to 2 GiB, these are 48 histories",
+            "MATLAB files allow arrays up to 2 GiB, these are 48 histories",
         ),
     ],
 )
