@@ -154,7 +154,7 @@ def _slid(random: np.random.Generator) -> dict[str, Any] | None:
     engine = DrawnContact(base, floor.segments(), law, settings).draws_from(random, truth)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        response = ContactResponse(real, floor, base, law, settings, floor.segments(), 1.0, engine.run())
+        response = ContactResponse(real, floor, base, law, settings, floor.segments(), 1.0, engine.run(), "")
     if max(engine.drawn, default=1.0) >= 1.0 or response.outcome.name in {"OVERTURNED", "FAILED"}:
         return None
     if len(response.impacts) < 6 or np.abs(response.rotation).max() < 0.1 * truth["alpha"]:

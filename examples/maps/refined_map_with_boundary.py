@@ -50,6 +50,6 @@ assert sides[0] != sides[1]
 # Left: the map. Right: the computed points in the marked region.
 
 picture = refined_map_picture(
-    points, lines, window=((1.6, 3.2), (1.8, 4.2)), words="sine pulse scaled; restitution 0.9"
+    points, lines, window=((1.6, 3.2), (1.8, 4.2)), title="sine pulse scaled; restitution 0.9"
 )
 write(picture, "refined_map_with_boundary.png")

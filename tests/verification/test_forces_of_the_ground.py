@@ -228,7 +228,7 @@ def test_a_ground_that_falls_twice_as_fast_as_gravity_is_told(engine: str) -> No
     up[50:80] = -2.0 * g
     for push in (0.0, 0.5):
         motion = rk.GroundMotion(push * np.sin(np.arange(200.0)), 0.01, vertical=up)
-        with pytest.warns(PureRockingWarning, match=r"(?s)pull.*rocking alone: .*if it may fly, .*: "):
+        with pytest.warns(PureRockingWarning, match=r"(?s)tensile.*Rocking alone: .*With flight.*: "):
             response = rk.simulate(LEANING, motion, 0.9, engine=engine)
         assert response.lost_contact
         assert response.least_force <= -1.0 + 1e-9
@@ -239,7 +239,9 @@ def test_a_ground_that_falls_twice_as_fast_as_gravity_is_told(engine: str) -> No
 def test_what_nobody_hears_is_not_followed_and_what_is_asked_is_followed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """The history that may fly is computed for a warning that is heard, not for one that is ignored, and once."""
     followed = []
-    monkeypatch.setattr(rk.dynamics.Response, "_flown", lambda response, friction: followed.append(friction) or "flew")
+    monkeypatch.setattr(
+        rk.dynamics.Response, "_flight_text", lambda response, friction: followed.append(friction) or "flew"
+    )
     up = np.full(80, -2.0 * g)
     motion = rk.GroundMotion(0.5 * np.sin(np.arange(80.0)), 0.01, vertical=up)
     response = rk.simulate(LEANING, motion, 0.9)
@@ -278,7 +280,9 @@ def test_batches_carry_the_same_bits() -> None:
     assert alone.least_force == float(found["least_force"][0, 3, 1, 1])
     lost = int(found["lost_contact"].sum())
     assert 0 < lost < found["lost_contact"].size
-    assert found.attrs["contact"].startswith(f"in {lost} of {found['lost_contact'].size} histories")
+    assert found.attrs["contact"].startswith(
+        f"the contact force becomes tensile in {lost} of {found['lost_contact'].size} histories"
+    )
     assert contact_words(found["lost_contact"].to_numpy() * 0.0) == ""
 
 

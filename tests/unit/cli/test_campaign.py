@@ -330,4 +330,4 @@ def test_help_says_the_exit_codes(run):
     for words in ((), ("check",), ("run",), ("status",), ("resume",), ("export",)):
         code, out, _ = run(*words, "--help")
         assert code == 0
-        assert all(word in out for word in ("Exit codes", "0 done", "2 bad input", "3 interrupted"))
+        assert all(word in out for word in ("Exit codes", "0 done", "2 invalid input", "3 interrupted"))

@@ -134,7 +134,7 @@ def test_what_is_named_and_cannot_be_used_is_refused(run, tmp_path):
         motions_of([MotionTable(records=["a/same.at2", "b/same.at2"])], InputFiles(tmp_path))
     with pytest.raises(InvalidValueError, match="named twice"):
         motions_of([MotionTable(records=[names[0], names[0]])], InputFiles(tmp_path))
-    with pytest.raises(RecordError, match="no file is named"):
+    with pytest.raises(RecordError, match="no file: 0 files"):
         read_records([])
 
 

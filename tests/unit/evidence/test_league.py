@@ -128,7 +128,7 @@ def test_models_within_six_in_bic_are_not_resolved():
     rows = [dataclasses.replace(row, bic=20.0 + k) for k, row in enumerate(league())]
     near = [dataclasses.replace(rows[0], bic=1.0), dataclasses.replace(rows[1], bic=6.9)]
     last = verdict([*near, dataclasses.replace(rows[2], bic=7.1), *rows[3:]])[-1]
-    told = last[last.index(":") + 2 : last.index(" lie within 6 in BIC")]
+    told = last[last.index("(BIC within 6): ") + 16 : last.index(". ")]
     assert told == ", ".join(row.name for row in near)
 
 

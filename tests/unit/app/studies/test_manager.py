@@ -132,7 +132,7 @@ def test_too_many_histories_are_refused_with_the_number(tmp_path, map_job, idle)
         manager.create(None, refined)
     huge = map_job()
     huge["map"]["x"]["count"] = huge["map"]["y"]["count"] = 10_000_000
-    with pytest.raises(TooLarge, match="200000000000000 histories"):
+    with pytest.raises(TooLarge, match="200000000000000 simulations"):
         manager.create(None, huge)
     assert len(list((tmp_path / "studies").iterdir())) == 1
 

@@ -247,7 +247,7 @@ def test_model_travels_with_its_source(own):
     ("source", "words"),
     [
         ("import nothing_of_that_name", "ModuleNotFoundError"),
-        ("x = 1", "has no restitution model Mine; it has none"),
+        ("x = 1", "has no restitution model Mine; its models: none"),
         ("def", "SyntaxError"),
     ],
 )

@@ -152,7 +152,7 @@ def test_stripes_are_multiple_stripes(finished, tmp_path):
     motions = SyntheticSet("pulse-like", 12, 4)
     wanted = fragility_analysis(BLOCK, motions, np.linspace(2, 10, 5), limit_states=(0.3,))
     folder = finished("stripes", 9)
-    found = analyses(folder)["ked"]
+    found = analyses(folder)["calibrated"]
     assert np.array_equal(found.responses.rotation, wanted.responses.rotation, equal_nan=True)
     assert found.summary() == wanted.summary()
     file = opened(folder, tmp_path)
@@ -174,7 +174,7 @@ def test_cloud_is_cloud(finished, tmp_path):
     """Cloud: the same outcomes and summary, and the intensities of the scaled motions beside them."""
     wanted = fragility_analysis(BLOCK, SyntheticSet("pulse-like", 12, 4), im="pgv", scale=2.0, analysis="cloud")
     folder = finished("cloud", 5)
-    assert analyses(folder)["ked"].summary() == wanted.summary()
+    assert analyses(folder)["calibrated"].summary() == wanted.summary()
     file = opened(folder, tmp_path)
     assert file["outcome"].dims == ("motion",)
     assert np.array_equal(np.sort(file["intensity"]), wanted.levels)
@@ -205,7 +205,7 @@ def test_drawn_restitution(finished, text, each):
     if each == "impact":
         wanted = fragility_analysis(BLOCK, motions, restitution=law, im="pgv", scale=2.0, analysis="cloud")
         assert np.array_equal(found.responses.rotation, wanted.responses.rotation)
-    assert not np.array_equal(found.responses.rotation, analyses(finished("cloud", 7))["ked"].responses.rotation)
+    assert not np.array_equal(found.responses.rotation, analyses(finished("cloud", 7))["calibrated"].responses.rotation)
 
 
 def test_kinds_without_fragility(finished):

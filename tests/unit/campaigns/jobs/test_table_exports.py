@@ -140,7 +140,7 @@ def test_too_large_for_matlab(tmp_path, monkeypatch):
     numbers, words = Column(np.arange(20.0)), Column(text_array(["a"] * 20))
     to_mat(Table("row", {"x": numbers}), tmp_path / "r.mat")
     table = Table("row", {"x": numbers, "w": words})
-    with pytest.raises(InvalidValueError, match=r"up to 2 GiB, this one has 20 rows; take \.nc"):
+    with pytest.raises(InvalidValueError, match=r"up to 2 GiB, this table has 20 rows; use \.nc"):
         to_mat(table, tmp_path / "s.mat")
     add_to_netcdf({"row": table}, tmp_path / "s.nc", {})
 
