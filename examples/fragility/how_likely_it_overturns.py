@@ -30,7 +30,7 @@ for line in found.assumed:
 # of one part in a million changes the outcome. These responses are unpredictable, but their probability is
 # predictable.
 
-shares = {name: share.total for name, share in found.shares.items()}
+shares = {name: share.total for name, share in found.contributions.items()}
 assert max(shares, key=shares.get) == "case"
 assert 0.0 < found.chances["overturning"].value < 1.0
 write(prediction_picture(found), "how_likely_it_overturns.png")

@@ -104,7 +104,7 @@ def test_every_file_says_the_same(run, rocked, tmp_path):
     text = files[4].read_text("utf-8")
     assert out.splitlines()[0] in text
     assert "horizontal-momentum" in text
-    assert "What experiment would tell more" in text
+    assert "Design of a more precise experiment" in text
 
 
 def test_rotations_need_what_they_say(printed, refuses, tmp_path):
