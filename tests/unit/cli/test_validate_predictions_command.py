@@ -152,4 +152,4 @@ def test_refusals(refuses, copy, damage, words, why):
 def test_records_without_a_unit_say_which_option(refuses, copy):
     text = (copy / "body.toml").read_text("utf-8").partition("[motion]")[0]
     (copy / "body.toml").write_text(text, "utf-8")
-    refuses((copy,), "say motion.units one of")
+    refuses((copy,), "add motion.units with one of")

@@ -183,7 +183,7 @@ def test_a_tie_is_called_a_tie():
     )
     tied = Explanation(near)
     assert tied.unresolved == (best.name, plain.name)
-    assert "do not decide" in tied.verdict[1]
+    assert "do not distinguish" in tied.verdict[1]
     assert "not resolved" in tied.verdict[2]
 
 

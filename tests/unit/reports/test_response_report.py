@@ -53,7 +53,7 @@ def test_report_of_free_rocking(tmp_path):
 @pytest.mark.parametrize("way", ["plot", "animate", "report"])
 @pytest.mark.parametrize("name", ["x.txt", "x"])
 def test_other_endings_are_refused(way, name, tmp_path):
-    with pytest.raises(RockingError, match=rf"\.\w+.* got '{name}'"):
+    with pytest.raises(RockingError, match=rf"'{name}'"):
         getattr(ASKED["rocking"](), way)(tmp_path / name)
     assert not list(tmp_path.iterdir())
 
@@ -63,7 +63,7 @@ def test_a_history_without_a_result_has_no_report(tmp_path):
         rk.simulate(STATUE, PULSE, 0.9, most_events=1).report(tmp_path / "x.html")
     with pytest.raises(RockingError, match="nowhere"):
         ASKED["rocking"]().report(tmp_path / "nowhere" / "x.html")
-    with pytest.raises(RockingError, match="fps: these are for films"):
+    with pytest.raises(RockingError, match="fps: for films"):
         ASKED["rocking"]().animate(tmp_path / "x.html", fps=10)
 
 

@@ -78,7 +78,7 @@ def test_bad_input_is_refused_at_the_door(bad):
 
 def test_a_motion_is_needed():
     """No component at all is refused with the name of the function that does without."""
-    with pytest.raises(InvalidValueError, match="free_rocking lets"):
+    with pytest.raises(InvalidValueError, match="use free_rocking for ground at rest"):
         rk.simulate(BOX, {}, "housner")
 
 
