@@ -55,7 +55,7 @@ def test_json_is_python_to_the_last_digit(answered, body):
     assert answer["body"]["mass"] == pytest.approx(1200.0)
     ked = ("--restitution", "ked", "--scale", "-1.1", "--set", "settings.gravity=9.81")
     found = answered(body, "--motion", "z=sine:amplitude=1,period=0.3", "--motion", f"y={SINE}", *ked)
-    wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "ked-3d", scale=-1.1, gravity=9.81)
+    wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "calibrated-3d", scale=-1.1, gravity=9.81)
     assert same(found, wanted)
     # negative control: the components are not taken for each other
     assert not same(answered(body, "--motion", SINE, *ked), wanted)

@@ -195,7 +195,7 @@ def test_inventories_say_it():
 def test_one_history_tells_both_verdicts():
     """Commands, page and report take the warnings of `Response.answer`: rocking alone, and with flight."""
     (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).answer(0.5)["warnings"]
-    assert "rocking alone: " in words
+    assert "Rocking alone: " in words
     assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
     # what nobody gave decides no flight, from whichever door it comes
     (assumed, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
