@@ -94,7 +94,7 @@ def _refusal(error: Any) -> "RockingError":
     from pydantic import ValidationError  # and numpy below, which help does not need
 
     from rocking.bodies.formats.words import from_pydantic
-    from rocking.cli.options import key_of
+    from rocking.cli.options import FRICTION_RANGE, key_of
     from rocking.errors import InvalidValueError
     from rocking.messages import Message
 
@@ -106,7 +106,10 @@ def _refusal(error: Any) -> "RockingError":
         )  # fmt: skip
     if isinstance(error.__cause__, ValidationError) and getattr(error, "param", None) is not None:
         problems = error.__cause__.errors(include_url=False)
-        return from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems])
+        refusal: RockingError = from_pydantic([{**problem, "loc": (error.param.opts[0],)} for problem in problems])
+        if "predict.friction" in (error.param.help or ""):
+            refusal.add_hint(FRICTION_RANGE)
+        return refusal
     options = error.param.opts if getattr(error, "param", None) is not None else [getattr(error, "option_name", "")]
     return InvalidValueError("{fault}", parameter=options[0] or "", fault=message.rstrip("."))
 

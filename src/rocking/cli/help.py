@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperCommand
 
 from rocking.cli.spelling import run_in
+from rocking.errors import InvalidValueError
 
 SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
 _PANELS = ("Arguments", "Options", SHAKING, SIZE, HOW, OUTPUT)
@@ -110,6 +111,18 @@ def with_common(command: Callable[..., None]) -> Callable[..., None]:
 
 class Command(TyperCommand):
     """A command with help in plain text; messages name its options as they are typed."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments; refuse a second model of a command with one model."""
+        _, _, order = self.make_parser(ctx).parse_args(list(args))
+        remaining: list[str] = super().parse_args(ctx, args)
+        if sum(one.name == "restitution" and not one.multiple for one in order) > 1 and not ctx.resilient_parsing:
+            run_in(ctx)
+            raise InvalidValueError(
+                "{parameter} accepts one model here", parameter="restitution",
+                hint="simulate compares all models; map, fragility, histories and assess accept several",
+            )  # fmt: skip
+        return remaining
 
     def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # typer brings click with it
         run_in(context)

@@ -96,15 +96,15 @@ SEVERAL_SIZES = keys(BlockTable, panel=SIZE, kind=str, width=": A,B,C", height="
 
 
 RecordUnits = Annotated[str | None, typer.Option("--units", help="Record unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")]
-Set = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        autocompletion=completion.keys,
-        help="Input-file key: settings.gravity=9.81; repeatable.",
-        rich_help_panel=HOW,
-    ),
-]
+
+
+def _set(example: str) -> Any:
+    text = f"Input-file key: {example}; repeatable."
+    return typer.Option("--set", autocompletion=completion.keys, help=text, rich_help_panel=HOW)
+
+
+Set = Annotated[list[str] | None, _set("settings.gravity=9.81")]
+SetOfAssessment = Annotated[list[str] | None, _set("assess.margin=1.5, assess.project, assess.author")]
 Friction = Annotated[float | None, key(StudySettingsTable, "friction", rich_help_panel=HOW)]
 Threads = Annotated[int | None, typer.Option(help="Number of threads.", rich_help_panel=HOW)]
 AsJson = Annotated[bool, typer.Option("--json", help="Result as JSON.", rich_help_panel=OUTPUT)]
@@ -157,7 +157,11 @@ Restitutions = Annotated[
     ),
 ]
 MeasuredRestitution = Annotated[str | None, typer.Option(help="Model or coefficient. [default: calibrated, sampled]")]
-FrictionOfRange = Annotated[float | None, typer.Option(help=r"Coefficient of friction \[-]. [default: 0.3 to 0.8]")]
+FRICTION_RANGE = 'a range: --set "predict.friction=[0.2,0.6]"'
+FrictionOfRange = Annotated[
+    float | None,
+    typer.Option(help=rf"Coefficient of friction \[-]; {FRICTION_RANGE}. [default: 0.3 to 0.8]".replace("=[", r"=\[")),
+]
 Family = Annotated[
     str | None,
     typer.Option(

@@ -182,7 +182,7 @@ def assess(
         list[str] | None, typer.Option(help="Model or coefficient; repeatable. [default: all models]")
     ] = None,
     friction: options.FrictionOfRange = None,
-    sets: options.Set = None,
+    sets: options.SetOfAssessment = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(REPORTED)] = None,
     details: options.Details = False,

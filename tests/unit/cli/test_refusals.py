@@ -134,6 +134,7 @@ REFUSED = {
     "code-checks": {
         "prism.toml FAMILY": "code methods know plane bodies",
         "FAMILY --slenderness 5 --width 1": "--slenderness goes with --height",
+        "FAMILY SIZE --restitution ked --restitution housner": "--restitution accepts one model",
         "FAMILY --slenderness 0 --height 1": "--slenderness must be above 0",
         "FAMILY --width 1,2 --height 1,2,3": "must be as many, or one, got 2 and 3",
         "FAMILY --width 1": "a body is a file, or --width and --height",
@@ -332,6 +333,7 @@ REFUSED = {
     "overturning-pga": {
         "SIZE": "No ground motion",
         "SIZE no-such.txt": "no such file",
+        "SIZE PULSE --restitution ked --restitution housner": "--restitution accepts one model",
         "SIZE PULSE --min-pga 1x": "--min-pga must be a number",
         "SIZE PULSE --min-pga nan": "--min-pga must be a number",
         "SIZE PULSE --min-pga 0": "--min-pga must be",
@@ -397,7 +399,9 @@ REFUSED = {
         "SIZE PULSE --set predict.count=100": "power of two",
         "SIZE PULSE --set settings.linear=true": "settings.linear",
         "SIZE PULSE --friction -1": "friction",
+        "SIZE PULSE --friction 0.2,0.6": '--set "predict.friction=[0.2,0.6]"',
         "SIZE PULSE --restitution hausner": "housner",
+        "SIZE PULSE --restitution ked --restitution housner": "--restitution accepts one model",
     },
     "simulat": {
         "SIZE PULSE": "Did you mean 'simulate'",
@@ -439,6 +443,7 @@ REFUSED = {
         "SIZE sinus:amplitude=1": "unknown pulse",
         "SIZE PULSE --units g": "a pulse takes no --units",
         "SIZE PULSE --restitution best": "unknown restitution model 'best'",
+        "SIZE PULSE --restitution ked --restitution housner": "--restitution accepts one model",
         "SIZE PULSE --restitution 90": "not a percentage",
         "SIZE PULSE --restitution 1.1": "would create energy",
         "SIZE PULSE --restitution nan": "restitution must be finite",
@@ -525,6 +530,7 @@ REFUSED = {
         "PULSE --periods 1:5:many": "COUNT from 2",
         "PULSE --periods 1:5:99999 --slenderness 4:8:200": "rocking campaign",
         "PULSE --restitution no-such": "no-such",
+        "PULSE --restitution ked --restitution housner": "--restitution accepts one model",
         "PULSE --scale nan": "scale",
         "PULSE --output a.bmp": "by its ending a file is picture (.png",
         "PULSE --output no-such-folder/a.nc": "no folder",
