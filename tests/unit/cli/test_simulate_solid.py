@@ -55,7 +55,7 @@ def test_json_is_python_to_the_last_digit(answered, body):
     assert answer["body"]["mass"] == pytest.approx(1200.0)
     ked = ("--restitution", "ked", "--scale", "-1.1", "--set", "settings.gravity=9.81")
     found = answered(body, "--motion", "z=sine:amplitude=1,period=0.3", "--motion", f"y={SINE}", *ked)
-    wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "calibrated-3d", scale=-1.1, gravity=9.81)
+    wanted = rk.simulate(solid, {"y": MOTION, "z": rk.pulses.sine(1.0, 0.3)}, "ked-3d", scale=-1.1, gravity=9.81)
     assert same(found, wanted)
     # negative control: the components are not taken for each other
     assert not same(answered(body, "--motion", SINE, *ked), wanted)
@@ -84,7 +84,7 @@ def test_page_and_files(printed, body, tmp_path):
     files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc", "html")}
     words = (word for path in files.values() for word in ("--output", path))
     out = printed(body, SINE, "--motion", "y=sine:amplitude=2.9,period=0.6", "--details", *words)
-    for said in ("prism, 0.5 x 0.5 x 2 m, 1200 kg", "ked-3d", "turning about a vertex", "Peak tilt"):
+    for said in ("prism, 0.5 x 0.5 x 2 m, 1200 kg", "calibrated-3d", "turning about a vertex", "Peak tilt"):
         assert said in out
     for path in files.values():
         assert f"wrote {path}" in out

@@ -105,10 +105,10 @@ def test_the_page_of_theory_states_these_numbers():
         sum(each.measurements * each.interval_width for each in groups) / 39,
     )
     assert (
-        f"{100.0 * shares['laboratory']:.0f} % of the variance lies between laboratories, "
-        f"{100.0 * shares['interface']:.0f} % between interfaces of one, {100.0 * shares['measurement']:.0f} % between"
+        f"{100.0 * shares['laboratory']:.0f} % of the variance is between laboratories, "
+        f"{100.0 * shares['interface']:.0f} % between interfaces of one laboratory, and {100.0 * shares['measurement']:.0f} % between"
     ) in page
-    assert f"{inside} of the 39 rows, in intervals {width:.3f} wide on average" in page
+    assert f"{inside} of 39 are within intervals with an average width of {width:.3f}" in page
 
 
 @pytest.mark.verifies("invariant", "order of the rows", within="1e-9")

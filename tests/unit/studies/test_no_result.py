@@ -196,10 +196,10 @@ def test_one_history_tells_both_verdicts():
     """Commands, page and report take the warnings of `Response.answer`: rocking alone, and with flight."""
     (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).answer(0.5)["warnings"]
     assert "Rocking alone: " in words
-    assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
+    assert "With flight and a coefficient of friction of 0.5, as given: " in words
     # what nobody gave decides no flight, from whichever door it comes
     (assumed, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
     (none,) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts()
     assert assumed == none != words
-    assert "with a coefficient of friction of 10, since friction is not given: " in none
+    assert "a coefficient of friction of 10, since friction is not given: " in none
     assert not any("pull" in each for each in rk.simulate(LEANING, LIGHT[0], 0.8).answer(0.5)["warnings"])
