@@ -168,4 +168,4 @@ def test_errors_keep_their_kind(tmp_path):
         (["sine:amplitude=1,period=1", "--set", "motion.component=x"], InvalidValueError),
     ):
         with pytest.raises(kind):
-            application(["record"])(args=["record", "show", *words], standalone_mode=False)
+            application(["record", "show"])(args=["record", "show", *words], standalone_mode=False)
