@@ -113,8 +113,9 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     assert "polarity" in launched_kinds()
     assert JobDocument.of(TABLES).histories == 2
     assert keys_of("polarity") == ["factor"]
-    assert "### [polarity]" in reference()
-    assert "| `factor` | number | `1.0` | scale factor of both polarities [-] |" in reference()
+    page = reference()["input_files"]
+    assert "## [polarity]" in page
+    assert "| `factor` | number | - | `1.0` |  | scale factor of both polarities |" in page
 
 
 def test_one_file_has_a_form(added):
