@@ -106,7 +106,8 @@ def test_the_page_of_theory_states_these_numbers():
     )
     assert (
         f"{100.0 * shares['laboratory']:.0f} % of the variance is between laboratories, "
-        f"{100.0 * shares['interface']:.0f} % between interfaces of one laboratory, and {100.0 * shares['measurement']:.0f} % between"
+        f"{100.0 * shares['interface']:.0f} % between interfaces of one laboratory, "
+        f"and {100.0 * shares['measurement']:.0f} % between"
     ) in page
     assert f"{inside} of 39 are within intervals with an average width of {width:.3f}" in page
 
