@@ -115,7 +115,7 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     assert keys_of("polarity") == ["factor"]
     page = reference()["input_files"]
     assert "## [polarity]" in page
-    assert "| `factor` | number | - | `1.0` |  | scale factor of both polarities [-] |" in page
+    assert "| `factor` | number |" in page.partition("## [polarity]")[2]
 
 
 def test_one_file_has_a_form(added):
