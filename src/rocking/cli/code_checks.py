@@ -199,7 +199,7 @@ class CodesAnswer:
             page.line("rated safe: fraction of the histories in the domain of the method")
             page.line("D/C: median of demand / capacity")
             page.line("capacity/truth: median of capacity / smallest intensity with overturning")
-            page.line("scatter: standard deviation of the logarithm of capacity/truth")
+            page.line("scatter: half of the logarithm of the 84 % quantile / the 16 % quantile of capacity/truth")
         if found.asymmetric.any():
             page.line("Asymmetric bodies: the weaker side governs, in methods and histories.")
         show_models(page, self.answer(), Display(), found.restitution, _overturned(found))

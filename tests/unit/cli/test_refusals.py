@@ -265,6 +265,7 @@ REFUSED = {
     "inventory": {
         "none.csv --pga 0.3g": "No such file or directory",
         "narrow.csv --pga 0.1g": "column 'foot_diameter_cm' is not known but looks like a measure",
+        "narrow.csv --pgv 1m/s": '--map-columns "foot_diameter_cm=NAME_mm"',
         "objects.csv": "how strong is the shaking",
         "objects.csv --pga 0.3": "with its unit",
         "objects.csv --pga 0.3g --pgv 1m/s": "not both",

@@ -440,7 +440,7 @@ def check_header(header: Header, titles: Titles, source: str, dismissed: Collect
 
 
 def _remedy(title: str) -> str:
-    return f'rename the column, or add --map-columns "{title:.60}=NAME_mm"; an empty NAME ignores the column'
+    return f'rename the column, or add --map-columns "{title:.60}=NAME_mm"; nothing after "=" ignores the column'
 
 
 _PEDESTAL, _HEIGHT = re.compile("sockel|pedestal|plinth|piedistallo|zoccolo|peana"), re.compile("hoe?he|height|alt")
