@@ -37,7 +37,7 @@ class Periods {
             }
             const double norm = std::sqrt(fma(vector[0], vector[0], vector[1] * vector[1] / (p * p)));
             lane.growth[m] += std::log(norm);
-            vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;  // a rest erases every difference: it is followed anew
+            vector[0] = norm > 0.0 ? vector[0] / norm : 1.0 - m;  // a rest erases every difference: the next vector starts as a unit vector
             vector[1] = norm > 0.0 ? vector[1] / norm : m * p;
         }
     }

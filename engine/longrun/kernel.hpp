@@ -1,4 +1,4 @@
-// What the long-run engine is given, and where it writes.
+// Input and output of the long-run engine.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class Parameter : int { none, amplitude, omega, restitution, alpha };
 struct Settings {
     int sines;
     bool linear;
-    double overturned, rest, step_error;  // rotation that ends a history; speed over alpha p that may end in rest; error of a step over alpha
+    double overturned, rest, step_error;  // final rotation, speed over alpha p of a possible rest, error of a step over alpha
     Parameter parameter;      // of the last tangent vector; the amplitudes change in proportion
     SpeedLaw law;
 };

@@ -23,7 +23,7 @@ constexpr double kPi = 3.14159265358979323846, kPiLow = 1.2246467991473532e-16;
 
 enum class Event : int { none, impact, rest, overturned, failed };
 
-// An angle less a whole number of half turns; the sign is that of the sine of what was taken away.
+// An angle minus a multiple of pi; sign: factor of sine and cosine.
 inline double reduced(double angle, double& sign) {
     const double halves = std::nearbyint(angle / kPi);
     sign = static_cast<std::int64_t>(halves) & 1 ? -1.0 : 1.0;

@@ -9,7 +9,7 @@ namespace longrun {
 constexpr int kRegisters = 2;  // that step side by side
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 
-// V tangent vectors; Driver says when a history begins and ends and what is kept of it.
+// V tangent vectors. Driver begins and ends the histories and stores their results.
 template <int V, class Driver>
 class Lanes {
     static constexpr int U = kRegisters, P = Pack::width, W = U * P;

@@ -328,7 +328,7 @@ def test_a_rest_erases_memory():
     system = system_of(2, 1.1, 2.0, "housner")
     result = lyapunov_exponents(system, starts=np.zeros((1, 3)), settled=100, kept=200)
     assert result.sticking == 1
-    assert np.isneginf(result.each).all()
+    assert np.isneginf(result.by_orbit).all()
     diagram = bifurcation(system, [1.1], cycles=(100, 200), exponents=True)
     assert KINDS[int(diagram.kind[0, 0, 0])] == "sticking"
     assert np.isneginf(diagram.exponent.item())

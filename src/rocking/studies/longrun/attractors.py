@@ -61,8 +61,8 @@ class PoincareSection:
     at : {"period", "impact"}
         Where the states are taken.
     first, second : ndarray
-        Rotation over alpha and velocity over alpha p at the ends of periods; phase [rad] and velocity over alpha p
-        after impacts, positive over the right foot; shape (histories, states), NaN after the end of a history.
+        Rotation over alpha and velocity over alpha p at the ends of periods, shape (histories, states); NaN after the
+        end of a history. After impacts: phase [rad], and velocity over alpha p, positive over the right foot.
     ending : ndarray of int
         Event that ended each history, 0 for none, shape (histories,).
     """
@@ -91,9 +91,9 @@ def poincare(
     starts : array_like
         Time [s], rotation [rad] and angular velocity [rad/s], shape (histories, 3).
     cycles : int, optional
-        Periods of which states are returned.
+        Number of periods with returned states.
     settled : int, optional
-        Periods before these.
+        Periods before the returned states.
     at : {"period", "impact"}, optional
         States at the ends of periods, or right after impacts.
     numerics : Numerics, optional

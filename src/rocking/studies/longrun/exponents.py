@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.studies.longrun.system import DEFAULTS, NONE, OVERTURNED, HarmonicRocking, Numerics, over_periods
+from rocking.studies.longrun.system import DEFAULTS, NONE, HarmonicRocking, Numerics, over_periods
 
 ALIGNED = 60  # periods in which tangent vectors align before growth is counted
 
@@ -20,7 +20,7 @@ class LyapunovExponents:
     ----------
     system : HarmonicRocking
         Body and ground motion.
-    each : ndarray
+    by_orbit : ndarray
         Both exponents of each orbit [1/s], shape (orbits, 2); minus infinity for an orbit that comes to rest again and
         again, NaN for one that overturns.
     impact_rate : ndarray
@@ -30,24 +30,24 @@ class LyapunovExponents:
     """
 
     system: HarmonicRocking
-    each: FloatArray
+    by_orbit: FloatArray
     impact_rate: FloatArray
     duration: float
 
     @property
     def overturned(self) -> int:
         """Number of orbits that overturn."""
-        return int(np.isnan(self.each[:, 0]).sum())
+        return int(np.isnan(self.by_orbit[:, 0]).sum())
 
     @property
     def sticking(self) -> int:
         """Number of orbits that come to rest: a rest erases all differences, the exponents are minus infinity."""
-        return int(np.isneginf(self.each[:, 0]).sum())
+        return int(np.isneginf(self.by_orbit[:, 0]).sum())
 
     @property
     def finite(self) -> FloatArray:
         """Exponents of the other orbits [1/s], shape (orbits, 2)."""
-        return self.each[np.isfinite(self.each).all(axis=1)]
+        return self.by_orbit[np.isfinite(self.by_orbit).all(axis=1)]
 
     @property
     def values(self) -> FloatArray:
@@ -64,7 +64,7 @@ class LyapunovExponents:
     def sum_rule(self) -> FloatArray:
         """Sum of the exponents less 2 ln r times the impact rate [1/s]: zero for a symmetric body with a constant r."""
         r = np.log(self.system.sides[2]) + np.log(self.system.sides[5])
-        return np.asarray(self.each.sum(axis=1) - r * self.impact_rate)
+        return np.asarray(self.by_orbit.sum(axis=1) - r * self.impact_rate)
 
 
 def lyapunov_exponents(
@@ -119,8 +119,7 @@ def lyapunov_exponents(
         starts = np.column_stack([times, np.full(len(draws), 1e-12), draws[:, 1] * system.alpha * system.p])
     result = over_periods(system, starts, settled=settled, kept=kept, vectors=2, numerics=numerics)
     duration = kept * system.excitation.period
-    each = result.growth / duration
-    each[result.rests > 0] = -np.inf
-    each[result.ending == OVERTURNED] = np.nan
-    each[(result.ending != OVERTURNED) & (result.ending != NONE)] = np.nan
-    return LyapunovExponents(system, each, result.impacts / duration, duration)
+    exponents = result.growth / duration
+    exponents[result.rests > 0] = -np.inf
+    exponents[result.ending != NONE] = np.nan
+    return LyapunovExponents(system, exponents, result.impacts / duration, duration)

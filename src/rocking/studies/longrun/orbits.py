@@ -180,8 +180,8 @@ def symmetric_orbit(system: HarmonicRocking) -> PeriodicOrbit:
     if system.linear:
         return find_orbit(system, phase, slender_speed)
     angle, orbit = system.alpha, None
-    for part in (0.05, 0.25, 0.5, 0.75, 1.0):  # from the slender body to the real one
-        near = system.changed("slenderness", part * angle).changed("amplitude", system.amplitude_ratio)
+    for fraction in (0.05, 0.25, 0.5, 0.75, 1.0):  # from the slender body to the real one
+        near = system.changed("slenderness", fraction * angle).changed("amplitude", system.amplitude_ratio)
         try:
             orbit = find_orbit(near, phase, slender_speed)
         except OrbitNotFoundError:

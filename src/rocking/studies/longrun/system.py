@@ -322,7 +322,7 @@ def over_periods(
     starts : array_like
         Time [s], rotation [rad] and angular velocity [rad/s] at the start, shape (rows, 3).
     settled, kept : int, optional
-        Periods before, and within, the part of which states are returned.
+        Periods before the returned states, and periods with returned states.
     vectors : {0, 1, 2}, optional
         Number of tangent vectors.
     most_impacts : int, optional
@@ -344,8 +344,7 @@ def over_periods(
         *_tables(systems, rows), starts, results, states, hits, first.factors, settled, vectors, first.linear,
         math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
     )  # fmt: skip
-    whole = results[:, [0, 1, 2, 3]].astype(np.int64)
-    ending, cycles, impacts, rests = whole.T
+    ending, cycles, impacts, rests = results[:, :4].astype(np.int64).T
     return Periods(ending, cycles, impacts, rests, results[:, 4], results[:, 5:7], states, hits)
 
 
