@@ -1,11 +1,13 @@
 """The default restitution model compared with others: the same study with each of them, as a table."""
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rocking.answers import Answer, Display
 from rocking.cli.page import Page
+from rocking.dynamics.mechanics_base import in_space
 from rocking.errors import RockingError
 from rocking.quantities import Quantity
 from rocking.restitution.headline import headline
@@ -34,10 +36,10 @@ def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem
     return result, others
 
 
-def model_facts(label: str, others: Mapping[str, Any], facts: Facts) -> dict[str, Any]:
-    """Return the model of a result with the reason for it, and the values that other models give."""
+def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any = None) -> dict[str, Any]:
+    """Return the model of the result of a body with the reason for it, and the values that other models give."""
     given = {name: {"error": str(one)} if isinstance(one, RockingError) else facts(one) for name, one in others.items()}
-    return {"headline": headline(label), "other_models": given}
+    return {"headline": headline(label, in_space=in_space(body)), "other_models": given}
 
 
 def show_models(page: Page, answer: Answer, display: Display, label: str, own: dict[str, Any]) -> None:
@@ -59,23 +61,22 @@ def overturned(modes: "np.ndarray") -> dict[str, Any]:
     return {"overturned": fell, "share": fell / known if known else None}
 
 
-def grouped(rows: dict[str, tuple[str, ...]], shown: set[str]) -> dict[str, tuple[str, ...]]:
-    """Return rows in which models that are not shown have one row per outcome, the third cell, with ranges."""
-    kept = {label: row for label, row in rows.items() if label in shown}
-    groups: dict[str, list[tuple[str, ...]]] = {}
-    for label, row in rows.items():
+def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[str]]:
+    """Return models in groups: each that is shown alone, then the others by their outcome."""
+    others: dict[str, list[str]] = {}
+    for label, outcome in outcomes.items():
         if label not in shown:
-            groups.setdefault(row[2], []).append(row)
-    for outcome, group in groups.items():
-        if len(group) == 1:
-            kept[group[0][0]] = group[0]
-            continue
-        label = f"{len(group)} other models"
-        others = [outcome if k == 2 else _range([row[k] for row in group]) for k in range(1, len(group[0]))]
-        kept[f"{label}: {outcome}"] = (label, *others)
-    return kept
+            others.setdefault(outcome, []).append(label)
+    return [[label] for label in outcomes if label in shown] + list(others.values())
 
 
-def _range(cells: Sequence[str]) -> str:
-    ordered = sorted(set(cells), key=lambda cell: (cell == "-", len(cell.partition(".")[0]), cell))
-    return ordered[0] if len(ordered) == 1 else f"{ordered[0]}-{ordered[-1]}"
+def spanned(display: Display, name: str, values: Iterable[float | None]) -> str:
+    """Return the least and the largest value of models, as one if they print alike."""
+    known = [value for value in values if value is not None and not math.isnan(value)]
+    ends = (min(known), max(known)) if known else (None,)
+    return "-".join(dict.fromkeys(display.cell(name, end) for end in ends))
+
+
+def by_foot(display: Display, left: Iterable[float], right: Iterable[float]) -> str:
+    """Return coefficients of restitution of models at the left and the right foot, once if they print alike."""
+    return " / ".join(dict.fromkeys(spanned(display, "coefficient", foot) for foot in (left, right)))

@@ -124,7 +124,7 @@ def fragility(
         own, written = _table(arguments)
         problem = _problem(arguments, own)
     _check(problem, exports)
-    with bar("histories", histories_in(problem), quiet=as_json) as progress:
+    with bar("histories", histories_in(problem, compared=True), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
     answer.name, answer.crossing_curves, answer.details = name, crossing_curves, details
     # the numbers are shown even if a file cannot be made of them

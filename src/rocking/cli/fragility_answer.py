@@ -154,7 +154,7 @@ class FragilityAnswer:
                 "choices": compared.summary(),
                 "verdict": compared.verdict,
             },
-            **model_facts(", ".join(self.results), self.others, _of_model),
+            **model_facts(", ".join(self.results), self.others, _of_model, body),
         }, {name: Quantity(name, unit, first.subject.measure_words) for name in _MEASURED})  # fmt: skip
 
     def _motions_facts(self) -> dict[str, Any]:

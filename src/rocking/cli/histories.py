@@ -70,7 +70,7 @@ def command_of(kind: str) -> Callable[..., None]:
                 problem = of_body(arguments, kind, stated, restitution, motions)
             else:
                 problem = problem_of(kind, arguments, motions, restitution=models_table(restitution), **{own: stated})
-        with bar("histories", histories_in(problem), quiet=as_json) as progress:
+        with bar("histories", histories_in(problem, compared=True), quiet=as_json) as progress:
             dataset, others = with_models(lambda one: one.answer(progress, threads), problem)
         deliver(HistoriesAnswer(problem, dataset, length or "m", others), files, as_json=as_json)
 
@@ -114,7 +114,7 @@ class HistoriesAnswer:
             **{name: dataset[name].values.tolist() for name in names},
             "modes": mode_shares(dataset["mode"].values),
             "contact": contact_words(lost_contact(dataset)),
-            **model_facts(self.label, self.others, _overturned),
+            **model_facts(self.label, self.others, _overturned, problem.bodies[0]),
         })  # fmt: skip
 
     def show(self, page: Page) -> None:

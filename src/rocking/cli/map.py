@@ -225,7 +225,10 @@ class MapAnswer:
             "overturning": self.extent(),
             "contact": arrays.attributes["contact"],
             "sensitivity": self._sensitivity(),
-            **model_facts(arrays.attributes["restitution"], self.others, lambda maps: overturned(maps[0]["mode"])),
+            **model_facts(
+                arrays.attributes["restitution"], self.others, lambda maps: overturned(maps[0]["mode"]),
+                problem.bodies[0],
+            ),
         }, {which: Quantity(which, axis.unit, axis.words, label=axis.name) for which, axis in axis_of.items()}
         | _RESTITUTIONS)  # fmt: skip
 

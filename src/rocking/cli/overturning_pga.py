@@ -130,7 +130,7 @@ class MinimumAnswer:
             "failed": transitions.failed,
             "contact": transitions.contact,
             "sentence": stretches(transitions),
-            **model_facts(self.label, self.others, _of_model),
+            **model_facts(self.label, self.others, _of_model, problem.bodies[0]),
         }, _CLOSELY)  # fmt: skip
 
     def show(self, page: Page) -> None:

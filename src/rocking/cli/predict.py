@@ -11,7 +11,7 @@ import typer
 from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.code_checks import show_limits
-from rocking.cli.compared import grouped
+from rocking.cli.compared import by_foot, grouped, spanned
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
@@ -155,10 +155,11 @@ class PredictionAnswer:
         page.warn(found.repairs)
 
 
-def _model_cells(row: dict[str, Any]) -> tuple[str, ...]:
-    """Return the name, coefficients, number of overturning motions and margin of a restitution case."""
-    r = dict.fromkeys(_R.cell("coefficient", row[name]) for name in ("coefficient_left", "coefficient_right"))
-    return row["restitution"], " / ".join(r), row["overturned"], _R.cell("min_factor", row["min_factor"])
+def _model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
+    """Return the name, coefficients, number of overturning motions and margin of restitution cases in one group."""
+    label = rows[0]["restitution"] if len(rows) == 1 else f"{len(rows)} other models"
+    r = by_foot(_R, *([row[f"coefficient_{foot}"] for row in rows] for foot in ("left", "right")))
+    return label, r, rows[0]["overturned"], spanned(_R, "min_factor", [row["min_factor"] for row in rows])
 
 
 def _show_assumed(page: Page, found: "Prediction") -> None:
@@ -240,12 +241,11 @@ class AssessmentAnswer:
         if self.details:
             self._show_details(page)
             return
-        rows = {row["restitution"]: _model_cells(row) for row in found.model_rows[: len(found.models)]}
-        shown = {name for name in rows if name.partition(",")[0] in _NAMED}
-        if len(rows) > MOST_MODELS:
-            rows = grouped(rows, shown)
+        rows = {row["restitution"]: row for row in found.model_rows[: len(found.models)]}
+        shown = {name for name in rows if len(rows) <= MOST_MODELS or name.partition(",")[0] in _NAMED}
+        groups = grouped({name: row["overturned"] for name, row in rows.items()}, shown)
         head = ("restitution model", "r", "overturned", "margin")
-        page.table(head, list(rows.values()), head[:1])
+        page.table(head, [_model_cells([rows[name] for name in group]) for group in groups], head[:1])
         page.warn(f"{name}: {why}" for name, why in found.refused.items())
         page.line()
         page.line(found.governing_factors[-1])

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking.answers import Answer, Display
 from rocking.bodies import Body
-from rocking.cli.compared import grouped
+from rocking.cli.compared import by_foot, grouped, spanned
 from rocking.cli.page import Page, sentence
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
 from rocking.dynamics import SpatialStart
@@ -188,12 +188,15 @@ class ResponseAnswer:
         from rocking.reports.response_facts import ModelAgreement
 
         responses = {self.response.parameters.label: self.response, **self.others}
-        rows = {label: self._compared(label, one) for label, one in responses.items()}
-        if not self.details:
-            rows = grouped(rows, {self.response.parameters.label, *_NAMED})
+        outcomes = {label: _outcome(one) for label, one in responses.items()}
+        shown = outcomes.keys() if self.details else {self.response.parameters.label, *_NAMED}
+        rows = [
+            self._compared(labels, outcomes[labels[0]], [responses[label] for label in labels])
+            for labels in grouped(outcomes, shown)
+        ]
         page.line("\nCompare restitution models", "bold")
         head = [self.display.heading(name) for name in _COMPARED]
-        page.table(head, list(rows.values()), ("model", "outcome"), bold={0}, dense=True)
+        page.table(head, rows, ("model", "outcome"), bold={0}, dense=True)
         page.warn(f"{name}: {other}" for name, other in self.others.items() if isinstance(other, str))
         known = {name: one for name, one in responses.items() if not isinstance(one, str)}
         agreement = ModelAgreement.of(known)
@@ -201,7 +204,9 @@ class ResponseAnswer:
             page.line(agreement.sentence)
             return
         fell = sum(one.outcome is Outcome.OVERTURNED for one in known.values())
-        page.line(f"The result depends on the restitution model: overturning with {fell} of {len(known)} models.")
+        page.line(
+            f"The result depends on the restitution model: overturning with {fell} of {len(known)} restitution cases."
+        )
         for doubt in agreement.doubts:
             page.line(doubt)
 
@@ -217,16 +222,26 @@ class ResponseAnswer:
             page.line(Message(_DIFFER if differ else _AGREE))
         page.warn(f"{name}: {one['error']}" for name, one in given.items() if "error" in one)
 
-    def _compared(self, label: str, response: Any) -> tuple[str, ...]:
-        if isinstance(response, str):
-            return label, "-", "not for this body", "-", "-"
-        answer = response.outcome_answer()
-        fell = answer["outcome"] == "overturned"
-        outcome = f"overturned {answer['side']}" if fell else answer["outcome"].replace("_", " ")
-        if not fell and answer["still_rocking"]:
-            outcome = "still rocking"
-        ratio = "-" if fell else self.display.cell("peak_ratio", answer["peak_ratio"])
-        return label, self._coefficient_words(answer["coefficient"]), outcome, ratio, str(answer["impacts"])
+    def _compared(self, labels: list[str], outcome: str, responses: list[Any]) -> tuple[str, ...]:
+        """Return the row of models with one outcome, with the ranges of their values."""
+        label = labels[0] if len(labels) == 1 else f"{len(labels)} other models"
+        answers = [one.outcome_answer() for one in responses if not isinstance(one, str)]
+        if not answers:
+            return label, "-", outcome, "-", "-"
+        fell = answers[0]["outcome"] == "overturned"
+        r = by_foot(self.display, *([one["coefficient"][foot] for one in answers] for foot in ("left", "right")))
+        ratio, impacts = (spanned(self.display, name, [one[name] for one in answers]) for name in _COMPARED[-2:])
+        return label, r, outcome, "-" if fell else ratio, impacts
+
+
+def _outcome(response: Any) -> str:
+    """Return the outcome of a response, where it is compared with others, in words."""
+    if isinstance(response, str):
+        return "not for this body"
+    answer = response.outcome_answer()
+    if answer["outcome"] == "overturned":
+        return f"overturned {answer['side']}"
+    return "still rocking" if answer["still_rocking"] else str(answer["outcome"]).replace("_", " ")
 
 
 def _facts(response: Any) -> Answer:

@@ -204,7 +204,7 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
                     if name == label:
                         raise
                     responses[name] = error
-    return SeveralAnswer(listed, responses.pop(label), display, label, responses)
+    return SeveralAnswer(problem.body, listed, responses.pop(label), display, label, responses)
 
 
 def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:
@@ -220,6 +220,7 @@ def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress
 class SeveralAnswer:
     """How a body ends under each of several motions, with one restitution."""
 
+    body: Any
     motions: list[Any]
     responses: list[Any]
     display: Display
@@ -236,7 +237,7 @@ class SeveralAnswer:
             }
             for motion, response in pairs
         ]  # fmt: skip
-        facts = model_facts(self.label, self.others, _overturned)
+        facts = model_facts(self.label, self.others, _overturned, self.body)
         return Answer({"overturned": self._overturned, "restitution": self.label, "motions": rows, **facts})
 
     @property

@@ -79,10 +79,13 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
     return problem
 
 
-def histories_in(problem: StudyProblem) -> int:
-    """Return the number of histories with all files of folders; of an adaptive study that of the first round."""
-    document = problem.document
-    return int(math.prod(document.sizes) * len(problem.motions) // document.motion_count)
+def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
+    """Return the number of histories with all files of folders; of an adaptive study that of the first round.
+
+    compared: with those of the models that the default is compared with.
+    """
+    document, models = problem.document, 1 + len(problem.with_compared_models) * compared
+    return int(math.prod(document.sizes) * len(problem.motions) // document.motion_count) * models
 
 
 def body_and_motion(

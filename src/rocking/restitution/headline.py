@@ -15,8 +15,8 @@ _DEFAULT_3D = (
 _STATED = "Restitution model of the result: {model}, as stated in the input."
 
 
-def headline(label: str) -> Message:
-    """Return the model of a result with the reason for it; label: that of the restitution.
+def headline(label: str, *, in_space: bool = False) -> Message:
+    """Return the model of a result with the reason for it; label: that of the restitution; in_space: of a body in 3D.
 
     >>> str(headline("ked"))
     'Restitution model of the result: ked, as stated in the input.'
@@ -24,4 +24,5 @@ def headline(label: str) -> Message:
     name = label.removesuffix("-3d")
     if name != DEFAULT_RESTITUTION:
         return Message(_STATED, {"model": label})
-    return Message(_DEFAULT if name == label else _DEFAULT_3D, {"model": label, "count": len(kept(KEPT)["unseen"])})
+    model = f"{name}-3d" if in_space else label
+    return Message(_DEFAULT if model == name else _DEFAULT_3D, {"model": model, "count": len(kept(KEPT)["unseen"])})
