@@ -132,7 +132,7 @@ _HISTORY = (
     ),
     Quantity("truncation", "rad", "sum of the truncated terms of the series; no measure of accuracy"),
     Quantity("twin_change", "rad", "change of the peak rotation with half the time step"),
-    Quantity("twin_flips", "1", "1 if only one of history and twin overturns, else 0; NaN without a result of both"),
+    Quantity("twin_flips", "1", "1 if only one of history and twin overturns, else 0; NaN if either has no result"),
     Quantity(
         "least_force", "1", "smallest normal contact force during rocking, over the weight; tensile below 0",
         label="smallest normal force / weight",

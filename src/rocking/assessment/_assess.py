@@ -244,7 +244,8 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
         A plane body, or a solid with contact at the vertices of its hull, in its stable pose. Code methods and
         measures of a solid apply to ``solid.in_plane`` over its nearest edge.
     motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
-        With a y component, a plane body is computed in 12 directions. A solid is always computed in 6 directions.
+        With a y component, a plane body is computed in 12 directions. A solid is computed in 6 directions, or in
+        the direction of a number as ``azimuth``.
     restitution : str, float, RestitutionModel or a sequence of them, optional
         Names, models and coefficients. Default: all registered models, with the mean and both ends of the 95 %
         interval of the calibrated model. Solids: "calibrated", "ked", "housner" and coefficients [-].

@@ -42,11 +42,11 @@ _MARGINS = {  # by two flags: there is only one motion; the factor is a margin
     (False, True): "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
     (True, False): (
         "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g. The body "
-        "does not overturn under the recorded motion, so this factor is not a margin."
+        "does not overturn under the unscaled motion, so this factor is not a margin."
     ),
     (False, False): (
         "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g. The body "
-        "does not overturn under the recorded motion, so this factor is not a margin."
+        "does not overturn under the unscaled motion, so this factor is not a margin."
     ),
 }
 _SIDES = {

@@ -66,7 +66,7 @@ def code_checks(
     im: Annotated[str, typer.Option(help="Intensity measure, see rocking fragility.")] = "pga/(g tan alpha)",
     levels: Annotated[
         str | None,
-        typer.Option(help="Intensity levels: FIRST:LAST:COUNT or A,B,C. [default: as recorded; synthetic motions: 2]"),
+        typer.Option(help="Intensity levels: FIRST:LAST:COUNT or A,B,C. [default: unscaled; synthetic motions: 2]"),
     ] = None,
     restitution: options.Restitution = None,
     slenderness: Annotated[

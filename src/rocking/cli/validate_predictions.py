@@ -32,7 +32,7 @@ def validate_predictions(
         Path,
         typer.Argument(
             help="Folder with a body file, records and a .csv table of outcomes: motion (or x, y, z), scale, "
-            "overturned, rocked, slid; one row per trial."
+            "overturned, and if known rocked and slid; one row per trial."
         ),
     ],
     restitution: options.MeasuredRestitution = None,

@@ -51,7 +51,7 @@ def eurocode8(ag: float, ground: str = "A", type: int = 1, damping: float = 0.05
     Parameters
     ----------
     ag : float
-        Design acceleration on ground A, with the importance factor [m/s2].
+        Design acceleration on ground A, with the importance factor; a number with a unit, such as 0.25g [m/s2].
     ground : str
         Ground type, from A to E.
     type : int
@@ -84,9 +84,9 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
     Parameters
     ----------
     sds : float
-        Design acceleration at short periods [m/s2].
+        Design acceleration at short periods; a number with a unit, such as 1g [m/s2].
     sd1 : float
-        Design acceleration at 1 s [m/s2].
+        Design acceleration at 1 s; a number with a unit, such as 0.6g [m/s2].
     tl : float
         Long-period transition period [s].
 

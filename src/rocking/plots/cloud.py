@@ -112,7 +112,7 @@ def _parts(axes: "Axes", analysis: CloudAnalysis) -> None:
     parts = analysis.parts(fine, rotation)
     label_of = {
         "no rocking": "no rocking", "below": rf"$\theta \leq$ {rotation:g} $\alpha$",
-        "exceeded": rf"$\theta >$ {rotation:g} $\alpha$", "overturned": "overturned",
+        "exceeded": rf"$\theta >$ {rotation:g} $\alpha$, no overturning", "overturned": "overturned",
     }  # fmt: skip
     colors = (STATES[-1], *STATES[2::-1])
     order = ["overturned", "exceeded", "below", "no rocking"]

@@ -266,7 +266,7 @@ def equilibria_picture(
     solid : Solid
         The body.
     pose : StablePose, optional
-        Pose in the centre of the map; default: the stable pose nearest to the orientation of the solid.
+        Pose in the centre of the map; default: the stable pose into which the solid settles.
     equilibria : Equilibria, optional
         Equilibria of the solid, if computed before.
 

@@ -89,7 +89,7 @@ class Validation:
 
     @property
     def finding(self) -> str:
-        """Finding of the paired differences: "better" than both reference curves, "worse", "mixed" or "not resolved".
+        """Paired differences: "better" than both reference curves, "worse" than one, "mixed" or "not resolved".
 
         Balanced accuracy is not used, because it ignores the probability of a forecast.
         """

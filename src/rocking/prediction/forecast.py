@@ -123,8 +123,8 @@ class Prediction(Exported):
     gravity : float
         Acceleration of gravity [m/s2].
     beside : dict of str to Chance
-        Probability of overturning with KED and with Housner's model, for otherwise equal inputs; plane bodies with
-        the default restitution only.
+        Probability of overturning with KED and with Housner's model, for otherwise equal inputs; with the default
+        restitution only.
     """
 
     body: "Body | Solid"

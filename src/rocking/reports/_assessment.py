@@ -106,7 +106,7 @@ def governing_history(assessment: BodyAssessment) -> GoverningHistory:
         for name, margin in assessment.models.items()
         for k in np.flatnonzero(margin.overturned == 1.0).tolist()
     ]
-    scale, scale_text = 1.0, "as recorded"
+    scale, scale_text = 1.0, "(unscaled)"
     if overturned:
         model, motion = min(overturned, key=lambda case: (case[1] != motion, case[0] != model))
     elif math.isfinite(factor):
@@ -127,7 +127,7 @@ def _governing_solid(assessment: BodyAssessment, solid: StandingSolid) -> Govern
     """Return the history of a solid at its smallest overturning factor, or under the unscaled first motion."""
     factor, model, motion, _ = assessment.lowest
     scale, scale_text = (
-        (just_above(factor), f"scaled by {factor:.3g}") if math.isfinite(factor) else (1.0, "as recorded")
+        (just_above(factor), f"scaled by {factor:.3g}") if math.isfinite(factor) else (1.0, "(unscaled)")
     )
     motion_of_record = assessment.motions[motion]
     history = simulate(
@@ -228,9 +228,9 @@ def _motions(assessment: BodyAssessment) -> ReportTable:
         for j, fraction in ranked
     ]  # fmt: skip
     note = (
-        "Factors scale the recorded motion; two components are combined in the direction of the smallest factor. "
+        "Factors scale the motion; two components are combined in the direction of the smallest factor. "
         "Overturns at: the smallest factor with any model. A body with a factor below 1 may not overturn under the "
-        "recorded motion; such a factor is not a margin."
+        "unscaled motion; such a factor is not a margin."
     )
     marks = {"overturned": ["bad" if fraction > 0.0 else "good" for _, fraction in ranked]}
     display = peak_display(assessment.prediction.motions)

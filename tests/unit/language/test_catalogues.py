@@ -9,6 +9,9 @@ from gettext import GNUTranslations
 from pathlib import Path
 
 import pytest
+import typer
+
+from rocking.cli.application import application
 
 pytest.importorskip("babel", reason="Babel compiles the catalogues: pip install babel")
 SCRIPT = runpy.run_path(str(Path(__file__).parents[3] / "packaging/messages.py"))
@@ -53,6 +56,44 @@ def test_every_language_has_every_message(code):
     catalogue.delete("Body")
     catalogue["record {number}"].string = "{1}"
     assert faults(catalogue, template) == {(None, "Body"), (None, "record {number}")}
+
+
+def commands_of(group, words="rocking"):
+    """Yield each command and group of commands by its words."""
+    for name, command in getattr(group, "commands", {}).items():
+        yield from (*commands_of(command, f"{words} {name}"), f"{words} {name}")
+
+
+COMMANDS = "|".join(sorted(commands_of(typer.main.get_command(application())), key=len, reverse=True))
+NAMES = rf"`[^`]+`|(?<![\w-])--[a-z][a-z-]+|\b(?:{COMMANDS})\b|\b[a-z]\w*(?:\.[a-z]\w*)+|\b[a-z]+(?:_[a-z]+)+"
+"""Names within backticks, options, commands, keys with dots or underscores."""
+KEYBOARD = {"ctrl", "esc"}
+
+
+def other_names(catalogue, is_chinese):
+    """Return the names that a translation or its message lacks; in Chinese also each Latin word not in the message."""
+    found = set()
+    for message in filter(lambda message: message.id, catalogue):
+        originals, texts = (re.sub(r"\{.*?\}", " ", " ".join(forms(text))) for text in (message.id, message.string))
+        found |= {*re.findall(NAMES, originals, re.ASCII)} ^ {*re.findall(NAMES, texts, re.ASCII)}
+        if is_chinese:
+            known, words = ({*re.findall("[a-z_]{2,}", text.lower())} for text in (originals, texts))
+            found |= {word for word in words - known - KEYBOARD if f"{word}s" not in known}
+    return found
+
+
+@pytest.mark.parametrize("code", CATALOGUES)
+def test_translations_have_the_names_of_their_messages(code):
+    """Commands, options and keys are the same in every language; negative control: five names that are not."""
+    catalogue = SCRIPT["read"](SCRIPT["FOLDER"] / f"{code}.po", code)
+    assert other_names(catalogue, code == "zh") == set()
+    catalogue["Body"].string = "`cor` --shake response.free start_height free"
+    new = {"`cor`", "--shake", "response.free", "start_height"}
+    assert other_names(catalogue, is_chinese=False) == new
+    assert {"free", "cor"} <= other_names(catalogue, is_chinese=True)
+    text = "format of the record file, if not found by content: see rocking record formats"
+    catalogue[text].string = "rocking formats"
+    assert other_names(catalogue, is_chinese=False) == {*new, "rocking record formats"}
 
 
 def test_the_template_is_current():

@@ -208,7 +208,7 @@ def test_v1_peak_time_from_the_trigger_is_doubted() -> None:
     source = _source([text])
     assert V1.read(source).components[0].acceleration.tolist() == TENTHS
     assert source.doubts == [
-        "hand.v: the header states the peak at 0.02 s, but the data have it at 0.06 s (from the trigger)"
+        "hand.v: the header states the peak at 0.02 s, but the data have it at 0.06 s (perhaps from the trigger)"
     ]
 
 

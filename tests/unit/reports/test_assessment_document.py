@@ -27,7 +27,7 @@ def record(peak, period=0.8, name="sine"):
     ],
 )
 def test_a_history_that_overturns_is_plotted(motions, falls):
-    """The motion that overturns as recorded, or that of the smallest factor at this factor."""
+    """The motion that overturns unscaled, or that of the smallest factor at this factor."""
     found = rk.assess(CABINET, motions, [0.85, 0.92], count=8)
     governing = governing_history(found)
     assert governing.history.outcome is rk.Outcome.OVERTURNED
@@ -36,7 +36,7 @@ def test_a_history_that_overturns_is_plotted(motions, falls):
     assert governing.description.startswith(
         f"The body{' mirrored,' if 'mirrored' in governing.description else ''} under {governing.motion.name}"
     )
-    assert ("as recorded" in governing.description) is fell
+    assert ("(unscaled)" in governing.description) is fell
     assert fell or f"scaled by {found.lowest.factor:.3g}," in governing.description
     # negative control: without a factor the history of the least margin stands where no motion overturns
     as_it_is = rk.simulate(CABINET, governing.motion, 0.92)

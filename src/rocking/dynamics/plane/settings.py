@@ -34,8 +34,8 @@ class PlaneSettings(Settings):
     linear : bool
         Slender-linear equations: sine and cosine of the angles replaced by angle and one.
     rest_speed : float
-        Speed after an impact, over p alpha; after a slower impact the body comes to rest at once, if the next impacts
-        provably decay before the body could rise again [-].
+        Speed after an impact, over p alpha. After a slower impact, the remaining impacts are summed up to rest instead
+        of resolved one by one, if these impacts provably end before the body could rise again [-].
     longest_step : float
         Longest Taylor step of the fast engine as p times time [-].
     order : int

@@ -266,7 +266,8 @@ def check_peak_time(source: Source, stated: float, values: FloatArray, step: flo
         data_time = float(largest.argmax()) * step
         source.doubt(
             None,
-            f"the header states the peak at {stated:g} s, but the data have it at {data_time:g} s (from the trigger)",
+            f"the header states the peak at {stated:g} s, but the data have it at {data_time:g} s "
+            "(perhaps from the trigger)",
         )
 
 

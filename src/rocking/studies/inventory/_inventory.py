@@ -67,7 +67,7 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         `simulate`, the one with the largest peak does, and in three dimensions the other horizontal one across it.
     restitution : str, RestitutionModel, float or mapping
         Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for). The calibrated
-        default if not given, drawn with its scatter for every motion, with both beside it; in three dimensions KED.
+        default if not given, drawn with its scatter for every motion, with both beside it.
     pga, pgv : str or float, optional
         Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
         number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
