@@ -14,10 +14,11 @@ from rocking.cli.numbers import units_of, value_of
 from rocking.cli.spelling import typed
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
+from rocking.messages import Message
 from rocking.motions.pulses import catalogue
 from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.reading import is_pattern, tables_in
-from rocking.spec.schema import SCHEMA, migrated
+from rocking.spec.schema import SCHEMA, migrated, renamed_keys
 
 if TYPE_CHECKING:
     import typer
@@ -64,6 +65,7 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
     {'settings': {'gravity': 9.81, 'friction': 0.5}, 'body': {'up': 'y'}}
     """
     tables: Tables = {}
+    present = dict(renamed_keys())  # the keys of files of earlier versions are no keys here
     for text in texts or ():
         path, equals, value = text.partition("=")
         table, dot, key = path.strip().partition(".")
@@ -77,6 +79,11 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
             raise InvalidValueError(
                 "{parameter}: no table named {table!r:.60} here; there are {names}", parameter="--set", table=table,
                 names=", ".join(known), hint=near,
+            )  # fmt: skip
+        if (new := present.get(f"{table}.{key}")) is not None:
+            raise InvalidValueError(
+                "{parameter}: unknown key {key!r:.60}", parameter="--set", key=f"{table}.{key}",
+                hint=Message("did you mean {name}?", {"name": new}),
             )  # fmt: skip
         if key in tables.setdefault(table, {}):
             raise InvalidValueError("{parameter} {key} is given twice", parameter="--set", key=f"{table}.{key}")

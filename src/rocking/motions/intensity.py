@@ -436,13 +436,15 @@ def measures() -> dict[str, IntensityMeasure]:
     return dict(MEASURES)
 
 
-def measure(name: Any) -> IntensityMeasure:
+def measure(name: Any, parameter: str = "im") -> IntensityMeasure:
     """Return a measure by its name.
 
     Parameters
     ----------
     name : str or IntensityMeasure
         A key of `measures`, ``sa(period)`` or ``sa(period,damping)`` [s, -], or another measure.
+    parameter : str
+        Name of the parameter in the error about an unknown measure.
 
     Returns
     -------
@@ -462,7 +464,7 @@ def measure(name: Any) -> IntensityMeasure:
         if spectral := spectral_period(name):
             return spectral_measure(*spectral)
     names, hint = ", ".join(MEASURES), checks.nearest(name, MEASURES)
-    raise InvalidValueError(parameter="measure", allowed=f"one of {names}, or sa(period in s)", value=name, hint=hint)
+    raise InvalidValueError(parameter=parameter, allowed=f"one of {names}, or sa(period in s)", value=name, hint=hint)
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:

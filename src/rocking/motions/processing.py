@@ -346,7 +346,7 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     >>> round(arias_intensity(scaled_to(GroundMotion([0.0, 1.0, -2.0], 0.1), "arias", 1.5)), 12)
     1.5
     """
-    item = intensity.measure(measure)
+    item = intensity.measure(measure, "measure")
     item.check_grows()
     current, name = item.of(motion, body), item.symbol or item.name
     target = checks.positive("target", target, item.unit)

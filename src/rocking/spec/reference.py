@@ -40,6 +40,8 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "campaign": (CampaignTable, "`rocking campaign`"),
 }
 
+_COMMANDS = {"minimum": "overturning-pga"}  # names of commands that differ from their table
+
 _BODIES: dict[str, type[BaseModel]] = {
     "the file": schema.BodyFile,
     "block": schema.BlockTable,
@@ -78,7 +80,7 @@ def _tables() -> dict[str, tuple[type[JobTable], str]]:
     """Return the tables of all questions and what they are of: those of studies as their classes have them."""
     of_studies: dict[str, tuple[type[JobTable], str]] = {}
     for question in questions().values():
-        where = f"`rocking {question.own_table()}`"
+        where = f"`rocking {_COMMANDS.get(question.own_table(), question.own_table())}`"
         of_studies = {**_within(question, where, {*BodyQuestion.model_fields}), **of_studies}
     return _TABLES | dict(sorted(of_studies.items()))
 

@@ -215,7 +215,7 @@ REFUSED = {
         "SIZE --synthetic point-source --count 0": "--count must be in [1, 5000], got 0",
         "SIZE --synthetic point-source --seed -1": "seed",
         "SIZE FAMILY --analysis ida": "--analysis must be one of stripes, cloud, incremental",
-        "SIZE FAMILY --im richter": "measure must be one of pga",
+        "SIZE FAMILY --im richter": "im must be one of pga",
         "SIZE FAMILY --im pgv/pga": "no factor on a motion changes pgv/pga",
         "SIZE FAMILY --im pgv": "which levels of pgv",
         "SIZE FAMILY --levels 0.1:1g:9": "a unit at every number or at none",

@@ -16,7 +16,7 @@ class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
     initial_rotation: float | None = key(
-        "no motion: initial rotation over the slenderness angle, of a solid towards x; negative to the left, or -x [-]"
+        "no motion: initial rotation over the slenderness angle; above 0 to the right (x), below 0 to the left [-]"
     )
     friction: float | None = key("coefficient of friction; enables sliding [-]", None, gt=0.0)
     normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)

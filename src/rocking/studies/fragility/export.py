@@ -239,7 +239,7 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Cross
 
     Parameters
     ----------
-    model, path, crossing
+    model, path, crossing_curves
         As for `to_csv`. Where curves cross and `crossing_curves` is "refuse", the sheet of FEMA P-58 contains the
         reason.
 

@@ -241,7 +241,7 @@ ELSEWHERE = {
     "levels": ("stripes", "levels = { from = 2, to = 10, count = 5 }", "", r"fragility\.levels is missing"),
     "falling": ("stripes", "from = 2, to = 10", "from = 10, to = 2",
         r"fragility: levels must increase \[m/s2\] from value to value; reverse the order"),
-    "measure": ("stripes", '"pga"', '"pgaa"', r"fragility: measure must be one of pga, .*got 'pgaa'"),
+    "measure": ("stripes", '"pga"', '"pgaa"', r"fragility: im must be one of pga, .*got 'pgaa'"),
     "ratio": ("stripes", '"pga"', '"pgv/pga"', r"fragility: im must grow with the scale factor"),
     "states": ("stripes", "limit_states = [0.3]", "limit_states = [0.3, -1]",
         r"fragility\.limit_states\[1\] must be a number > 0, got -1"),
