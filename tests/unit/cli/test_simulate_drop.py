@@ -44,7 +44,7 @@ def test_options_file_and_python_give_one_answer(answered, body, tmp_path):
     found = answered(body, *words, "--start-velocity=0.2,-0.1,0.4")
     solid = rk.read_body(body)
     start = SpatialStart(found["initial_tilt"], height=HEIGHT, velocity=velocity)
-    assert found["summary"] == rk.free_rocking(solid, restitution="ked", friction=0.6, start=start).summary
+    assert found["summary"] == rk.free_rocking(solid, friction=0.6, start=start).summary
     file = tmp_path / "drop.toml"
     table = f"initial_rotation = 0.3\nfriction = 0.6\nstart_height = {HEIGHT}\nstart_velocity = {list(velocity)}\n"
     file.write_text(f'[body]\nfile = "prism.toml"\n[response]\n{table}', encoding="utf-8")
@@ -52,7 +52,7 @@ def test_options_file_and_python_give_one_answer(answered, body, tmp_path):
     plane = answered(*BLOCK, "--initial-rotation", "0.3", "--start-height", HEIGHT)
     block = rk.Block(width=0.5, height=1.4)
     begin = Start(0.3 * block.slenderness_angle, height=HEIGHT)
-    assert plane["summary"] == rk.free_rocking(block, restitution="ked", friction=0.6, start=begin).summary
+    assert plane["summary"] == rk.free_rocking(block, friction=0.6, start=begin).summary
     shaken = answered(body, "sine:amplitude=3,period=0.6", "--friction", "0.6", "--start-height", HEIGHT)
     pulse, above = rk.pulses.sine(3.0, 0.6), SpatialStart(height=HEIGHT)
     assert shaken["summary"] == rk.simulate(solid, {"x": pulse}, friction=0.6, start=above).summary
