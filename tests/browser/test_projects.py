@@ -306,7 +306,7 @@ def test_a_project_that_is_worked_on_is_not_gone(open_page: Callable[..., Any], 
     (project,) = served.api("projects", method="GET")["projects"]
     served.api(f"projects/{project['id']}", method="DELETE")
     page.get_by_label("Height").fill("3")
-    expect(page.locator("#status")).to_contain_text("it is back")
+    expect(page.locator("#status")).to_contain_text("It is restored")
     saved(page)
     (again,) = served.api("projects", method="GET")["projects"]
     assert again["id"] == project["id"]
