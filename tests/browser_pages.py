@@ -73,7 +73,7 @@ def finished(served: Any, name: str, kind: str = "stripes", **tables: Any) -> st
 
 def pasted(page: Any) -> str:
     """Return what a user pastes after copying, once the page says that it has copied."""
-    page.get_by_text("paste them into Excel").wait_for()
+    page.get_by_text("Paste them into a spreadsheet").wait_for()
     page.evaluate("document.body.append(Object.assign(document.createElement('textarea'), { id: 'paste' }))")
     page.locator("#paste").focus()
     page.keyboard.press("Control+V")

@@ -145,7 +145,7 @@ def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
     body.fill("Motion")
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
-    section.get_by_role("button", name="Fragen", exact=True).click()
+    section.get_by_role("button", name="Berechnen", exact=True).click()
     section.get_by_role("heading", name="Bleibt Motion stehen?").wait_for()
 
 
@@ -278,7 +278,7 @@ def test_the_history_of_a_project_speaks_it(open_page: Callable[..., Any]) -> No
     assert said[-1] == "begonnen"
     assert {part for each in said[:-1] for part in each.removesuffix(" geändert").split(", ")} == {
         "Körper",
-        "Entscheidung",
+        "Beurteilung",
     }
 
 

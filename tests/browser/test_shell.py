@@ -401,7 +401,7 @@ def test_a_step_on_its_way_holds_up_no_other(
     [
         ({"status": 500, "json": {"error": {"kind": "internal", "message": "internal error"}}}, "nternal error"),
         ({"status": 429, "json": {"error": {"kind": "busy", "message": "too much at once; try again"}}}, "at once"),
-        (None, "The server does not answer"),
+        (None, "The server does not respond"),
     ],
 )
 def test_a_start_that_fails_says_what_failed(

@@ -116,7 +116,7 @@ def test_a_number_in_error_launches_nothing(studies: Any, served: Any) -> None:
     """With a field marked wrong nothing is launched: its last good number is not the one on the screen."""
     before = len(served.api("studies", method="GET")["studies"])
     studies.locator("#view-studies").get_by_label("from").first.fill("x")
-    refused(studies, "wrong")
+    refused(studies, "invalid")
     assert len(served.api("studies", method="GET")["studies"]) == before
 
 
@@ -399,7 +399,7 @@ LARGE_MAP = """async (count) => {
   document.querySelector("#view-studies").append(place);
   const busy = () => performance.now(), started = busy();
   const app = { call: async () => ({ stored: { impacts: 2 } }) }, chosen = { restitution: 0 };
-  render(html`<${OverturningMap} app=${app} study=${{ id: "x" }} found=${found} chosen=${chosen} />`, place);
+  render(html`<${OverturningMap} app=${app} study=${{ id: "x" }} result=${found} chosen=${chosen} />`, place);
   const shown = busy() - started, canvas = place.querySelector("canvas"), box = canvas.getBoundingClientRect();
   const again = busy();
   for (let k = 0; k < 20; k += 1) {

@@ -1,4 +1,4 @@
-/** The question of a fragility: which motions, which measure, which levels and states. */
+/** Form of a fragility: motions, intensity measure, levels and limit state. */
 import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { pretty } from "/app/format.js";
 import { Choice, NumberField, Segmented } from "/parts/fields.js";
@@ -14,8 +14,8 @@ export const FragilityQuestion = ({ app, question, visits }) => {
   const { families, measures, keys: { fragility: keys, motions } } = app.info;
   /** @type {Signal<any>} */
   const chosen = useSignal({
-    kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: keys.measure.usual,
-    state: JSON.parse(keys.states.usual)[0],
+    kind: "stripes", source: "synthetic", family: families[0].name, count: 40, seed: 1, measure: keys.im.usual,
+    state: JSON.parse(keys.limit_states.usual)[0],
   });
   const { kind, source, measure } = chosen.value;
   const records = useRef(null);
@@ -52,6 +52,6 @@ const tablesOf = (inputs, { kind, source, family, count, seed, measure, state },
   if (!inputs.body) throw new Error("A fragility needs a body. Choose a body in the step Body.");
   const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
   const motions = source === "synthetic" ? [set] : records();
-  const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: rangeOf(levels) }) };
+  const fragility = { im: measure, limit_states: [state], ...(kind === "cloud" ? {} : { levels: rangeOf(levels) }) };
   return { kind, job: { body: inputs.body, motions, fragility } };
 };
