@@ -162,7 +162,9 @@ class InventoryAnswer:
         from rich.text import Text
 
         from rocking.cli.study import source_lines
+        from rocking.dynamics.settings import NEVER_SLIDES
         from rocking.motions.summary import summaries_of
+        from rocking.restitution.headline import headline
         from rocking.studies.inventory import table
         from rocking.studies.inventory.lights import LIGHT_MARKS, LIGHT_NAMES
 
@@ -196,6 +198,9 @@ class InventoryAnswer:
             page.line(say("Lines that are not objects: {lines}", lines=lines))
         if words := table.stated(assessment):
             page.line(words)
+        in_space = {each.item.solid is not None or each.friction < NEVER_SLIDES for each in assessment.verdicts}
+        models = [say(headline(assessment.restitution, in_space=each)) for each in sorted(in_space)]
+        page.line("\n".join(dict.fromkeys(models)))
         if assessment.ignored:
             page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))
         if words := table.untranslated(assessment):

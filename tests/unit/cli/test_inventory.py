@@ -7,6 +7,7 @@ from unit.studies.inventory import museum_list
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.restitution.headline import headline
 
 LIST = "name;width_cm;depth_cm;height_cm\ntall vase;12,5;12,5;95\nchest;120;60;50\nmirror;?;20;160\n"
 # a triangle of 1 m/s2
@@ -149,3 +150,14 @@ def test_a_museum_list_in_one_command(printed, tmp_path):
     assert len(labels) == 30
     for label in labels:
         assert f"  {label}" in out or f" {label}, " in out
+
+
+@pytest.mark.parametrize(
+    ("more", "in_space"),
+    [((), False), (("--restitution", "ked"), False), (("--friction", 0.4), True)],
+    ids=["default", "ked", "friction"],
+)
+def test_ratings_name_their_model(answered, printed, objects, more, in_space):
+    words = (objects, "--count", 5, "--pga", "0.3g", *more)
+    model = headline(answered(*words)["restitution"], in_space=in_space)
+    assert str(model) in " ".join(printed(*words).split())
