@@ -91,8 +91,8 @@ def test_documents(found, tmp_path):
     bare = " ".join(re.sub(r"<style>.*?</style>|<[^>]+>", " ", html, flags=re.S).split())
     pdf = words_of_pdf(write_inventory_file(found, tmp_path / "x.pdf"))
     for text in filter(None, (bare, pdf)):
-        for words in ("A-17 Vase, Fuß geklebt", "A-18 Vase", "A-19 Vase", "Summe: 3", "Zuallererst : A-17 Vase"):
-            assert words in text.replace("Zuallererst:", "Zuallererst :"), words
+        for words in ("A-17 Vase, Fuß geklebt", "A-18 Vase", "A-19 Vase", "Summe: 3", "Höchste Priorität : A-17 Vase"):
+            assert words in text.replace("Höchste Priorität:", "Höchste Priorität :"), words
     assert html.index("<svg") < html.index("<table")
     assert "A-18 Vase" in html[html.index("<svg") : html.index("</svg>")]
 
