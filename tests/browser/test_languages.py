@@ -269,7 +269,7 @@ def test_the_history_of_a_project_speaks_it(open_page: Callable[..., Any]) -> No
     page = open_page(locale="de")
     page.get_by_label("Höhe").first.fill("3")
     page.locator("#tab-decide").click()
-    page.get_by_label("Unterzeichnet von").fill("A. Person")
+    page.get_by_label("Verfasser").fill("A. Person")
     page.get_by_test_id("project-saved").get_by_text("gespeichert", exact=True).wait_for()
     page.get_by_test_id("project").click()
     states = page.get_by_test_id("projects").locator(".states li")
