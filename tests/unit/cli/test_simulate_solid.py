@@ -181,7 +181,7 @@ def test_capitals_of_a_model_do_not_matter(run, answered, body):
 def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answered, tmp_path):
     """A cylinder under one sine comes to rest after it; under two it rolls on without impact, which screen, --json and
     Python state; with a duration that is no reason."""
-    file, reason = tmp_path / "drum.toml", "no impact cost energy in the 15 / p after the motion"
+    file, reason = tmp_path / "drum.toml", "no impact lost energy in the 15 / p after the motion"
     file.write_text(
         'units = "m"\n[[solid.part]]\ncylinder = { diameter = 0.5, height = 2.0 }\ndensity = 1000\n', encoding="utf-8"
     )

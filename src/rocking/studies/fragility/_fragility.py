@@ -125,7 +125,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
 
     Parameters
     ----------
-    body, motions, levels, restitution, analysis, measure, states, factor, least, progress
+    body, motions, levels, restitution, analysis, im, limit_states, scale, least, progress
         As for `fragility`; progress is not told of the histories of a search.
     **options
         As for `fragility`; ``tolerance`` of stripes and clouds is that of `Settings`.
