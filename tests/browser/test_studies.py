@@ -165,7 +165,7 @@ def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: An
     refused(studies, "No record is selected")
     for row in rows.all():
         row.get_by_label("Unit of the accelerations").select_option("g")
-        row.get_by_role("button", name="Read").click()
+        row.get_by_role("button", name="Apply").click()
         expect(row.get_by_role("checkbox")).to_be_checked()
     rows.first.get_by_role("checkbox").uncheck()
     expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 4 records are taken")
