@@ -58,7 +58,7 @@ def test_the_evidence_is_drawn_with_this_body(impact: Any) -> None:
     assert cloud.locator(".marker").count() == 39
     assert cloud.locator("circle").count() == len(rows(impact))
     assert impact.get_by_test_id("interval-picture").locator("circle").count() == len(rows(impact))
-    assert "39 published measurements" in cloud.get_attribute("aria-label")
+    assert "39 published coefficients of restitution" in cloud.get_attribute("aria-label")
 
 
 def test_impulse_positions_stand_where_they_are_said_to_be(impact: Any) -> None:

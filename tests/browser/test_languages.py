@@ -146,7 +146,7 @@ def test_names_of_users_stay(open_page: Callable[..., Any]) -> None:
     page.locator("#tab-decide").click()
     section = page.locator("#view-decide")
     section.get_by_role("button", name="Berechnen", exact=True).click()
-    section.get_by_role("heading", name="Bleibt Motion stehen?").wait_for()
+    section.get_by_role("heading", name="Beurteilung von Motion").wait_for()
 
 
 NUMBERS = """async () => {

@@ -168,7 +168,7 @@ def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: An
         row.get_by_role("button", name="Apply").click()
         expect(row.get_by_role("checkbox")).to_be_checked()
     rows.first.get_by_role("checkbox").uncheck()
-    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 4 records are taken")
+    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 4 records are selected")
     shot(studies, "studies-records")
     studies.locator("#study-name").fill("cloud of records")
     studies.get_by_test_id("study-launch").click()
@@ -181,7 +181,7 @@ def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: An
     studies.reload()
     studies.get_by_role("radio", name="Fragility").check(force=True)
     studies.get_by_role("radio", name="Uploaded records").check(force=True)
-    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 3 records are taken")
+    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 3 records are selected")
 
 
 def test_where_the_models_differ(studies: Any, shot: Any) -> None:
