@@ -196,7 +196,7 @@ def test_a_round_base_is_followed_to_rest_or_its_end_has_a_reason(printed, answe
     assert told["ends_early"] is True
     for text in (told["last_state"]["unfinished"], told["summary"], " ".join(page.split())):
         assert reason in text
-        assert "duration= in Python follows it further" in text
+        assert "use duration= in Python for a longer response" in text
     rolling = rk.simulate(solid, {"x": rk.pulses.sine(2.6, 0.8), "y": rk.pulses.sine(2.5, 0.5)}, "housner")
     assert (rolling.exported().provenance["ends_early"], rolling.impacts.size) == (True, 0)
     # negative control: a stated duration ends another history without that reason

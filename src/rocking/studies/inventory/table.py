@@ -120,7 +120,7 @@ _LIMITS = (
     Message(
         "Each direction is a body of the outer size, on the base that is given; where no height of the centre"
         " of mass is given it is half the height. With a friction or a body file the object moves in three "
-        "dimensions instead, by KED where no model was asked for, as nothing was measured there."
+        "dimensions instead, with the default restitution model where no model is stated; no measurement exists there."
     ),
     Message(
         "Where no model of impact was asked for, the coefficient of restitution is not known exactly: each "
