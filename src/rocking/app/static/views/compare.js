@@ -99,7 +99,7 @@ const Compare = ({ app, request, margins, time, studies, faulty }) => {
       <p class="lead">The same body and motion with every restitution model.</p></header>
     ${refused.value && html`<${Note} kind="error" role="alert" text=${refused.value.message} />`}
     ${answer.value && faulty.value && html`<${Note} kind="error" role="alert" text=${`${faulty.value} ${t(OLDER)}`} />`}
-    ${!answer.value && !refused.value && html`<p class="note" data-testid="nothing-moves">No motion is selected, or the result is being computed.
+    ${!answer.value && !refused.value && html`<p class="note toolbar" data-testid="nothing-moves">No motion is selected, or the result is being computed.
       <${Button} onClick=${() => app.go("motion")}>Choose a motion<//></p>`}
     ${there.length > 0 && html`
       <div class=${`verdict-part ${old}`}>
