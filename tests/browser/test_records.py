@@ -200,7 +200,7 @@ def test_a_unit_for_each_file(open_page: Callable[..., Any], shot: Callable[...,
     """Files of mixed units are one set: the page offers unit, step, format and skip at each file that was not read."""
     page, section, options = mixed_set(open_page, tmp_path / "mixed")
     asked(section, "refused")
-    expect(section.get_by_role("alert")).to_contain_text("a.txt: the file does not state its unit: state it in")
+    expect(section.get_by_role("alert")).to_contain_text("a.txt: the file does not state its unit: enter it in")
     first, second, third = (options.get_by_role("listitem", name=f"{name}.txt") for name in "abc")
     expect(first).to_contain_text("The file does not state its unit.")
     expect(options.get_by_role("listitem")).to_have_count(1)
@@ -290,7 +290,7 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     section.get_by_label("Analysis").select_option("overturning-pga")
     section.get_by_label("samples").fill("60")
     section.get_by_label("bisections").fill("1")
-    section.get_by_label("max_pga").fill("20")
+    section.get_by_label("max pga").fill("20")
     outcome = asked(section)
     question = served.api("questions", method="GET")["questions"][0]
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
