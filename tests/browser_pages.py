@@ -141,7 +141,7 @@ def asked_in_space(page: Any, what: str, path: Path | None = None) -> Any:
         scan_sent(section, "leaning-block.stl")
         section.get_by_label("Unit of the file").select_option("mm")
     section.get_by_label("Analysis").select_option(what)
-    section.get_by_role("button", name="Ask", exact=True).click()
+    section.get_by_role("button", name="Compute", exact=True).click()
     outcome = section.get_by_test_id("outcome")
     expect(outcome.get_by_role("heading", level=2)).to_contain_text(
         {"equilibria": "How it can stand", "restitution": "Its edges", "simulate": "How it moves"}[what]

@@ -300,6 +300,6 @@ def test_crossings(open_page: Callable[..., Any], shot: Callable[..., Any], serv
     assert rows.count() == min(len(answer["crossings"]), 20)
     expect(outcome.locator("img.drawing")).to_be_visible()
     shot(page, "crossings")
-    section.get_by_label("min_pga").fill("30")
+    section.get_by_label("min pga").fill("30")
     asked(section, "refused")
-    expect(section.get_by_role("alert")).to_contain_text("below highest, got 30 and 20 m/s2")
+    expect(section.get_by_role("alert")).to_contain_text("below max pga, got 30 and 20 m/s2")
