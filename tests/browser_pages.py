@@ -144,7 +144,7 @@ def asked_in_space(page: Any, what: str, path: Path | None = None) -> Any:
     section.get_by_role("button", name="Compute", exact=True).click()
     outcome = section.get_by_test_id("outcome")
     expect(outcome.get_by_role("heading", level=2)).to_contain_text(
-        {"equilibria": "How it can stand", "restitution": "Its edges", "simulate": "How it moves"}[what]
+        {"equilibria": "Stable poses", "restitution": "Edges", "simulate": "Response"}[what]
     )
     expect(outcome).to_have_attribute("data-state", "done")
     expect(outcome.get_by_test_id("space-stage")).to_have_attribute("data-drawn", "true")

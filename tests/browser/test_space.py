@@ -65,7 +65,7 @@ def test_a_scan_stands_and_settles(
     # a browser that draws nothing in three dimensions says so, and tells the rest
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.reload()
-    section.get_by_role("button", name="Show How it can stand").first.click()
+    section.get_by_role("button", name="Show Stable poses").first.click()
     expect(section).to_contain_text("cannot draw in 3D")
     expect(words).to_contain_text("The centre of mass must rise")
 
