@@ -43,7 +43,7 @@ def test_a_scan_stands_and_settles(
     answer = served.api(f"questions/{question['id']}", method="GET")["answer"]
     words = outcome.get_by_test_id("space-words")
     expect(words).to_contain_text(f"Pose {answer['stands_in']}")
-    expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{len(answer['stable'])} ways")
+    expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{len(answer['stable'])} stable poses")
     before = seen(page)
     assert len(np.unique(before.reshape(-1, 3), axis=0)) > 200  # shaded and coloured, not an empty ground
     outcome.get_by_label("Stable pose").select_option("0")
