@@ -185,7 +185,8 @@ def test_figures_of_studies_are_saved_as_they_are_seen(open_page: Callable[..., 
             spectrum={"slenderness_angles": [0.2, 0.3], "periods": [2.0, 3.0, 4.0]}, **pulse,
         ),
         "stripes": finished(
-            served, NAME, "stripes", body=BODY, fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "limit_states": []},
+            served, NAME, "stripes", body=BODY, restitution={"model": "ked"},
+            fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "limit_states": []},
             motions={"synthetic": "pulse-like", "count": 12, "seed": 7},
         ),
     }  # fmt: skip
