@@ -54,7 +54,7 @@ static void many(Array<const double, 2> bodies, Array<const double, 3> sines, Ar
     const auto fits = [&](const auto& array) { return static_cast<std::int64_t>(array.shape(0)) == rows; };
     expect(fits(sines) && fits(starts) && fits(results) && fits(sections) && fits(impacts) && bodies.shape(1) == kBody && starts.shape(1) == kStart &&
                sines.shape(2) == 3 && sines.shape(1) >= 1 && sines.shape(1) <= kMostSines && results.shape(1) == kResults && sections.shape(2) == 2 &&
-               impacts.shape(2) == 3 && threads > 0 && vectors >= 0 && vectors <= 2 && settled >= 0 && law.shape(0) == 2,
+               impacts.shape(2) == 3 && threads > 0 && vectors >= 0 && vectors <= 2 && settled >= 0 && sections.shape(1) > 0 && law.shape(0) == 2,
            "tables of histories expected");
     const Cycles work{bodies.data(), starts.data(), reinterpret_cast<const Sine*>(sines.data()), results.data(), sections.data(), impacts.data(), rows, settled,
                       static_cast<std::int64_t>(sections.shape(1)), static_cast<std::int64_t>(impacts.shape(1)),

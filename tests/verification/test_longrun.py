@@ -24,7 +24,7 @@ from rocking.studies.longrun.orbits import (
     slender_orbit,
     symmetric_orbit,
 )
-from rocking.studies.longrun.system import Harmonic, HarmonicRocking, over_impacts, over_periods
+from rocking.studies.longrun.system import Harmonic, HarmonicRocking, Numerics, over_impacts, over_periods
 from rocking.studies.longrun.thresholds import slender_thresholds
 
 pytest.importorskip("rocking.dynamics._longrun", reason="the compiled engine is missing")
@@ -188,8 +188,8 @@ def test_speed_dependent_restitution():
     """r = .95 - .2 |rate| / p: determinant r R' with R' = d(r v) / dv; with r in place of R' it would be .8144."""
     plain = system_of(4, 1.5, 3.0, 0.95)
     p = plain.p
-    law = SpeedRestitution(at=[0.0, p], factors=[1.0, 1.0 - 0.2 / 0.95])
-    system = system_of(4, 1.5, 3.0, 0.95, law=law)
+    law = SpeedRestitution(at=[0.0, p], factors=[1.0, 1.0 - 0.2 / 0.95], times=0.95)
+    system = system_of(4, 1.5, 3.0, law)
     orbit = find_orbit(system, 2.98898147324233 + math.pi, 0.21455748727069 / plain.alpha)
     assert orbit.speed * plain.alpha == pytest.approx(0.21455748727069, abs=1e-13)
     assert orbit.trace == pytest.approx(-0.444098450749, abs=1e-11)
@@ -434,6 +434,28 @@ def test_bad_input_is_refused():
     system = HarmonicRocking.of_ratios(lean, 1.5, 2.0, restitution="ked")
     with pytest.raises(ValueError, match="both"):
         find_orbit(system, 1.0, 1.0)
+    block = system_of(4, 1.5, 2.0, "ked")
+    for name, call in {
+        "kept": lambda: over_periods(block, np.zeros((1, 3)), kept=0),
+        "vectors": lambda: over_periods(block, np.zeros((1, 3)), vectors=3),
+        "starts": lambda: over_periods(block, np.full((1, 3), math.nan)),
+        "one row per system": lambda: over_periods([block], np.zeros((2, 3))),
+        "impacts": lambda: over_impacts(block, 1.0, 1.0, 0),
+        "parameter": lambda: block.changed("mass", 1.0),
+        "restitution": lambda: block.changed("restitution", 1.2),
+        "coefficient of restitution": lambda: system_of(4, 1.5, 2.0, 1.2).sides,
+        "slenderness": lambda: block.changed("slenderness", 2.0),
+        "frequency": lambda: system_of(4, 1.5, 0.0, "ked"),
+        "amplitude": lambda: over_impacts(block.changed("amplitude", 0.0), 1.0, 1.0, parameter="amplitude"),
+        "step_error": lambda: Numerics(step_error=math.nan),
+        "excitation": lambda: HarmonicRocking(Block(width=1.0, height=4.0), 3.0),
+        "symmetric": lambda: symmetric_orbit(system),
+        "seed": lambda: lyapunov_exponents(block, seed=-1),
+    }.items():
+        with pytest.raises(ValueError, match=name):
+            call()
+    with pytest.raises(ValueError, match="restitution"):
+        slender_thresholds(2.0, 0.0)
     with pytest.raises(ValueError, match="settled"):
         lyapunov_exponents(system, settled=5)
     with pytest.raises(ValueError, match="starts"):

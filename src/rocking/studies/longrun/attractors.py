@@ -8,7 +8,6 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.errors import InvalidValueError
 from rocking.studies.longrun.system import (
     DEFAULTS,
     NONE,
@@ -212,10 +211,7 @@ def bifurcation(
     checks.increasing("values", values)
     checks.one_of("memory", memory, ("none", "up", "down"))
     settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
-    starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(np.asarray(starts, dtype=float))
-    if starts.ndim != 2 or starts.shape[1] != 3:
-        raise InvalidValueError("starts must have 3 columns, time, rotation and angular velocity, got shape {shape}",
-                                shape=starts.shape)  # fmt: skip
+    starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(checks.real_array("starts", starts))
     options = {"settled": settled, "kept": kept, "vectors": int(exponents), "numerics": numerics}
     tables = []
     for system in named.values():

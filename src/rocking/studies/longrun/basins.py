@@ -233,14 +233,15 @@ def uncertainty_exponent(
     Returns
     -------
     UncertaintyExponent
-        The exponent and the fractions from which it was fitted, weighted with their counts.
+        The exponent and the fractions from which it was fitted, weighted with their counts; NaN where no neighbour of
+        one distance ends otherwise.
 
     References
     ----------
     Grebogi, McDonald, Ott and Yorke (1983), Phys. Lett. A 99:415-418.
     """
     distance = np.logspace(-4.0, -1.5, 6) if distances is None else checks.positive_array("distances", distances, "rad")
-    draws = np.random.default_rng(seed).random((2, checks.whole("samples", samples, 2)))
+    draws = np.random.default_rng(checks.whole("seed", seed)).random((2, checks.whole("samples", samples, 2)))
     phase, speed = draws[0] * 2.0 * math.pi, draws[1] * highest
 
     def are_lost(phase: FloatArray) -> Any:
@@ -249,10 +250,11 @@ def uncertainty_exponent(
     is_lost = are_lost(phase)
     uncertain = [(are_lost(phase - step) != is_lost) | (are_lost(phase + step) != is_lost) for step in distance]
     counts = np.array([row.sum() for row in uncertain])
+    if not counts.all():
+        return UncertaintyExponent(math.nan, math.nan, distance, counts / samples)
     fraction = counts / samples
     weights = counts / (1.0 - fraction)  # inverse variance of the logarithm of a binomial fraction
     x = np.log(distance) - np.average(np.log(distance), weights=weights)
-    with np.errstate(divide="ignore"):
-        y = np.log(fraction)
+    y = np.log(fraction)
     total = float((weights * x * x).sum())
     return UncertaintyExponent(float((weights * x * y).sum() / total), 1.0 / math.sqrt(total), distance, fraction)

@@ -114,7 +114,7 @@ def lyapunov_exponents(
     """
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:
-        draws = np.random.default_rng(seed).random((checks.whole("orbits", orbits, 1), 2))
+        draws = np.random.default_rng(checks.whole("seed", seed)).random((checks.whole("orbits", orbits, 1), 2))
         times = draws[:, 0] * system.excitation.period
         starts = np.column_stack([times, np.full(len(draws), 1e-12), draws[:, 1] * system.alpha * system.p])
     result = over_periods(system, starts, settled=settled, kept=kept, vectors=2, numerics=numerics)

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.longrun.system import IMPACT, HarmonicRocking, Parameter, over_impacts
+from rocking.studies.longrun.thresholds import slender_conditions, slender_thresholds
 
 ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
 TOLERANCE = 1e-12  # of phase [rad] and speed over alpha p that close an orbit
@@ -174,7 +175,11 @@ def symmetric_orbit(system: HarmonicRocking) -> PeriodicOrbit:
     ------
     OrbitNotFoundError
         If the amplitude is too small for this orbit.
+    InvalidValueError
+        If the body is not symmetric.
     """
+    if not system.is_symmetric:
+        raise InvalidValueError("a symmetric body is needed, with equal feet and coefficients")
     slender_speed, slender_phase = slender_orbit(system.amplitude_ratio, system.frequency_ratio, float(system.sides[2]))
     phase = (slender_phase + math.pi) % (2.0 * math.pi)  # the ground pulls the body over its right foot
     if system.linear:
@@ -216,15 +221,7 @@ def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tup
     ----------
     Spanos and Koh (1984), J. Eng. Mech. 110:1627-1642.
     """
-    half = math.pi / frequency
-    c, s = math.cosh(half), math.sinh(half)
-    # (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r); linear in the speed v
-    matrix = np.array([[1.0 + c, s], [s, 1.0 + c]])
-    free, by_speed = (
-        np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / restitution)])
-    )
-    scale = np.array([1.0, 1.0 / frequency])
-    free, by_speed = free * scale, by_speed * scale
+    free, by_speed = slender_conditions(frequency, restitution)
     size = amplitude / (1.0 + frequency**2)
     a, b, d = by_speed @ by_speed, free @ by_speed, free @ free - size**2
     root = b * b - a * d
@@ -232,9 +229,9 @@ def slender_orbit(amplitude: float, frequency: float, restitution: float) -> tup
         raise OrbitNotFoundError(
             "no symmetric orbit at amplitude ratio {amplitude:.6g} and frequency ratio {frequency:.6g}: the smallest "
             "amplitude ratio is {minimum:.6g}", amplitude=amplitude, frequency=frequency,
-            minimum=(1.0 + frequency**2) * math.sqrt(free @ free - b * b / a),
+            minimum=slender_thresholds(frequency, restitution).fold,
         )  # fmt: skip
-    speed = (-b + math.sqrt(root)) / a
+    speed = float((-b + math.sqrt(root)) / a)
     x, y = free + by_speed * speed
     return speed, math.atan2(x, y) % (2.0 * math.pi)
 

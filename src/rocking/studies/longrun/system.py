@@ -1,7 +1,7 @@
 """A rocking body under harmonic ground motion, and its state over whole periods or from impact to impact."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -9,10 +9,11 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
-from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, SpeedRestitution
+from rocking.conventions import DEFAULT_RESTITUTION, FEET, FloatArray
+from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
+from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, MissingExtraError
-from rocking.restitution.registry import coefficients_of
+from rocking.restitution._implied import energy_bound
 
 Parameter = Literal["amplitude", "frequency", "restitution", "slenderness"]
 _CODES = {"none": -1, "": 0, "amplitude": 1, "frequency": 2, "restitution": 3, "slenderness": 4}
@@ -70,10 +71,8 @@ class HarmonicRocking:
         Block, Section or MassPoints.
     excitation : Harmonic
         Ground motion.
-    restitution : str, RestitutionModel, float or mapping, optional
-        Model or coefficients, as for `simulate`.
-    law : ImpactLaw, optional
-        `SpeedRestitution` multiplies the coefficients by a factor that depends on the impact speed.
+    restitution : str, RestitutionModel, float, mapping or SpeedRestitution, optional
+        Model, coefficients or law over the impact speed, as for `simulate`.
     linear : bool, optional
         Equations of a slender body: sin x = x, cos x = 1.
     gravity : float, optional
@@ -82,9 +81,7 @@ class HarmonicRocking:
     Raises
     ------
     InvalidValueError
-        If the law depends on chance, or a coefficient would create energy.
-    MissingExtraError
-        If the compiled engine is missing.
+        If the restitution is random, or a coefficient would create energy.
 
     References
     ----------
@@ -93,15 +90,16 @@ class HarmonicRocking:
 
     body: Body
     excitation: Harmonic
-    restitution: Any = "calibrated"
-    law: ImpactLaw = field(default_factory=ConstantRestitution)
+    restitution: Any = DEFAULT_RESTITUTION
     linear: bool = False
     gravity: float = conventions.g
 
     def __post_init__(self) -> None:
-        if not isinstance(self.law, ConstantRestitution | SpeedRestitution):
+        checks.of_kind("excitation", self.excitation, Harmonic, "a Harmonic")
+        law = self._parameters.law
+        if not isinstance(law, ConstantRestitution | SpeedRestitution):
             raise InvalidValueError(
-                parameter="law", allowed="a ConstantRestitution or a SpeedRestitution", value=type(self.law).__name__
+                parameter="restitution", allowed="a model, coefficients or a SpeedRestitution", value=type(law).__name__
             )
 
     @classmethod
@@ -128,6 +126,7 @@ class HarmonicRocking:
         HarmonicRocking
             The system.
         """
+        checks.positive("frequency", frequency)
         side = body.side("right", gravity)
         angle = side.slenderness_angle
         reach = angle if options.get("linear") else math.tan(angle)
@@ -137,12 +136,19 @@ class HarmonicRocking:
     @cached_property
     def sides(self) -> FloatArray:
         """Slenderness angle [rad], p squared [1/s2] and coefficient of both feet, right first, shape (6,)."""
-        onto, _ = coefficients_of(self.restitution, self.body)
-        numbers = []
-        for foot, other in (("right", "left"), ("left", "right")):
-            side = self.body.side(foot, self.gravity)  # type: ignore[arg-type]
-            numbers += [side.slenderness_angle, side.frequency_parameter**2, onto[other]]  # type: ignore[index]
-        return np.array(numbers)
+        right, left = self._parameters.right, self._parameters.left
+        feet = ((right, left), (left, right))  # an impact ends the contact of one foot and lands on the other
+        return np.array(
+            [
+                x
+                for foot, other in feet
+                for x in (foot.slenderness_angle, foot.frequency_parameter**2, other.coefficient)
+            ]
+        )
+
+    @cached_property
+    def _parameters(self) -> RockingParameters:
+        return RockingParameters.of_body(self.body, self.restitution, self.gravity)
 
     @property
     def alpha(self) -> float:
@@ -189,16 +195,24 @@ class HarmonicRocking:
         -------
         HarmonicRocking
             The new system.
+
+        Raises
+        ------
+        InvalidValueError
+            If the parameter is unknown or the value outside its range.
         """
+        checks.one_of("parameter", parameter, ("amplitude", "frequency", "restitution", "slenderness"))
         sides, motion = self.sides.copy(), self.excitation
         if parameter == "amplitude":
             motion = replace(motion, amplitude=value * self.unit)
         elif parameter == "frequency":
-            motion = replace(motion, period=2.0 * math.pi / (value * self.p))
+            motion = replace(motion, period=2.0 * math.pi / (checks.positive("frequency", value) * self.p))
         elif parameter == "restitution":
-            sides[2::3] = value
+            sides[2::3] = checks.within("restitution", value, 0.0, min(energy_bound(self.body, foot) for foot in FEET))
         else:
-            sides[0::3] = value
+            sides[0::3] = checks.within(
+                "slenderness", value, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
+            )
         system = replace(self, excitation=motion)
         system.__dict__["sides"] = sides
         return system
@@ -231,8 +245,9 @@ class HarmonicRocking:
     @property
     def factors(self) -> FloatArray:
         """Points of the speed law: rates [rad/s] and factors [-], shape (2, points)."""
-        if isinstance(self.law, SpeedRestitution):
-            return np.ascontiguousarray([self.law.at, self.law.factors])
+        law = self._parameters.law
+        if isinstance(law, SpeedRestitution):
+            return np.ascontiguousarray([law.at, law.factors])
         return np.empty((2, 0))
 
 
@@ -248,11 +263,21 @@ class Numerics:
         Error of one Taylor step over alpha [-].
     threads : int, optional
         Number of threads.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
     """
 
     rest_speed: float = REST_SPEED
     step_error: float = STEP_ERROR
     threads: int = 1
+
+    def __post_init__(self) -> None:
+        checks.within("rest_speed", self.rest_speed, 0.0, 10.0)
+        checks.within("step_error", self.step_error, 1e-20, 1e-3)
+        checks.whole("threads", self.threads, 1, 1024)
 
 
 DEFAULTS = Numerics()
@@ -334,9 +359,26 @@ def over_periods(
     -------
     Periods
         The states.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range, or the starts are not finite rows of three numbers, one per system.
     """
-    starts = np.ascontiguousarray(np.atleast_2d(starts), dtype=float)
+    checks.whole("settled", settled, 0), checks.whole("kept", kept, 1), checks.whole("most_impacts", most_impacts, 0)
+    checks.whole("vectors", vectors, 0, 2)
+    starts = np.ascontiguousarray(np.atleast_2d(checks.real_array("starts", starts)))
     rows = len(starts)
+    if (
+        starts.ndim != 2
+        or starts.shape[1] != 3
+        or not np.isfinite(starts).all()
+        or (isinstance(systems, list) and len(systems) != rows)
+    ):
+        raise InvalidValueError(
+            "starts must be finite, with 3 columns, time, rotation and angular velocity, and one row per system, got "
+            "shape {shape}", shape=starts.shape,
+        )  # fmt: skip
     first = systems[0] if isinstance(systems, list) else systems
     results = np.full((rows, 9), np.nan)
     states, hits = np.full((rows, kept, 2), np.nan), np.full((rows, most_impacts, 3), np.nan)
@@ -416,7 +458,15 @@ def over_impacts(
     -------
     ImpactFlights
         Ends and derivatives.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range, or a derivative by an amplitude of zero is wanted.
     """
+    checks.whole("impacts", impacts, 1), checks.one_of("parameter", parameter, tuple(_CODES))
+    if parameter == "amplitude" and not system.excitation.amplitude:
+        raise InvalidValueError(parameter="amplitude", allowed="above 0 for a derivative", value=0.0)
     phase, speed, side = np.broadcast_arrays(*map(np.atleast_1d, (phase, speed, side)))
     rate = system.alpha * system.p
     sine = system.sine

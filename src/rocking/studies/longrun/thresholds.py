@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking import checks
+from rocking.conventions import FloatArray
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,35 @@ class SlenderThresholds:
     no_impact: float
 
 
+def slender_conditions(frequency: float, restitution: float) -> tuple[FloatArray, FloatArray]:
+    """Return the forced motion at an impact of the symmetric orbit of a slender body, linear in its speed.
+
+    Parameters
+    ----------
+    frequency : float
+        Circular frequency over p, above 0 [-].
+    restitution : float
+        Coefficient of restitution, in (0, 1] [-].
+
+    Returns
+    -------
+    at_zero, by_speed : ndarray
+        Forced rotation and its rate over the frequency at speed zero, and their change per speed, shape (2,) [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+    """
+    w = checks.positive("frequency", frequency)
+    r = checks.within("restitution", restitution, 0.0, 1.0, open_low=True)
+    c, s = math.cosh(math.pi / w), math.sinh(math.pi / w)
+    # (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r)
+    sides = np.array([[c - 1.0, -s], [s, -(c + 1.0 / r)]])
+    at_zero, by_speed = np.linalg.solve([[1.0 + c, s], [s, 1.0 + c]], sides).T * [1.0, 1.0 / w]
+    return at_zero, by_speed
+
+
 def slender_thresholds(frequency: float, restitution: float) -> SlenderThresholds:
     """Return the thresholds of a slender body.
 
@@ -41,7 +71,7 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
     frequency : float
         Circular frequency over p [-].
     restitution : float
-        Coefficient of restitution, in (0, 1) [-].
+        Coefficient of restitution, in (0, 1] [-].
 
     Returns
     -------
@@ -65,12 +95,8 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
     1.386750490563
     """
     w = checks.positive("frequency", frequency)
-    r = checks.within("restitution", restitution, 0.0, 1.0)
-    half = math.pi / w
-    c, s = math.cosh(half), math.sinh(half)
-    matrix = np.array([[1.0 + c, s], [s, 1.0 + c]])
-    free, by_speed = (np.linalg.solve(matrix, np.array(side)) for side in ([c - 1.0, s], [-s, -(c + 1.0 / r)]))
-    free, by_speed = free * [1.0, 1.0 / w], by_speed * [1.0, 1.0 / w]
+    r = checks.within("restitution", restitution, 0.0, 1.0, open_low=True)
+    free, by_speed = slender_conditions(w, r)
     least_squared = free @ free - (free @ by_speed) ** 2 / (by_speed @ by_speed)
     return SlenderThresholds(
         uplift=1.0,
