@@ -57,12 +57,12 @@ def show_models(page: Page, answer: Answer, display: Display, label: str, own: d
 
 def overturned(modes: "np.ndarray") -> dict[str, Any]:
     """Return the number and the fraction of histories with overturning, of those that could be computed."""
-    known, fell = int((modes > -3).sum()), int((modes >= 0).sum())
-    return {"overturned": fell, "share": fell / known if known else None}
+    computed, overturned = int((modes > -3).sum()), int((modes >= 0).sum())
+    return {"overturned": overturned, "share": overturned / computed if computed else None}
 
 
 def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[str]]:
-    """Return models in groups: each that is shown alone, then the others by their outcome."""
+    """Return groups of models: those shown alone, then the others by outcome."""
     others: dict[str, list[str]] = {}
     for label, outcome in outcomes.items():
         if label not in shown:
@@ -71,12 +71,12 @@ def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[st
 
 
 def spanned(display: Display, name: str, values: Iterable[float | None]) -> str:
-    """Return the least and the largest value of models, as one if they print alike."""
-    known = [value for value in values if value is not None and not math.isnan(value)]
-    ends = (min(known), max(known)) if known else (None,)
+    """Return the smallest and largest value of models; one number if both print the same."""
+    numbers = [value for value in values if value is not None and not math.isnan(value)]
+    ends = (min(numbers), max(numbers)) if numbers else (None,)
     return "-".join(dict.fromkeys(display.cell(name, end) for end in ends))
 
 
 def by_foot(display: Display, left: Iterable[float], right: Iterable[float]) -> str:
-    """Return coefficients of restitution of models at the left and the right foot, once if they print alike."""
+    """Return coefficients of restitution at the left and right foot; one entry if both print the same."""
     return " / ".join(dict.fromkeys(spanned(display, "coefficient", foot) for foot in (left, right)))

@@ -89,7 +89,7 @@ def inventory(
 def nothing_assessed(assessment: "Assessment") -> str:
     """Return why no object of a list was assessed: the rows and reasons, and what the header was taken for."""
     rows = assessment.not_assessed
-    reasons = "; ".join(f"line {each.row}: {each.reason}" for each in rows[:_MOST_REASONS])
+    reasons = "; ".join(f"line {row.row}: {row.reason}" for row in rows[:_MOST_REASONS])
     more = f"; and {len(rows) - _MOST_REASONS} more lines" if len(rows) > _MOST_REASONS else ""
     return f"{assessment.source}: no object could be assessed, no report is written; {reasons}{more}"
 
@@ -198,8 +198,10 @@ class InventoryAnswer:
             page.line(say("Lines that are not objects: {lines}", lines=lines))
         if words := table.stated(assessment):
             page.line(words)
-        in_space = {each.item.solid is not None or each.friction < NEVER_SLIDES for each in assessment.verdicts}
-        models = [say(headline(assessment.restitution, in_space=each)) for each in sorted(in_space)]
+        in_space = {
+            verdict.item.solid is not None or verdict.friction < NEVER_SLIDES for verdict in assessment.verdicts
+        }
+        models = [say(headline(assessment.restitution, in_space=is_3d)) for is_3d in sorted(in_space)]
         page.line("\n".join(dict.fromkeys(models)))
         if assessment.ignored:
             page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))

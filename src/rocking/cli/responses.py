@@ -99,7 +99,9 @@ class ResponseAnswer:
             more |= {"start_height": problem.start_height, "start_velocity": list(problem.start_velocity) or still}
         answer: Answer = self.response.answer(**self._friction)
         others = self.others.items()
-        more["other_models"] = {name: {"error": one} if isinstance(one, str) else _facts(one) for name, one in others}
+        more["other_models"] = {
+            name: {"error": response} if isinstance(response, str) else _facts(response) for name, response in others
+        }
         more["headline"] = headline(answer["restitution"])
         return answer | more
 
@@ -188,7 +190,7 @@ class ResponseAnswer:
         from rocking.reports.response_facts import ModelAgreement
 
         responses = {self.response.parameters.label: self.response, **self.others}
-        outcomes = {label: _outcome(one) for label, one in responses.items()}
+        outcomes = {label: _outcome(response) for label, response in responses.items()}
         shown = outcomes.keys() if self.details else {self.response.parameters.label, *_NAMED}
         rows = [
             self._compared(labels, outcomes[labels[0]], [responses[label] for label in labels])
@@ -198,39 +200,38 @@ class ResponseAnswer:
         head = [self.display.heading(name) for name in _COMPARED]
         page.table(head, rows, ("model", "outcome"), bold={0}, dense=True)
         page.warn(f"{name}: {other}" for name, other in self.others.items() if isinstance(other, str))
-        known = {name: one for name, one in responses.items() if not isinstance(one, str)}
-        agreement = ModelAgreement.of(known)
+        computed = {name: response for name, response in responses.items() if not isinstance(response, str)}
+        agreement = ModelAgreement.of(computed)
         if self.details or not agreement.models_differ:
             page.line(agreement.sentence)
             return
-        fell = sum(one.outcome is Outcome.OVERTURNED for one in known.values())
-        page.line(
-            f"The result depends on the restitution model: overturning with {fell} of {len(known)} restitution cases."
-        )
+        count = sum(response.outcome is Outcome.OVERTURNED for response in computed.values())
+        cases = f"{count} of {len(computed)} restitution cases"
+        page.line(f"The result depends on the restitution model: overturning with {cases}.")
         for doubt in agreement.doubts:
             page.line(doubt)
 
     def _compare_outcomes(self, page: Page, answer: Answer) -> None:
         """Write the outcome with each model."""
         given = answer["other_models"]
-        known = {name: one for name, one in given.items() if "error" not in one}
-        if known:
-            rows = {answer["restitution"]: _facts(self.response), **known}
+        computed = {name: row for name, row in given.items() if "error" not in row}
+        if computed:
+            rows = {answer["restitution"]: _facts(self.response), **computed}
             page.line("\nCompare restitution models", "bold")
-            page.rows([{"model": name, **one.values} for name, one in rows.items()], (), self.display)
-            differ = len({one["outcome"] for one in rows.values()}) > 1
+            page.rows([{"model": name, **row.values} for name, row in rows.items()], (), self.display)
+            differ = len({row["outcome"] for row in rows.values()}) > 1
             page.line(Message(_DIFFER if differ else _AGREE))
-        page.warn(f"{name}: {one['error']}" for name, one in given.items() if "error" in one)
+        page.warn(f"{name}: {row['error']}" for name, row in given.items() if "error" in row)
 
     def _compared(self, labels: list[str], outcome: str, responses: list[Any]) -> tuple[str, ...]:
         """Return the row of models with one outcome, with the ranges of their values."""
         label = labels[0] if len(labels) == 1 else f"{len(labels)} other models"
-        answers = [one.outcome_answer() for one in responses if not isinstance(one, str)]
+        answers = [response.outcome_answer() for response in responses if not isinstance(response, str)]
         if not answers:
             return label, "-", outcome, "-", "-"
         fell = answers[0]["outcome"] == "overturned"
-        r = by_foot(self.display, *([one["coefficient"][foot] for one in answers] for foot in ("left", "right")))
-        ratio, impacts = (spanned(self.display, name, [one[name] for one in answers]) for name in _COMPARED[-2:])
+        r = by_foot(self.display, *([row["coefficient"][foot] for row in answers] for foot in ("left", "right")))
+        ratio, impacts = (spanned(self.display, name, [row[name] for row in answers]) for name in _COMPARED[-2:])
         return label, r, outcome, "-" if fell else ratio, impacts
 
 

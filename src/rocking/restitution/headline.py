@@ -16,7 +16,7 @@ _STATED = "Restitution model of the result: {model}, as stated in the input."
 
 
 def headline(label: str, *, in_space: bool = False) -> Message:
-    """Return the model of a result with the reason for it; label: that of the restitution; in_space: of a body in 3D.
+    """Return the sentence with the model of a result and its reason; in_space: True for a 3D body.
 
     >>> str(headline("ked"))
     'Restitution model of the result: ked, as stated in the input.'

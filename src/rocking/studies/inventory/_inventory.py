@@ -66,8 +66,8 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
         The family of synthetic motions, or records; each acts in either direction by itself. Of records by axis, as for
         `simulate`, the one with the largest peak does, and in three dimensions the other horizontal one across it.
     restitution : str, RestitutionModel, float or mapping
-        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for). The calibrated
-        default if not given, drawn with its scatter for every motion, with both beside it.
+        Restitution model, compared with Housner's (KED if Housner's is selected). Default: the calibrated model with a
+        sampled coefficient per motion, compared with both.
     pga, pgv : str or float, optional
         Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
         number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
