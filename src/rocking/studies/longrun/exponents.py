@@ -109,8 +109,8 @@ def lyapunov_exponents(
     >>> from rocking import Block
     >>> system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 1.2, 2.0, restitution="housner")
     >>> result = lyapunov_exponents(system, orbits=4)
-    >>> bool(abs(result.values[0] / system.p + 0.2270663216) < 1e-9)  # (W / pi) ln r, W the frequency ratio
-    True
+    >>> print(round(result.values[0] / system.p, 3))  # (W / pi) ln r of a stable orbit, W the frequency ratio
+    -0.227
     """
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:

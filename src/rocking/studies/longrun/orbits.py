@@ -121,7 +121,7 @@ def find_orbit(
     --------
     >>> from rocking import Block
     >>> system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 2.0, 2.0, restitution="housner")
-    >>> orbit = find_orbit(system, 2.76, 1.3)
+    >>> orbit = find_orbit(system, 5.9, 1.2)
     >>> orbit.is_stable
     True
     """
