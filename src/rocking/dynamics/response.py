@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
+    from rocking.dynamics.plane.tangent import Tangent
 
 _ROUNDING = 1e-9
 
@@ -352,6 +353,33 @@ class Response(ResponseBase):
         if twin.outcome is not first.outcome:
             return math.inf
         return float(np.nanmax(np.abs(twin.rotation[::2] - first.rotation)))  # Eq. 47
+
+    def tangent(self) -> "Tangent":
+        """Return the derivatives of the states by the start and by parameters, and the growth of small differences.
+
+        Returns
+        -------
+        Tangent
+            Derivatives at the samples, through all impacts of the engine.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is no response.
+
+        Examples
+        --------
+        >>> import rocking as rk
+        >>> block = rk.Block(width=1.0, height=4.0)
+        >>> pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
+        >>> tangent = rk.simulate(block, pulse, 0.9, rotation=0.05, duration=2.0).tangent()
+        >>> impacts = tangent.determinants.size
+        >>> bool(abs(np.linalg.det(tangent.by_start[-1]) / 0.9 ** (2 * impacts) - 1.0) < 1e-10)
+        True
+        """
+        from rocking.dynamics.plane.tangent import tangent_of
+
+        return tangent_of(self)
 
     def at(self, time: Any) -> FloatArray:
         """Return the rotation at any times within the response.
