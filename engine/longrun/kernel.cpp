@@ -10,11 +10,8 @@ namespace longrun {
 // Whole periods of the first sine. Time is counted from the start of the present period where there is one sine.
 template <int V>
 class Periods {
-    const Cycles& work;
-    Queue& queue;
-
-    double period(const Lane<V>& lane) const { return 2.0 * kPi / lane.sines[0].omega; }
     const double* start(const Lane<V>& lane) const { return work.starts + kStart * lane.row; }
+    double period(const Lane<V>& lane) const { return 2.0 * kPi / lane.sines[0].omega; }
 
     void next_period(Lane<V>& lane) const {
         if (lane.cycle == work.settled) {
@@ -51,17 +48,11 @@ class Periods {
     }
 
   public:
-    Periods(const Cycles& cycles, Queue& next) : work(cycles), queue(next) {}
-    const Settings& settings() const { return work.set; }
+    const Cycles& work;
     bool counts_peaks(const Lane<V>& lane) const { return lane.cycle >= work.settled; }
 
-    bool begin(Lane<V>& lane) {
-        const std::int64_t row = queue.fetch_add(1);
-        if (row >= work.rows) return false;
-        lane.begin(work.bodies + kBody * row, work.sines + work.set.sines * row, work.set);
-        lane.row = row;
+    void begin(Lane<V>& lane) const {
         const double* from = start(lane);
-        lane.t = from[0];
         lane.s = from[1] < 0.0 || (from[1] == 0.0 && from[2] < 0.0);
         lane.y = std::fabs(from[1]);
         lane.v = lane.s ? -from[2] : from[2];
@@ -71,10 +62,9 @@ class Periods {
         }
         if (lane.y == 0.0 && lane.v == 0.0) lane.settle();
         next_period(lane);
-        return true;
     }
     // The end of a period.
-    bool arrived(Lane<V>& lane) {
+    bool arrived(Lane<V>& lane) const {
         if (lane.cycle >= work.settled) {
             double* section = work.sections + 2 * (work.kept * lane.row + lane.cycle - work.settled);
             section[0] = lane.sign() * lane.y;
@@ -89,7 +79,7 @@ class Periods {
         next_period(lane);
         return true;
     }
-    bool happened(Lane<V>& lane, Event event) {
+    bool happened(Lane<V>& lane, Event event) const {
         if (event == Event::overturned || event == Event::failed) {
             write(lane, event);
             return false;
@@ -108,8 +98,6 @@ class Periods {
 template <int V>
 class Impacts {
     static constexpr std::int64_t kMostSteps = 10000;  // between two impacts
-    const Flights& work;
-    Queue& queue;
 
     void write(const Lane<V>& lane, Event event) const {
         double* end = work.ends + kEnds * lane.row;
@@ -128,16 +116,10 @@ class Impacts {
     }
 
   public:
-    Impacts(const Flights& flights, Queue& next) : work(flights), queue(next) {}
-    const Settings& settings() const { return work.set; }
+    const Flights& work;
     bool counts_peaks(const Lane<V>&) const { return true; }
-    bool begin(Lane<V>& lane) {
-        const std::int64_t row = queue.fetch_add(1);
-        if (row >= work.rows) return false;
-        lane.begin(work.bodies + kBody * row, work.sines + work.set.sines * row, work.set);
-        lane.row = row;
-        const double* start = work.starts + kStart * row;
-        lane.t = start[0];
+    void begin(Lane<V>& lane) const {
+        const double* start = work.starts + kStart * lane.row;
         lane.v = start[1];
         lane.s = start[2] < 0.0;
         lane.until = 1e300;
@@ -146,13 +128,12 @@ class Impacts {
             lane.tangent[0][1] = -lane.acceleration();
             lane.tangent[1][1] = 1.0;
         }
-        return true;
     }
-    bool arrived(Lane<V>& lane) {
+    bool arrived(Lane<V>& lane) const {
         write(lane, Event::failed);
         return false;
     }
-    bool happened(Lane<V>& lane, Event event) {
+    bool happened(Lane<V>& lane, Event event) const {
         if (event == Event::impact && lane.steps > kMostSteps * lane.impacts) event = Event::failed;
         if (event == Event::impact && lane.impacts < work.impacts) return true;
         write(lane, event);
@@ -160,15 +141,15 @@ class Impacts {
     }
 };
 
-void cycles(const Cycles& work, int vectors, Queue& queue) {
-    if (vectors == 0) Lanes<0, Periods<0>>({work, queue}).run();
-    if (vectors == 1) Lanes<1, Periods<1>>({work, queue}).run();
-    if (vectors == 2) Lanes<2, Periods<2>>({work, queue}).run();
+void run(const Cycles& work, int vectors, Queue& queue) {
+    if (vectors == 0) Lanes<0, Periods<0>>({work}, queue).run();
+    if (vectors == 1) Lanes<1, Periods<1>>({work}, queue).run();
+    if (vectors == 2) Lanes<2, Periods<2>>({work}, queue).run();
 }
 
-void flights(const Flights& work, bool derivatives, Queue& queue) {
-    if (derivatives) Lanes<3, Impacts<3>>({work, queue}).run();
-    else Lanes<0, Impacts<0>>({work, queue}).run();
+void run(const Flights& work, int vectors, Queue& queue) {
+    if (vectors == 0) Lanes<0, Impacts<0>>({work}, queue).run();
+    if (vectors == 3) Lanes<3, Impacts<3>>({work}, queue).run();
 }
 
 }  // namespace longrun

@@ -29,35 +29,34 @@ struct Settings {
 
 constexpr int kBody = 6, kStart = 3, kResults = 9, kEnds = 12, kMostSines = 32;
 
-// Rows of histories over whole periods of the first sine: settled ones, then kept ones with their states and impacts.
-struct Cycles {
+struct Rows {
     const double *bodies, *starts;
     const Sine* sines;
-    double *results, *sections, *impacts;
-    std::int64_t rows, settled, kept, most_impacts;
+    std::int64_t count;
     Settings set;
 };
-// Rows of flights from one impact over n impacts, with derivatives.
-struct Flights {
-    const double *bodies, *starts;
-    const Sine* sines;
+// Histories over whole periods of the first sine: settled ones, then kept ones with their states and impacts.
+struct Cycles : Rows {
+    double *results, *sections, *impacts;
+    std::int64_t settled, kept, most_impacts;
+};
+// Flights from one impact over a number of impacts, with derivatives.
+struct Flights : Rows {
     double* ends;
-    std::int64_t rows, impacts;
-    Settings set;
+    std::int64_t impacts;
 };
 
 using Queue = std::atomic<std::int64_t>;
 
-#define ROCKING_LONGRUN(isa)                                       \
-    namespace isa {                                                \
-    namespace longrun {                                            \
-    void cycles(const rocking::longrun::Cycles&, int vectors, Queue&); \
-    void flights(const rocking::longrun::Flights&, bool derivatives, Queue&); \
-    }                                                              \
+#define ROCKING_LONGRUN(isa)                                                           \
+    namespace isa {                                                                    \
+    namespace longrun {                                                                \
+    void run(const rocking::longrun::Cycles&, int vectors, rocking::longrun::Queue&);  \
+    void run(const rocking::longrun::Flights&, int vectors, rocking::longrun::Queue&); \
+    }                                                                                  \
     }
 
 }  // namespace longrun
-using longrun::Queue;
 ROCKING_LONGRUN(plain)
 ROCKING_LONGRUN(avx2)
 ROCKING_LONGRUN(avx512)

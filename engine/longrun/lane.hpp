@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "../pack.hpp"
+#include "../roots.hpp"
 #include "../sine.hpp"
 #include "kernel.hpp"
 
@@ -30,22 +31,9 @@ inline double reduced(double angle, double& sign) {
     return fma(-halves, kPiLow, fma(-halves, kPi, angle));
 }
 
-inline void any_sine_cosine(double angle, double& sine, double& cosine) {
-    double sign;
-    const double x = reduced(angle, sign);
-    sine_cosine(x, sine, cosine);
-    sine *= sign;
-    cosine *= sign;
-}
-
-// A polynomial of a step; its value, slope and half curvature at x.
+// A polynomial of a step over 0 <= x <= 1.
 struct Column {
     double c[kTerms];
-    double value(double x, int first = 0) const {
-        double sum = c[kOrder];
-        for (int k = kOrder - 1; k >= first; --k) sum = fma(sum, x, c[k]);
-        return sum;
-    }
     void derivatives(double x, double& value, double& slope, double& half) const {
         value = c[kOrder];
         slope = half = 0.0;
@@ -55,47 +43,25 @@ struct Column {
             value = fma(value, x, c[k]);
         }
     }
-    // First zero on (0, h], without the zero of multiplicity `skip` at the start; negative where there is none.
-    double first_zero(double h, int skip) const {
-        double bend = 0.0, power = 1.0;  // bound of h^2 times the second derivative
-        for (int k = skip; k < kTerms; ++k, power *= h) bend = fma((k - skip) * (k - skip - 1.0) * std::fabs(c[k]), power, bend);
-        return zero_between(0.0, c[skip], h, value(h, skip), bend, skip);
+    // First zero on (0, 1], without the zero of multiplicity `skip` at the start; above 1 where there is none.
+    double zero(int skip) const {
+        if (skip == 0) return first_zero<kOrder>(c);
+        if (skip == 1) return first_zero<kOrder - 1>(c + 1);
+        if (skip == 2) return first_zero<kOrder - 2>(c + 2);
+        return first_zero<kOrder - 3>(c + 3);
     }
-
-  private:
-    // A chord bounds the polynomial to an eighth of `bend`; where that decides nothing the interval is halved.
-    double zero_between(double a, double at_a, double b, double at_b, double bend, int skip) const {
-        if (at_b > 0.0) {
-            if (std::min(at_a, at_b) > bend / 8.0 || b - a < 1e-9 * b) return -1.0;
-        } else if (bend < at_a - at_b || b - a < 1e-9 * b) {
-            return polished(a, b, skip);
-        }
-        const double middle = 0.5 * (a + b), at_middle = value(middle, skip);
-        const double left = zero_between(a, at_a, middle, at_middle, 0.25 * bend, skip);
-        return left >= 0.0 || at_middle <= 0.0 ? left : zero_between(middle, at_middle, b, at_b, 0.25 * bend, skip);
-    }
-    double polished(double a, double b, int skip) const {
-        double x = 0.5 * (a + b);
-        for (int k = 0; k < 60; ++k) {
-            double f = c[kOrder], g = 0.0;
-            for (int n = kOrder - 1; n >= skip; --n) {
-                g = fma(g, x, f);
-                f = fma(f, x, c[n]);
-            }
-            (f > 0.0 ? a : b) = x;
-            double next = x - f / g;
-            if (!(next > a && next < b)) next = 0.5 * (a + b);
-            if (std::fabs(next - x) <= 1e-16 * b) return next;
-            x = next;
-        }
-        return x;
+    // The value at the first zero of the slope.
+    double top() const {
+        double slope[kOrder];
+        slopes_of<kOrder>(c, slope);
+        return value_of<kOrder>(c, std::min(first_zero<kOrder - 1>(slope), 1.0));
     }
 };
 
 template <int V>
 struct Lane {
     Side side[2];
-    double threshold[2];  // ground acceleration over g that lifts the body
+    double threshold[2], cosine[2];  // ground acceleration over g that lifts the body; cosine of alpha, 1 for the linear equations
     const Sine* sines;
     Settings set;
     std::int64_t row = -1, impacts = 0, rests = 0, steps = 0;
@@ -112,9 +78,10 @@ struct Lane {
         set = settings;
         for (int k = 0; k < 2; ++k) {
             side[k] = {body[3 * k], body[3 * k + 1], body[3 * k + 2]};
-            double sine, cosine;
-            sine_cosine(side[k].alpha, sine, cosine);
-            threshold[k] = set.linear ? side[k].alpha : sine / cosine;
+            double sine;
+            sine_cosine(side[k].alpha, sine, cosine[k]);
+            threshold[k] = set.linear ? side[k].alpha : sine / cosine[k];
+            if (set.linear) cosine[k] = 1.0;
         }
     }
     double sign() const { return s == 0 ? 1.0 : -1.0; }
@@ -123,19 +90,17 @@ struct Lane {
     void ground(double& acceleration, double& rate) const {
         acceleration = rate = 0.0;
         for (int i = 0; i < set.sines; ++i) {
-            double sine, cosine;
-            any_sine_cosine(fma(sines[i].omega, t, sines[i].phase), sine, cosine);
-            acceleration = fma(sines[i].amplitude, sine, acceleration);
-            rate = fma(sines[i].amplitude * sines[i].omega, cosine, rate);
+            double sine, cosine, flip;
+            sine_cosine(reduced(fma(sines[i].omega, t, sines[i].phase), flip), sine, cosine);
+            acceleration = fma(flip * sines[i].amplitude, sine, acceleration);
+            rate = fma(flip * sines[i].amplitude * sines[i].omega, cosine, rate);
         }
     }
     // Acceleration of y on the side in contact at y = 0.
     double acceleration() const {
-        double u, rate, sine, cosine;
+        double u, rate;
         ground(u, rate);
-        if (set.linear) return -side[s].p2 * fma(sign(), u, side[s].alpha);
-        sine_cosine(side[s].alpha, sine, cosine);
-        return -side[s].p2 * fma(sign() * u, cosine, sine);
+        return -side[s].p2 * cosine[s] * fma(sign(), u, threshold[s]);
     }
     // Put the body at rest, or let it rise where the ground lifts it already.
     void settle() {

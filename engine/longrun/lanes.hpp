@@ -6,32 +6,33 @@ namespace rocking {
 namespace ROCKING_ISA {
 namespace longrun {
 
-constexpr int kRegisters = 2;  // that step side by side
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 
 // V tangent vectors. Driver begins and ends the histories and stores their results.
 template <int V, class Driver>
 class Lanes {
-    static constexpr int U = kRegisters, P = Pack::width, W = U * P;
+    static constexpr int U = 2, P = Pack::width, W = U * P;  // registers that step side by side, their width, lanes
     using Row = Pack[U];
-    Driver driver;
+    const Driver driver;
+    const Settings& set = driver.work.set;
+    Queue& queue;
     Lane<V> lane[W];
-    alignas(64) double h[W], start[W], rate[W], top[W], alpha[W], p2[W], side[W], ends[W], rates[W], bends[W];
+    alignas(64) double h[W], start[W], rate[W], alpha[W], p2[W], side[W], ends[W], rates[W], bends[W];
     alignas(64) double angle[kMostSines][W], flip[kMostSines][W], amplitude[kMostSines][W], omega[kMostSines][W], time[W];
     alignas(64) double tangent[V > 0 ? V : 1][2][W];
     alignas(64) Pack c[kTerms][U], u[kTerms][U], S[kTerms][U], C[kTerms][U], F[kTerms][U], G[kTerms][U], w[kTerms][U], d[V > 0 ? V : 1][kTerms][U];
     alignas(64) Pack by[kTerms][U];  // derivative of the ground acceleration by a frequency
 
   public:
-    explicit Lanes(const Driver& work) : driver(work) {}
+    Lanes(const Driver& rows, Queue& rest) : driver(rows), queue(rest) {}
 
     void run() {
         for (int i = 0; i < W; ++i) ready(i);
         for (;;) {
-            bool any = false;
-            for (int i = 0; i < W; ++i) any |= lane[i].row >= 0;
-            if (!any) return;
-            gather();
+            int active = -1;
+            for (int i = 0; i < W; ++i) active = lane[i].row >= 0 ? i : active;
+            if (active < 0) return;
+            gather(lane[active]);
             series();
             lengths();
             advance();
@@ -45,17 +46,26 @@ class Lanes {
     void ready(int i) {
         Lane<V>& one = lane[i];
         for (;;) {
-            if (one.row < 0 && !driver.begin(one)) return;
+            if (one.row < 0 && !begin(one)) return;
             if (one.resting) one.wait();
             if (one.t < one.until && !one.resting) return;
             if (!driver.arrived(one)) one.row = -1;
         }
     }
 
-    void gather() {
-        const Settings& set = driver.settings();
+    bool begin(Lane<V>& one) {
+        const std::int64_t row = queue.fetch_add(1);
+        if (row >= driver.work.count) return false;
+        one.begin(driver.work.bodies + kBody * row, driver.work.sines + set.sines * row, set);
+        one.row = row;
+        one.t = driver.work.starts[kStart * row];
+        driver.begin(one);
+        return true;
+    }
+
+    void gather(const Lane<V>& other) {
         for (int i = 0; i < W; ++i) {
-            const Lane<V>& one = lane[i].row >= 0 ? lane[i] : lane[0].row >= 0 ? lane[0] : lane[last_active()];
+            const Lane<V>& one = lane[i].row >= 0 ? lane[i] : other;
             start[i] = one.y;
             rate[i] = one.v;
             time[i] = one.t;
@@ -71,16 +81,10 @@ class Lanes {
                 for (int k = 0; k < 2; ++k) tangent[m][k][i] = one.tangent[m][k];
         }
     }
-    int last_active() const {
-        int k = W - 1;
-        while (k > 0 && lane[k].row < 0) --k;
-        return k;
-    }
 
     static Pack at(const double* numbers, int j) { return Pack::load(numbers + P * j); }
 
     void forcing() {
-        const Settings& set = driver.settings();
         const bool by_omega = V > 0 && set.parameter == Parameter::omega;
         for (int k = 0; k < kTerms; ++k) ROCKING_LANES u[k][j] = by[k][j] = Pack(0.0);
         for (int n = 0; n < set.sines; ++n) {
@@ -118,7 +122,6 @@ class Lanes {
     }
 
     void series() {
-        const bool linear = driver.settings().linear;
         forcing();
         ROCKING_LANES {
             c[0][j] = at(start, j);
@@ -127,7 +130,7 @@ class Lanes {
         }
         for (int k = 0; k + 2 < kTerms; ++k) {
             Row sum;
-            if (linear) {
+            if (set.linear) {
                 ROCKING_LANES S[k][j] = (k ? Pack(0.0) : at(alpha, j)) - c[k][j], C[k][j] = Pack(k ? 0.0 : 1.0), F[k][j] = u[k][j];
             } else {
                 if (k) {  // S' = C w', C' = -S w', w = alpha - y
@@ -145,16 +148,16 @@ class Lanes {
         }
         for (int i = 0; i < W; ++i)  // the acceleration is zero at the moment of uplift
             if (lane[i].lifts) reinterpret_cast<double*>(c[2])[i] = 0.0;
-        if constexpr (V > 0) variations(linear);
+        if constexpr (V > 0) variations();
     }
 
     // Tangent vectors: d'' = G d, G = p^2 (C - s u S), and for a parameter the derivative of y'' at constant y.
-    void variations(bool linear) {
-        const Parameter parameter = driver.settings().parameter;
+    void variations() {
+        const Parameter parameter = set.parameter;
         for (int k = 0; k + 2 < kTerms; ++k) {
             Row sum;
-            if (!linear) product(u, S, k, 0, sum);
-            ROCKING_LANES G[k][j] = linear ? (k ? Pack(0.0) : at(p2, j)) : at(p2, j) * fnma(at(side, j), sum[j], C[k][j]);
+            if (!set.linear) product(u, S, k, 0, sum);
+            ROCKING_LANES G[k][j] = set.linear ? (k ? Pack(0.0) : at(p2, j)) : at(p2, j) * fnma(at(side, j), sum[j], C[k][j]);
         }
         for (int m = 0; m < V; ++m) {
             ROCKING_LANES d[m][0][j] = at(tangent[m][0], j), d[m][1][j] = at(tangent[m][1], j);
@@ -194,7 +197,7 @@ class Lanes {
         for (int i = 0; i < W; ++i) {
             h[i] = lane[i].row >= 0 ? lane[i].until - lane[i].t : 0.0;
             for (int k = 0; k < 2; ++k)
-                if (size[k][i] > 0.0) h[i] = std::min(h[i], root(driver.settings().step_error / size[k][i], kOrder - k));
+                if (size[k][i] > 0.0) h[i] = std::min(h[i], root(set.step_error / size[k][i], kOrder - k));
         }
     }
 
@@ -225,7 +228,8 @@ class Lanes {
 
     Column column(const Row* terms, int i) const {
         Column one;
-        for (int k = 0; k < kTerms; ++k) one.c[k] = reinterpret_cast<const double*>(terms[k])[i];
+        double power = 1.0;
+        for (int k = 0; k < kTerms; ++k, power *= h[i]) one.c[k] = reinterpret_cast<const double*>(terms[k])[i] * power;
         return one;
     }
 
@@ -238,7 +242,7 @@ class Lanes {
             event = Event::failed;
         } else if (plain) {
             move(one, i);
-            if (rate[i] > 0.0 && one.v < 0.0 && driver.counts_peaks(one)) crest(one, column(c, i), i);
+            if (rate[i] > 0.0 && one.v < 0.0 && driver.counts_peaks(one)) crest(one, column(c, i));
         } else {
             event = with_zero(one, i);
         }
@@ -259,32 +263,25 @@ class Lanes {
         const Column y = column(c, i);
         const int skip = one.y > 0.0 ? 0 : one.lifts ? 3 : one.v > 0.0 ? 1 : 2;
         if (!(y.c[skip] > 0.0)) return Event::failed;
-        const double zero = y.first_zero(h[i], skip);
-        if (driver.counts_peaks(one) && rate[i] >= 0.0 && (zero >= 0.0 || rates[i] < 0.0)) crest(one, y, i);
-        if (zero < 0.0) {
+        const double zero = y.zero(skip);
+        if (driver.counts_peaks(one) && rate[i] >= 0.0 && (zero <= 1.0 || rates[i] < 0.0)) crest(one, y);
+        if (zero > 1.0) {
             move(one, i);
             return Event::none;
         }
         double value, half;
         y.derivatives(zero, value, one.v, half);
-        one.falling = 2.0 * half;
-        for (int m = 0; m < V; ++m) column(d[m], i).derivatives(zero, one.tangent[m][0], one.tangent[m][1], half);
-        one.t += zero;
+        one.v /= h[i];
+        one.falling = 2.0 * half / (h[i] * h[i]);
+        for (int m = 0; m < V; ++m) {
+            column(d[m], i).derivatives(zero, one.tangent[m][0], one.tangent[m][1], half);
+            one.tangent[m][1] /= h[i];
+        }
+        one.t += zero * h[i];
         return one.land();
     }
-    // The highest point within a step, by Newton's method for the zero of the velocity.
-    void crest(Lane<V>& one, const Column& y, int i) {
-        double a = 0.0, b = h[i], x = 0.5 * b, value = 0.0, slope, half;
-        for (int k = 0; k < 12; ++k) {
-            y.derivatives(x, value, slope, half);
-            (slope > 0.0 ? a : b) = x;
-            double next = x - 0.5 * slope / half;
-            if (!(next > a && next < b)) next = 0.5 * (a + b);
-            if (std::fabs(next - x) < 1e-7 * h[i]) break;
-            x = next;
-        }
-        one.peak = std::max(one.peak, value / one.side[one.s].alpha);
-    }
+    // The highest point within a step.
+    void crest(Lane<V>& one, const Column& y) { one.peak = std::max(one.peak, y.top() / one.side[one.s].alpha); }
 };
 
 }  // namespace longrun
