@@ -18,6 +18,7 @@ from rocking.studies.longrun.basins import basin, ends_of
 from rocking.studies.longrun.exponents import lyapunov_exponents
 from rocking.studies.longrun.orbits import (
     OrbitNotFoundError,
+    bifurcation_curve,
     branch_off,
     continue_orbit,
     find_orbit,
@@ -30,6 +31,7 @@ from rocking.studies.longrun.thresholds import slender_thresholds
 pytest.importorskip("rocking.dynamics._longrun", reason="the compiled engine is missing")
 pytestmark = pytest.mark.verifies(room="rocking in the plane")
 ANYTHING = (0.0, 100.0)
+LEANING = MassPoints([[-0.48, 0.0], [0.52, 0.0], [0.5, 4.0], [-0.5, 4.0]], [1.0] * 4, feet=(-0.48, 0.52))
 
 # slenderness, model, frequency: fold, pitchfork, period doublings of the 2-cycle and the 4-cycle; rounded to 9 digits
 BRANCHES = {
@@ -155,17 +157,33 @@ TWO_PARAMETERS = {
 
 
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="6e-10")
-@pytest.mark.parametrize("frequency", TWO_PARAMETERS)
-def test_bifurcations_over_frequency(frequency):
-    """Slenderness 4 with KED at other frequencies; the branch is reached by continuation in frequency from 2."""
-    start = symmetric_orbit(system_of(4, 1.0, 2.0, "ked"))
-    limits = (1.4, frequency) if frequency > 2.0 else (frequency, 7.0)
-    orbit = continue_orbit(start, limits, parameter="frequency", increasing=frequency > 2.0).orbits[-2]
-    near = find_orbit(orbit.system.changed("frequency", frequency), orbit.phase, orbit.speed)
-    fold = continue_orbit(near, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
-    pitchfork = continue_orbit(near, ANYTHING, step=0.05, stop=is_kind("pitchfork")).first("pitchfork")
-    doubling = branch_off(pitchfork, ANYTHING, step=0.03, stop=is_kind("period doubling")).first("period doubling")
-    assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(TWO_PARAMETERS[frequency], abs=6e-10)
+@pytest.mark.parametrize("number", range(3))
+def test_curves_in_two_parameters(number):
+    """Fold, pitchfork and period doubling of slenderness 4 with KED, followed over the frequency from 2 both ways."""
+    point = cascade(system_of(4, 1.2, 2.0, "ked"), 1)[number]
+    for frequency in (1.5, 2.5, 3.5, 4.5, 6.0):
+        curve = bifurcation_curve(point, frequency)
+        assert curve[-1].orbit.system.frequency_ratio == pytest.approx(frequency, rel=1e-14)
+        assert curve[-1].value == pytest.approx(TWO_PARAMETERS[frequency][number], abs=6e-10)
+        point = curve[-1] if frequency > 2.0 else point
+    if number == 1:  # subcritical at this frequency: the 2-cycles begin unstable and turn at a fold
+        branch = branch_off(point, ANYTHING, step=0.03, stop=is_kind("fold"))
+        assert branch.first("fold").value == pytest.approx(32.781466186, abs=6e-10)
+
+
+@pytest.mark.verifies("second engine", "continuation in one parameter after the other", within="1e-9")
+def test_curve_of_a_body_that_is_not_symmetric():
+    """The fold at another frequency by its curve, and by continuation of the orbit in frequency, then in amplitude."""
+    near = symmetric_orbit(system_of(4, 1.2, 2.0, 0.85))
+    system = HarmonicRocking.of_ratios(LEANING, 1.2, 2.0, restitution={"left": 0.8, "right": 0.85})
+    orbit = find_orbit(system, near.phase, near.speed, impacts=2)
+    down = {"increasing": False, "stop": is_kind("fold")}
+    fold = continue_orbit(orbit, ANYTHING, **down).first("fold")
+    curve = bifurcation_curve(fold, 2.6)
+    other = continue_orbit(orbit, (1.9, 2.6), parameter="frequency").orbits[-2]
+    there = find_orbit(other.system.changed("frequency", 2.6), other.phase, other.speed, impacts=2)
+    assert curve[-1].value == pytest.approx(continue_orbit(there, ANYTHING, **down).first("fold").value, abs=1e-9)
+    assert abs(curve[-1].value / fold.value - 1.0) > 0.01  # control: another value than at the start
 
 
 @pytest.mark.verifies("closed form", "Spanos and Koh (1984)", within="1e-10")

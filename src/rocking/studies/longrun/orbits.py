@@ -4,13 +4,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from scipy.optimize import brentq
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.longrun.system import IMPACT, HarmonicRocking, Parameter, over_impacts
+from rocking.studies.longrun.system import IMPACT, HarmonicRocking, ImpactFlights, Parameter, over_impacts
 from rocking.studies.longrun.thresholds import slender_conditions, slender_thresholds
 
 ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
@@ -81,12 +82,19 @@ class PeriodicOrbit:
     @property
     def fold(self) -> float:
         """Test function of folds: 1 - trace + determinant."""
-        return 1.0 - self.trace + self.determinant
+        return test_function(self.jacobian, "fold")
 
     @property
     def flip(self) -> float:
         """Test function of pitchforks and period doublings: 1 + trace + determinant."""
-        return 1.0 + self.trace + self.determinant
+        return test_function(self.jacobian, "flip")
+
+
+def test_function(jacobian: FloatArray, name: str) -> float:
+    """Return the function of a jacobian that is zero at a fold, or at a pitchfork or period doubling ("flip")."""
+    (a, b), (c, d) = jacobian.tolist()
+    trace = a + d
+    return float(1.0 + (-trace if name == "fold" else trace) + (a * d - b * c))
 
 
 def find_orbit(
@@ -303,32 +311,49 @@ class Branch:
 
 
 class _Curve:
-    """Orbits of one kind as a curve of phase, speed and parameter over its first value."""
+    """Orbits as a curve of phase, speed and parameters over their first values; with a test function, its zeros."""
 
-    def __init__(self, orbit: PeriodicOrbit, parameter: Parameter) -> None:
-        self.system, self.impacts, self.halves, self.parameter = orbit.system, orbit.impacts, orbit.halves, parameter
-        self.scale = abs(orbit.system.value(parameter))
+    def __init__(self, orbit: PeriodicOrbit, parameters: tuple[Parameter, ...], test: str = "") -> None:
+        self.first, self.impacts, self.halves, self.parameters = orbit.system, orbit.impacts, orbit.halves, parameters
+        self.scales, self.test = np.abs([orbit.system.value(name) for name in parameters]), test
 
     def start(self, orbit: PeriodicOrbit) -> FloatArray:
-        """Return phase, speed and scaled parameter of an orbit, shape (3,)."""
-        return np.array([orbit.phase, orbit.speed, orbit.system.value(self.parameter) / self.scale])
+        """Return phase, speed and scaled parameters of an orbit, shape (2 + parameters,)."""
+        values = [orbit.system.value(name) for name in self.parameters]
+        return np.array([orbit.phase, orbit.speed, *(values / self.scales)])
+
+    def system(self, point: FloatArray) -> HarmonicRocking:
+        """Return the system; the amplitude ratio last, since its unit changes with the slenderness."""
+        system, values = self.first, dict(zip(self.parameters, (point[2:] * self.scales).tolist(), strict=True))
+        for name in sorted(self.parameters, key="amplitude".__eq__):
+            system = system.changed(name, values[name])
+        return system
 
     def equations(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the residual, shape (2,), and its derivative, shape (2, 3)."""
-        system = self.system.changed(self.parameter, float(point[2]) * self.scale)
-        flight = over_impacts(system, point[0], point[1], self.impacts, parameter=self.parameter)
+        """Return the residual, and its derivative by the point: exact, or by differences with a test function."""
+        if not self.test:
+            residual, flight = self._closure(point, self.parameters[0])
+            return residual, np.column_stack([flight.jacobian[0] - np.eye(2), flight.by_parameter[0] * self.scales])
+        shifts = 1e-6 * np.eye(len(point))
+        columns = [(self._tested(point + shift) - self._tested(point - shift)) / 2e-6 for shift in shifts]
+        return self._tested(point), np.column_stack(columns)
+
+    def _closure(self, point: FloatArray, parameter: Parameter | Literal[""]) -> tuple[FloatArray, ImpactFlights]:
+        flight = over_impacts(self.system(point), point[0], point[1], self.impacts, parameter=parameter)
         if flight.event[0] != IMPACT:
-            raise OrbitNotFoundError(
-                "the orbit ends at {name} {limit:.9g}", name=self.parameter, limit=float(point[2]) * self.scale
-            )
-        residual = np.array([flight.phase[0] - point[0] - self.halves * math.pi, flight.speed[0] - point[1]])
-        return residual, np.column_stack([flight.jacobian[0] - np.eye(2), flight.by_parameter[0] * self.scale])
+            raise self._error("the orbit ends at {name} {limit:.9g}", point)
+        return np.array([flight.phase[0] - point[0] - self.halves * math.pi, flight.speed[0] - point[1]]), flight
+
+    def _tested(self, point: FloatArray) -> FloatArray:
+        residual, flight = self._closure(point, "")
+        return np.append(residual, test_function(flight.jacobian[0], self.test))
+
+    def _error(self, text: str, point: FloatArray) -> OrbitNotFoundError:
+        return OrbitNotFoundError(text, name=self.parameters[-1], limit=float(point[-1] * self.scales[-1]))
 
     def tangent(self, point: FloatArray, along: FloatArray) -> FloatArray:
-        """Return the unit tangent in the direction of another vector, shape (3,)."""
-        _, derivative = self.equations(point)
-        vector = np.cross(derivative[0], derivative[1])
-        vector /= np.linalg.norm(vector)
+        """Return the unit tangent in the direction of another vector."""
+        vector: FloatArray = np.linalg.svd(self.equations(point)[1])[2][-1]
         return vector if vector @ along >= 0.0 else -vector
 
     def corrected(self, guess: FloatArray, normal: FloatArray) -> FloatArray:
@@ -343,15 +368,10 @@ class _Curve:
                 return point
             if not np.all(np.abs(step) < 1.0) or point[1] <= 0.0:
                 break
-        raise OrbitNotFoundError(
-            "the continuation finds no orbit near {name} {limit:.9g}", name=self.parameter,
-            limit=float(guess[2]) * self.scale,
-        )  # fmt: skip
+        raise self._error("the continuation finds no orbit near {name} {limit:.9g}", guess)
 
     def orbit(self, point: FloatArray) -> PeriodicOrbit:
-        return _orbit(
-            self.system.changed(self.parameter, float(point[2]) * self.scale), point[:2], self.impacts, self.halves
-        )
+        return _orbit(self.system(point), point[:2], self.impacts, self.halves)
 
 
 @dataclass(frozen=True)
@@ -407,7 +427,7 @@ def continue_orbit(
     ----------
     Keller (1977), pseudo-arclength continuation; Hogan (1989), Proc. R. Soc. Lond. A 425:441-476.
     """
-    curve = _Curve(orbit, parameter)
+    curve = _Curve(orbit, (parameter,))
     point = curve.start(orbit)
     tangent = curve.tangent(point, np.array([0.0, 0.0, 1.0 if increasing else -1.0]))
     return _followed(curve, point, tangent, _Course(limits, step, most, stop))
@@ -432,16 +452,16 @@ def _followed(curve: _Curve, point: FloatArray, tangent: FloatArray, course: _Co
         orbits.append(curve.orbit(following))
         located = [
             bifurcation
-            for name in ("fold", "flip")
+            for name in (() if curve.test else ("fold", "flip"))
             if (bifurcation := _located(curve, (point, following), tangent, name, (orbits[-2], orbits[-1])))
         ]
         bifurcations += located
         point, tangent = following, ahead
         is_end = course.stop is not None and any(map(course.stop, located))
-        if is_end or not course.limits[0] <= point[2] * curve.scale <= course.limits[1]:
+        if is_end or not course.limits[0] <= point[-1] * curve.scales[-1] <= course.limits[1]:
             break
         length = min(1.5 * length, 5.0 * course.step) if ahead @ tangent > 0.995 else length
-    return Branch(curve.parameter, orbits, bifurcations)
+    return Branch(curve.parameters[0], orbits, bifurcations)
 
 
 def _located(
@@ -462,9 +482,9 @@ def _located(
 
     zero = brentq(test, 0.0, float(tangent @ (following - point)), xtol=1e-14, rtol=1e-14)
     orbit = curve.orbit(curve.corrected(point + zero * tangent, tangent))
-    symmetric = curve.impacts % 2 == 1 and curve.system.is_symmetric
+    symmetric = curve.impacts % 2 == 1 and curve.first.is_symmetric
     kind = "fold" if name == "fold" else "pitchfork" if symmetric else "period doubling"
-    return Bifurcation(kind, orbit.system.value(curve.parameter), orbit)
+    return Bifurcation(kind, orbit.system.value(curve.parameters[0]), orbit)
 
 
 def branch_off(
@@ -505,7 +525,7 @@ def branch_off(
         orbit.system, orbit.phase, orbit.speed, 2 * orbit.impacts, 2 * orbit.halves, orbit.jacobian @ orbit.jacobian,
         orbit.peak,
     )  # fmt: skip
-    curve = _Curve(double, parameter)
+    curve = _Curve(double, (parameter,))
     point, offset = curve.start(double), 1e-3
     while True:
         try:
@@ -515,3 +535,50 @@ def branch_off(
             offset *= 0.1
             if offset < 1e-6:
                 raise
+
+
+def bifurcation_curve(
+    bifurcation: Bifurcation,
+    limit: float,
+    *,
+    parameters: tuple[Parameter, Parameter] = ("amplitude", "frequency"),
+    step: float = 0.05,
+    most: int = 500,
+) -> list[Bifurcation]:
+    """Follow a fold, a pitchfork or a period doubling in two parameters.
+
+    Parameters
+    ----------
+    bifurcation : Bifurcation
+        First point of the curve.
+    limit : float
+        Value of the second parameter at the end of the curve.
+    parameters : tuple of {"amplitude", "frequency", "restitution", "slenderness"}, optional
+        Parameters, as for `HarmonicRocking.changed`; `Bifurcation.value` is the first one.
+    step : float, optional
+        First step in phase [rad], speed and relative parameters [-]; it adapts.
+    most : int, optional
+        Largest number of points.
+
+    Returns
+    -------
+    list of Bifurcation
+        Points of the curve, which may turn; the last one is at the limit if the curve reaches the limit.
+
+    Raises
+    ------
+    OrbitNotFoundError
+        If the continuation fails at the first step.
+    """
+    first = bifurcation.orbit
+    curve = _Curve(first, parameters, "fold" if bifurcation.kind == "fold" else "flip")
+    start, end = first.system.value(parameters[1]), np.array([0.0, 0.0, 0.0, 1.0])
+    limits = (-math.inf, limit) if limit > start else (limit, math.inf)
+    point = curve.start(first)
+    tangent = curve.tangent(point, end if limit > start else -end)
+    orbits = _followed(curve, point, tangent, _Course(limits, step, most, None)).orbits
+    if not limits[0] <= orbits[-1].system.value(parameters[1]) <= limits[1]:
+        last = curve.start(orbits[-1])
+        last += (limit / curve.scales[1] - last[3]) * (tangent := curve.tangent(last, end)) / tangent[3]
+        orbits[-1] = curve.orbit(curve.corrected(last, end))
+    return [Bifurcation(bifurcation.kind, orbit.system.value(parameters[0]), orbit) for orbit in orbits]
