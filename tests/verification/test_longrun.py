@@ -5,14 +5,16 @@ K KED.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rocking import Block, MassPoints
+from rocking import Block, MassPoints, simulate
 from rocking.dynamics.impact_laws import SpeedRestitution
+from rocking.motions.pulse import Sinusoids
 from rocking.studies.longrun.attractors import KINDS, bifurcation, poincare, start_states
 from rocking.studies.longrun.basins import basin, ends_of
 from rocking.studies.longrun.exponents import lyapunov_exponents
@@ -210,6 +212,7 @@ def test_speed_dependent_restitution():
     system = system_of(4, 1.5, 3.0, law)
     orbit = find_orbit(system, 2.98898147324233 + math.pi, 0.21455748727069 / plain.alpha)
     assert orbit.speed * plain.alpha == pytest.approx(0.21455748727069, abs=1e-13)
+    assert symmetric_orbit(system).speed == pytest.approx(orbit.speed, abs=1e-12)
     assert orbit.trace == pytest.approx(-0.444098450749, abs=1e-11)
     assert orbit.determinant == pytest.approx(0.77150450514269, abs=1e-12)
     fold = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
@@ -217,6 +220,101 @@ def test_speed_dependent_restitution():
     doubling = branch_off(pitchfork, ANYTHING, step=0.03, stop=is_kind("period doubling")).first("period doubling")
     expected = (0.08864716571, 5.42197311344, 7.32008415997)
     assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(expected, abs=1e-9)
+
+
+def by_reference(system, phase, speed, side, duration):
+    """Return state, tangent and impacts after a start on one foot, by the reference engine in pure Python."""
+    motion, rate = system.excitation, system.alpha * system.p
+    wave = (motion.amplitude, motion.frequency, phase)
+    ground = Sinusoids("harmonic", (wave,), duration, motion.amplitude, motion.amplitude, motion.period)
+    response = simulate(
+        system.body, ground, system.restitution, angular_velocity=side * speed * rate, duration=duration,
+        linear=system.linear, gravity=system.gravity, engine="reference", rest_speed=0.0,
+    )  # fmt: skip
+    tangent, impacts = response.tangent(), response.impacts
+    return tangent.by_start[-1], tangent.by_parameter["amplitude"][-1], impacts
+
+
+BY_SPEED = SpeedRestitution(at=[0.0, 5.0], factors=[1.0, 0.6], times=0.9)
+
+
+@pytest.mark.verifies("second engine", "the reference engine in pure Python and its tangent", within="1e-9")
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize("law", [{"left": 0.8, "right": 0.9}, BY_SPEED], ids=["by foot", "by speed"])
+def test_reference_engine_gives_the_map_and_its_derivatives(law, linear):
+    """Phase, speed, jacobian and derivative by the amplitude over four impacts of a body that is not symmetric."""
+    system = HarmonicRocking.of_ratios(LEANING, 1.4, 2.5, restitution=law, linear=linear)
+    start, omega, rate = (4.5, 0.7), system.excitation.frequency, system.alpha * system.p
+    flight, after = (over_impacts(system, *start, n, parameter="amplitude") for n in (4, 5))
+    phase, speed = float(flight.phase[0]), float(flight.speed[0])
+    until = 0.5 * (float(after.phase[0]) + phase)  # before the fifth impact
+    whole, forced, impacts = by_reference(system, *start, 1.0, (until - start[0]) / omega)
+    rest, forced_rest, _ = by_reference(system, phase, speed, 1.0, (until - phase) / omega)
+    assert len(impacts) == 4
+    assert impacts["time"][3] * omega + start[0] == pytest.approx(phase, rel=1e-11)
+    assert abs(impacts["velocity_after"][3]) / rate == pytest.approx(speed, rel=1e-11)
+
+    def states(phase, speed):
+        """Return derivatives of rotation and velocity at an impact by phase and speed after the impact."""
+        push = system.excitation.amplitude / system.gravity * math.sin(phase)
+        alpha, p2 = system.sides[:2]
+        pull = alpha + push if linear else math.sin(alpha) + push * math.cos(alpha)
+        return np.array([[-speed * rate / omega, 0.0], [p2 * pull / omega, rate]])
+
+    back = np.linalg.inv(rest @ states(phase, speed))
+    assert back @ whole @ states(*start) == pytest.approx(flight.jacobian[0], rel=1e-9)
+    by_ratio = flight.by_parameter[0] * system.amplitude_ratio
+    assert back @ (forced - forced_rest) == pytest.approx(by_ratio, rel=1e-9)
+    other = replace(system, restitution=0.9)  # control: another law is another map
+    assert abs(over_impacts(other, *start, 4).phase[0] / phase - 1.0) > 1e-3
+
+
+@pytest.mark.verifies("invariant", "the product of r d(r v)/dv over the impacts", within="1e-10")
+@pytest.mark.parametrize("linear", [False, True])
+def test_sum_rule_of_all_laws(linear):
+    """Both exponents add up to the mean logarithm of the impacts' determinants, by foot and by speed."""
+    for law in ({"left": 0.8, "right": 0.9}, BY_SPEED):
+        system = HarmonicRocking.of_ratios(LEANING, 1.4, 2.5, restitution=law, linear=linear)
+        starts = start_states(system, np.linspace(0.1, 6.2, 6), [0.4, 0.8])
+        result = over_periods(system, starts, settled=60, kept=100, vectors=2, most_impacts=500)
+        alive = (result.ending == 0) & (result.rests == 0)
+        assert alive.sum() >= 2
+        before, is_right = result.hits[alive, :, 2], result.hits[alive, :, 1] > 0.0
+        if law is BY_SPEED:
+            r = 0.9 * (1.0 - 0.08 * np.abs(before))
+            slopes = 0.9 * (1.0 - 0.16 * np.abs(before))
+        else:
+            r = slopes = np.where(is_right, 0.9, np.where(np.isnan(before), np.nan, 0.8))
+        expected = np.nansum(np.log(r * slopes), axis=1)
+        assert result.growth[alive].sum(axis=1) == pytest.approx(expected, abs=1e-10 * 100)
+        if law is BY_SPEED:  # control: r^2 is wrong
+            assert np.abs(expected - 2.0 * np.nansum(np.log(r), axis=1)).min() > 0.01
+
+
+@pytest.mark.verifies("second engine", "the same law in a table with more points; constant laws", within="1e-9")
+@pytest.mark.filterwarnings("ignore")
+def test_laws_by_speed_in_all_functions():
+    """Basins, sections, exponents, diagrams and orbits accept r(v); a flat law is a constant coefficient."""
+    flat = SpeedRestitution(at=[0.0, 5.0], factors=[1.0, 1.0], times=0.9)
+    fine = SpeedRestitution(at=np.linspace(0.0, 5.0, 21), factors=np.linspace(1.0, 0.6, 21), times=0.9)
+    results = []
+    for law in (0.9, flat, BY_SPEED, fine):
+        system = HarmonicRocking.of_ratios(LEANING, 1.4, 2.5, restitution=law)
+        cells = basin(system, phases=12, speeds=12)
+        starts = start_states(system, [1.0, 4.5], [0.7])
+        diagram = bifurcation(system, [1.2, 1.4], starts=starts, cycles=(100, 130), exponents=True)
+        exponents = lyapunov_exponents(system, starts=starts, settled=200, kept=100)
+        near = symmetric_orbit(system_of(4, 1.4, 2.5, 0.9))
+        orbit = find_orbit(system, near.phase, near.speed, impacts=2)
+        fold = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
+        values = (fold.value, orbit.determinant, *exponents.by_orbit.ravel(), *diagram.impacts.values.ravel())
+        results.append((cells.kind.tolist(), values))
+    for first, second in ((0, 1), (2, 3)):
+        assert results[first][0] == results[second][0]
+        assert results[first][1] == pytest.approx(results[second][1], rel=1e-8)
+    assert results[0][0] != results[2][0]
+    assert abs(results[0][1][0] / results[2][1][0] - 1.0) > 0.01
 
 
 PARAMETERS = ("amplitude", "frequency", "restitution", "slenderness")
