@@ -37,7 +37,7 @@ GROUPS = {
         "identify": "Identify the coefficient from a measurement.",
         "models": "List the restitution models.",
         "measurements": "Add and list measurements; calibrate models.",
-        "reproduce": "Recompute the results of Mao et al. (2024).",
+        "reproduce": "Recompute the results of a paper.",
     },
     "Records": {
         "record": "Show, convert, process and select records.",

@@ -4,17 +4,21 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+from rocking.answers import Answer
 from rocking.errors import MissingExtraError
-from rocking.reports.document import ReportTable, render_pdf, write_html
-from rocking.reports.paper_document import Reproduction, paper_document
+from rocking.reports.document import Document, ReportTable, render_pdf, write_html
 from rocking.tables.table import writing
 
 Step = Callable[[str], None]
+Figures = dict[str, Callable[[], Any]]
 
 
-def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[Path], list[str]]:
-    """Write report, tables, figures and numbers."""
+def write_folder(
+    document: Document, figures: Figures, answer: Answer, folder: Path, step: Step
+) -> tuple[list[Path], list[str]]:
+    """Write report, tables, figures and numbers; there are three steps more than figures."""
     # returns the main files, and messages on files that need a missing package, with its installation
     pictures, tables = folder / "figures", folder / "tables"
     with writing(f"to {folder}"):
@@ -23,10 +27,9 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
     written: list[Path] = []
     omissions: list[str] = []
     try:
-        _draw(pictures, step, result)
+        _draw(figures, pictures, step)
     except MissingExtraError as error:
         omissions.append(f"no figures, no report.html and no report.pdf: {error}")
-    document = paper_document(result)
     step("tables")
     for table in document.tables:
         _write_table(table, tables / f"{table.stem}.csv")
@@ -39,22 +42,14 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
         except MissingExtraError as error:
             omissions.append(f"no {name}: {error}")
     numbers = folder / "results.json"
-    numbers.write_text(json.dumps(result.answer().plain(), indent=2), encoding="utf-8")
+    numbers.write_text(json.dumps(answer.plain(), indent=2), encoding="utf-8")
     return [*written, numbers], omissions
 
 
-def steps() -> int:
-    """Return the number of steps that `write_folder` reports."""
-    from rocking.plots.paper_figures import paper_figures
-
-    return len(paper_figures()) + 3
-
-
-def _draw(folder: Path, step: Step, result: Reproduction) -> None:
-    from rocking.plots.paper_figures import paper_figures
+def _draw(figures: Figures, folder: Path, step: Step) -> None:
     from rocking.plots.style import write
 
-    for stem, draw in paper_figures(result.data).items():
+    for stem, draw in figures.items():
         step(stem.replace("_", " "))
         figure = draw()
         write(figure, folder / f"{stem}.png")

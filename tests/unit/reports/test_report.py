@@ -1,7 +1,6 @@
 """Reports: text is text, nothing is fetched, both renderers take any content; the section on explanations."""
 
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -76,17 +75,11 @@ def test_pdf_takes_any_words(folder):
 )
 def test_a_missing_package_costs_its_part_alone(missing, kept, said, folder, monkeypatch):
     """Without an optional package the folder of `rocking reproduce` has everything else, and says what it has not."""
-    monkeypatch.setattr(paper_folder, "paper_document", lambda _: document())
     monkeypatch.setattr(paper_folder, "write_html", lambda content, _, path: write_html(content, folder, path))
     monkeypatch.setattr(paper_folder, "render_pdf", lambda content, _, path: render_pdf(content, folder, path))
-    figures = SimpleNamespace(paper_figures=lambda data: {})
-    monkeypatch.setitem(sys.modules, "rocking.plots.paper_figures", figures)
     monkeypatch.setitem(sys.modules, missing, None)
-    if missing == "matplotlib":
-        figures.paper_figures = lambda data: {"body": lambda: body_picture(Block(width=1.0, height=2.0))}
-    written, left_out = paper_folder.write_folder(
-        SimpleNamespace(data=None, answer=lambda: Answer({})), folder / "out", lambda _: None
-    )
+    figures = {"body": lambda: body_picture(Block(width=1.0, height=2.0))} if missing == "matplotlib" else {}
+    written, left_out = paper_folder.write_folder(document(), figures, Answer({}), folder / "out", lambda _: None)
     assert [path.name for path in written] == kept
     assert all(path.is_file() for path in written)
     assert len(left_out) == 1

@@ -1,6 +1,7 @@
 """A rocking body under harmonic ground motion, and its state over whole periods or from impact to impact."""
 
 import math
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -213,8 +214,8 @@ class HarmonicRocking:
             sides[0::3] = checks.within(
                 "slenderness", value, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
             )
-        system = replace(self, excitation=motion)
-        system.__dict__["sides"] = sides
+        system = copy(self)
+        system.__dict__.update(excitation=motion, sides=sides)
         return system
 
     def value(self, parameter: Parameter) -> float:

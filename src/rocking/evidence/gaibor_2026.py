@@ -1,0 +1,413 @@
+"""The comparison of Gaibor and Lopez (2026), arXiv:2606.14288: harmonic rocking by restitution model and slenderness.
+
+The parameters of the paper are not known: those of this module are our own.
+"""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from rocking.answers import Answer
+from rocking.bodies import Block
+from rocking.conventions import FloatArray
+from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.quantities import Quantity
+from rocking.studies.longrun import (
+    Basin,
+    Bifurcation,
+    HarmonicRocking,
+    basin,
+    bifurcation,
+    branch_off,
+    continue_orbit,
+    lyapunov_exponents,
+    start_states,
+    symmetric_orbit,
+)
+from rocking.studies.longrun.attractors import IRREGULAR, KINDS, LOST, PERIODIC
+from rocking.studies.longrun.basins import LOST as OVERTURNED_CELL
+
+SLENDERNESS, MODELS = (2, 3, 4, 6, 8, 10), ("housner", "ked", "calibrated")
+LOWEST, HIGHEST, TOP_SPEED = 0.2, 6.0, 2.0  # amplitude ratios; speeds of starts over alpha p
+BASIN_FREQUENCY, BASIN_AMPLITUDE = 3.0, 1.5
+BIFURCATIONS = ("fold", "pitchfork", "first_doubling", "second_doubling")
+_LIMITS = (0.0, 100.0)  # amplitudes of continuations
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Numbers of a reproduction: frequency ratios, amplitude steps, starts, amplitudes of a cascade, basin cells."""
+
+    frequencies: tuple[float, ...] = (2.0, 5.0)
+    step: float = 0.1  # of amplitudes with several starts
+    step_at_rest: float = 0.04  # of amplitudes with a start at rest
+    starts: int = 4  # phases, and speeds
+    cascade: int = 100
+    cells: int = 50  # phases, and speeds
+
+    def amplitudes(self, step: float) -> FloatArray:
+        return np.round(np.arange(round(LOWEST / step), round(HIGHEST / step) + 1) * step, 6)
+
+
+FAST, FULL = Effort(), Effort((2.0, 3.0, 5.0), 0.05, 0.01, 8, 400, 100)
+
+
+QUANTITIES_OF_CASES = {
+    name: Quantity(name, "1", meaning, digits=digits)
+    for digits, table in {
+        ".4f": {
+            "restitution": "coefficient of restitution",
+            "fold": "smallest amplitude ratio of the symmetric orbit",
+            "pitchfork": "amplitude ratio of the loss of symmetry",
+            "first_doubling": "amplitude ratio of the first period doubling",
+            "second_doubling": "amplitude ratio of the second period doubling",
+            "first_overturning": "smallest amplitude ratio that overturns the body from rest",
+            "overturned_starts": "fraction of starts that overturn",
+            "one_period_starts": "fraction of starts with the period of the ground motion",
+            "multi_period_starts": "fraction of starts with several periods of the ground motion",
+            "chaotic_starts": "fraction of starts with chaos",
+            "complex_amplitudes": "fraction of amplitudes with an attractor of several periods or chaos",
+            "chaotic_amplitudes": "fraction of amplitudes with chaos",
+            "overturned_cells": "fraction of the cells of a basin that overturn",
+        },
+        ".3g": {
+            "frequency_over_p": "circular frequency of the ground motion over p",
+            "amplitude_step": "step of the amplitude ratios",
+            "starts_per_amplitude": "starts per amplitude",
+            "cells_per_basin": "cells per basin",
+            "chaos_step": "step of the amplitude ratios after the second period doubling",
+            "chaos_width": "number of amplitudes with chaos after the period doublings times their step",
+            "largest_exponent": "largest Lyapunov exponent after the period doublings over p",
+            "largest_exponent_error": "standard error of the largest Lyapunov exponent over p",
+        },
+    }.items()
+    for name, meaning in table.items()
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One slenderness, model and frequency."""
+
+    slenderness: int
+    model: str
+    frequency: float
+    numbers: dict[str, float]  # by the names of `QUANTITIES_OF_CASES`; NaN for none
+    from_rest: dict[str, float]  # fraction of amplitudes by kind
+    is_complex: Any  # amplitudes with an attractor of several periods or chaos
+    is_chaotic: Any  # amplitudes with chaos
+    attractors: FloatArray  # amplitude and rotation over alpha, shape (points, 2)
+    exponents: FloatArray  # amplitude and largest exponent over p from rest, shape (amplitudes, 2)
+    cascade: FloatArray  # amplitude, rotation over alpha and largest exponent over p, shape (points, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class GaiborReproduction:
+    """The comparison: one case per slenderness, model and frequency, basins, and the statements of the abstract."""
+
+    effort: Effort
+    cases: tuple[Case, ...]
+    basins: dict[tuple[int, str], Basin]
+
+    def case(self, slenderness: int, model: str, frequency: float) -> Case:
+        wanted = (slenderness, model, frequency)
+        return next(case for case in self.cases if (case.slenderness, case.model, case.frequency) == wanted)
+
+    def pairs(self, frequencies: Iterable[float] = ()) -> "list[tuple[Case, Case]]":
+        """Return the cases of Housner and KED with equal slenderness and frequency."""
+        return [
+            (self.case(slenderness, "housner", frequency), self.case(slenderness, "ked", frequency))
+            for frequency in frequencies or self.effort.frequencies
+            for slenderness in SLENDERNESS
+        ]
+
+    def lost(self, slenderness: int, model: str) -> float:
+        """Return the fraction of the cells of a basin that overturn."""
+        found = self.basins[slenderness, model]
+        return float((found.kind == OVERTURNED_CELL).mean())
+
+    def claims(self) -> tuple[Claim, ...]:
+        """Return the statements of the abstract in their senses, with verdicts."""
+        return (*_onset(self), *_prevalence(self), *_convergence(self))
+
+    def answer(self) -> Answer:
+        """Return the numbers of all cases, the basins and the claims."""
+        effort, claims = self.effort, self.claims()
+        basins = [
+            {"slenderness_ratio": slenderness, "model": model, "overturned_cells": self.lost(slenderness, model)}
+            for slenderness, model in self.basins
+        ]
+        cases = [
+            {"slenderness_ratio": case.slenderness, "model": case.model, "frequency_over_p": case.frequency}
+            | case.numbers
+            for case in self.cases
+        ]
+        return Answer({
+            "source": "arXiv:2606.14288", "amplitude_step": effort.step, "starts_per_amplitude": effort.starts**2,
+            "cells_per_basin": effort.cells**2, "cases": cases, "basins": basins,
+            "claims": [
+                {"statement": c.quote, "sense": c.test, "verdict": c.verdict, "evidence": c.evidence} for c in claims
+            ],
+        }, QUANTITIES_OF_CASES)  # fmt: skip
+
+
+def steps(effort: Effort = FAST) -> int:
+    """Return the number of steps of a reproduction."""
+    return len(SLENDERNESS) * len(MODELS) * (len(effort.frequencies) + 1)
+
+
+def reproduce(effort: Effort = FAST, step: Callable[[str], None] = lambda name: None) -> GaiborReproduction:
+    """Compute the comparison; step: called before each step."""
+    cases, basins = [], {}
+    for slenderness in SLENDERNESS:
+        for model in MODELS:
+            for frequency in effort.frequencies:
+                step(f"h/b {slenderness}, {model}, frequency {frequency:g}")
+                cases.append(case(slenderness, model, frequency, effort))
+            step(f"h/b {slenderness}, {model}, basin")
+            system = _system(slenderness, model, BASIN_FREQUENCY, BASIN_AMPLITUDE)
+            basins[slenderness, model] = basin(
+                system, phases=effort.cells, speeds=effort.cells, highest=TOP_SPEED, check=False
+            )
+    return GaiborReproduction(effort, tuple(cases), basins)
+
+
+def _system(slenderness: float, model: str, frequency: float, amplitude: float = 1.0) -> HarmonicRocking:
+    body = Block(width=1.0, height=float(slenderness))
+    return HarmonicRocking.of_ratios(body, amplitude, frequency, restitution=model)
+
+
+def case(slenderness: int, model: str, frequency: float, effort: Effort = FAST) -> Case:
+    """Return one case."""
+    system = _system(slenderness, model, frequency)
+    rest, rest_kind, _ = _attractors(system, effort.amplitudes(effort.step_at_rest), np.zeros((1, 3)), (300, 200))
+    overturning = rest.amplitude.values[rest_kind[:, 0] == LOST]
+    cells = (np.arange(effort.starts) + 0.5) / effort.starts
+    starts = start_states(system, cells * 2.0 * math.pi, cells * TOP_SPEED)
+    r = float(system.sides[2])
+    cycles = (max(150, math.ceil(11.0 / abs(math.log(r)))), 130)
+    amplitudes = effort.amplitudes(effort.step)
+    found, kind, period = _attractors(system, amplitudes, starts, cycles)
+    is_chaotic, is_multi, is_one = (
+        kind == IRREGULAR,
+        (kind == PERIODIC) & (period > 1),
+        (kind == PERIODIC) & (period == 1),
+    )
+    is_complex = (is_chaotic | is_multi).any(axis=1)
+    branch = main_branch(system)
+    cascade, after_doublings = _cascade(branch, effort.cascade)
+    shares = {"overturned": kind == LOST, "one_period": is_one, "multi_period": is_multi, "chaotic": is_chaotic}
+    numbers = {
+        "restitution": r, **dict(zip(BIFURCATIONS, (item.value for item in branch), strict=True)),
+        "first_overturning": float(min(overturning, default=math.nan)),
+        **{f"{name}_starts": float(mask.mean()) for name, mask in shares.items()},
+        "complex_amplitudes": float(is_complex.mean()), "chaotic_amplitudes": float(is_chaotic.any(axis=1).mean()),
+        **after_doublings,
+    }  # fmt: skip
+    return Case(
+        slenderness, model, frequency, numbers,
+        {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
+        is_complex, is_chaotic.any(axis=1), _points(amplitudes, found, is_one | is_multi | is_chaotic),
+        np.column_stack([rest.amplitude.values, rest.exponent.values[0, :, 0] / system.p]), cascade,
+    )  # fmt: skip
+
+
+def _attractors(
+    system: HarmonicRocking, amplitudes: FloatArray, starts: FloatArray, cycles: tuple[int, int]
+) -> tuple[Any, Any, Any]:
+    """Return diagram, kinds and periods, shape (amplitudes, starts); irregular is chaos, after 2,000 more periods."""
+    found = bifurcation(system, amplitudes, starts=starts, cycles=cycles, exponents=True)
+    kind, period = found.kind.values[0].copy(), found.period.values[0].copy()
+    doubtful = np.flatnonzero((kind == IRREGULAR).any(axis=1))
+    if len(doubtful):
+        longer = bifurcation(
+            system, amplitudes[doubtful], starts=starts, cycles=(cycles[0] + 2000, 512), exponents=True
+        )
+        rows = kind[doubtful] == IRREGULAR
+        new = longer.kind.values[0]
+        new[(new == IRREGULAR) & ~(longer.exponent.values[0] > 0.0)] = PERIODIC
+        kind[doubtful], period[doubtful] = (
+            np.where(rows, *pair) for pair in ((new, kind[doubtful]), (longer.period.values[0], period[doubtful]))
+        )
+    return found, kind, period
+
+
+def _points(amplitudes: FloatArray, found: Any, is_kept: Any) -> FloatArray:
+    """Return amplitude and rotation of the last 32 periods of attractors, each point once."""
+    rows, columns = np.nonzero(is_kept)
+    rotation = np.round(found.rotation.values[0][rows, columns, -32:], 3)
+    return np.unique(np.column_stack([np.repeat(amplitudes[rows], rotation.shape[1]), rotation.ravel()]), axis=0)
+
+
+def main_branch(system: HarmonicRocking) -> list[Bifurcation]:
+    """Return fold, pitchfork and two period doublings of the symmetric orbit over the amplitude."""
+    scale = (1.0 + system.frequency_ratio**2) / 5.0
+    orbit = symmetric_orbit(system.changed("amplitude", 1.2 * scale))
+    fold = continue_orbit(orbit, _LIMITS, increasing=False, stop=_is("fold")).first("fold")
+    found = [fold, continue_orbit(orbit, _LIMITS, step=0.05, stop=_is("pitchfork")).first("pitchfork")]
+    for step in (0.03, 0.01):
+        branch = branch_off(found[-1], _LIMITS, step=step, stop=_is("period doubling"))
+        found.append(branch.first("period doubling"))
+    return found
+
+
+def _is(kind: str) -> Callable[[Bifurcation], bool]:
+    return lambda item: item.kind == kind
+
+
+def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[str, float]]:
+    """Follow the attractor from the second period doubling until it overturns; return points and numbers."""
+    first, second = branch[2:]
+    values = second.value + np.linspace(0.0, second.value - first.value, number + 1)[1:]
+    orbit = second.orbit
+    starts = start_states(orbit.system, [orbit.phase], [orbit.speed])
+    found = bifurcation(orbit.system, values, starts=starts, memory="up", cycles=(200, 200), exponents=True)
+    kind, exponent = found.kind.values[0, :, 0], found.exponent.values[0, :, 0]
+    end = int(np.argmax(np.append(kind == LOST, True)))
+    is_chaotic = (kind == IRREGULAR) & (exponent > 0.0) & (np.arange(number) < end)
+    rotation = found.rotation.values[0, :end, 0, -64:]
+    p = orbit.system.p
+    points = np.column_stack([np.repeat(column[:end], 64) for column in (values, exponent / p)])
+    cascade = np.insert(points, 1, rotation.ravel(), axis=1)
+    step, exponents = float(values[1] - values[0]), (math.nan, math.nan)
+    for at in np.argsort(np.where(is_chaotic, -exponent, np.inf))[: min(8, is_chaotic.sum())]:
+        last = [found[name].values[0, at, 0, -1] for name in ("rotation", "velocity")]
+        rows = np.tile([starts[0, 0], last[0] * orbit.system.alpha, last[1] * orbit.system.alpha * p], (16, 1))
+        rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # chaos makes these orbits independent
+        system = orbit.system.changed("amplitude", float(values[at]))
+        result = lyapunov_exponents(system, starts=rows, settled=500, kept=1000)
+        if len(result.finite) > 3:  # others overturn later: chaos is a transient
+            exponents = (float(result.values[0] / p), float(result.standard_errors[0] / p))
+            break
+    names = ("chaos_step", "chaos_width", "largest_exponent", "largest_exponent_error")
+    return cascade, dict(zip(names, (step, float(is_chaotic.sum()) * step, *exponents), strict=True))
+
+
+_ONSET = "complex oscillation begins earlier with KED"
+_PREVALENCE = "complex oscillation is more widespread with KED"
+_CONVERGENCE = "the difference between the models fades as slenderness grows"
+
+
+Pairs = list[tuple[Case, Case]]
+
+
+def _values(pairs: Pairs, name: str) -> FloatArray:
+    """Return a number of the cases of Housner and KED, shape (2, pairs)."""
+    return np.array([[case.numbers[name] for case in pair] for pair in pairs]).T
+
+
+def _onset(result: GaiborReproduction) -> list[Claim]:
+    pairs, effort = result.pairs(), result.effort
+    names = ("the symmetric orbit begins (fold)", "the symmetric orbit loses symmetry", "first period doubling")
+    exact = zip(BIFURCATIONS, names, strict=False)
+    claims = [_earlier(pairs, title, _values(pairs, name), 1e-9) for name, title in exact]
+    overturning = _values(pairs, "first_overturning")
+    claims.append(_earlier(pairs, "first overturning from rest", overturning, effort.step_at_rest))
+    amplitudes = effort.amplitudes(effort.step)
+    for frequency in effort.frequencies:
+        some = result.pairs([frequency])
+        first = [[min(amplitudes[case.is_complex], default=math.nan) for case in pair] for pair in some]
+        title = f"first attractor of several periods or chaos, frequency {frequency:g}"
+        claims.append(_earlier(some, title, np.array(first).T, effort.step))
+    return claims
+
+
+def _earlier(pairs: Pairs, title: str, values: FloatArray, resolution: float) -> Claim:
+    """Judge whether KED's amplitudes are smaller than Housner's; one step of amplitudes is no difference."""
+    housner, ked = np.nan_to_num(values, nan=1e9)  # NaN: none
+    gap = (ked - housner) / (1.01 * resolution)
+    earlier, later, first = int((gap < -1.0).sum()), int((gap > 1.0).sum()), pairs[0][0]
+    texts = [f"{value:.4f}" if value < 1e9 else "none" for value in (ked[0], housner[0])]
+    evidence = (
+        f"KED earlier in {earlier}, later in {later} of {len(pairs)} pairs; slenderness {first.slenderness}, frequency "
+        f"{first.frequency:g}: {texts[0]} with KED, {texts[1]} with Housner"
+    )
+    return Claim("1", _ONSET, _verdict(earlier, later, len(pairs)), evidence, title)
+
+
+def _verdict(agreeing: int, opposite: int, total: int) -> str:
+    if not agreeing:
+        return FAILS if opposite else UNRESOLVED
+    return HOLDS if not opposite and 3 * agreeing >= total else IN_PART
+
+
+def _prevalence(result: GaiborReproduction) -> list[Claim]:
+    pairs, several = result.pairs(), "attractors of several periods or chaos"
+    claims = [
+        _more(result.pairs([frequency]), "is_complex", f"{several}, frequency {frequency:g}")
+        for frequency in result.effort.frequencies
+    ]
+    width, noise = _values(pairs, "chaos_width"), _values(pairs, "chaos_step").max(axis=0)
+    gap = (width[1] - width[0]) / (1.01 * noise)
+    wider, narrower = int((gap > 1.0).sum()), int((gap < -1.0).sum())
+    exponent, error = _values(pairs, "largest_exponent"), _values(pairs, "largest_exponent_error")
+    evidence = (
+        f"KED wider in {wider}, narrower in {narrower} of {len(pairs)} pairs, others equal within one amplitude; "
+        f"slenderness {SLENDERNESS[0]}, frequency {pairs[0][0].frequency:g}: {width[1, 0]:.2g} with KED, "
+        f"{width[0, 0]:.2g} with Housner; largest exponents {exponent[1, 0]:.4f} +- {error[1, 0]:.4f} and "
+        f"{exponent[0, 0]:.4f} +- {error[0, 0]:.4f} per p t"
+    )
+    title = "width of the amplitudes with chaos after the period doublings"
+    last = Claim("2", _PREVALENCE, _verdict(wider, narrower, len(pairs)), evidence, title)
+    return [*claims, _more(pairs, "is_chaotic", "chaos, all frequencies"), last]
+
+
+def _more(pairs: Pairs, name: str, title: str) -> Claim:
+    """Compare paired counts of amplitudes by a sign test."""
+    signs, shares = [], []
+    for housner, ked in pairs:
+        first, second = getattr(ked, name), getattr(housner, name)
+        more, fewer = int((first & ~second).sum()), int((second & ~first).sum())
+        is_resolved = more != fewer and stats.binomtest(more, more + fewer).pvalue < 0.05
+        signs.append(int(np.sign(more - fewer)) if is_resolved else 0)
+        if first.any() or second.any():
+            shares.append(f"{ked.slenderness}: {first.mean():.3f} and {second.mean():.3f}")
+    more, fewer = signs.count(1), signs.count(-1)
+    evidence = (
+        f"more with KED in {more}, fewer in {fewer} of {len(pairs)} pairs, others not resolved (95 %); KED and Housner "
+        f"by slenderness {'; '.join(shares) or 'none'}; counting noise: one amplitude, {1.0 / len(first):.4f}"
+    )
+    return Claim("2", _PREVALENCE, _verdict(more, fewer, len(pairs)), evidence, f"fraction of amplitudes with {title}")
+
+
+def _convergence(result: GaiborReproduction) -> list[Claim]:
+    claims, frequencies = [], result.effort.frequencies
+    for name, title in (("pitchfork", "loss of symmetry"), ("first_doubling", "first period doubling")):
+        gaps = [np.abs(np.divide(*_values(result.pairs([frequency]), name)[::-1]) - 1.0) for frequency in frequencies]
+        fades = all((np.diff(gap) < 0.0).all() and gap[-1] < 1e-3 for gap in gaps)
+        powers = [np.polyfit(np.log(SLENDERNESS[2:]), np.log(gap[2:]), 1)[0] for gap in gaps]
+        evidence = "; ".join(
+            f"frequency {frequency:g}: {', '.join(f'{100.0 * value:.2g}' for value in gap)} %, slenderness^{power:.1f}"
+            for frequency, gap, power in zip(frequencies, gaps, powers, strict=True)
+        )
+        claims.append(Claim("3", _CONVERGENCE, HOLDS if fades else FAILS, evidence, f"amplitudes of the {title}"))
+    housner, ked = _values(result.pairs(frequencies[:1]), "fold")
+    evidence = (
+        f"difference {housner[0] - ked[0]:.4f} at slenderness {SLENDERNESS[0]}, {housner[-1] - ked[-1]:.4f} at "
+        f"{SLENDERNESS[-1]}; ratio {ked[0] / housner[0]:.3f} and {ked[-1] / housner[-1]:.3f}, with the limit 2/3"
+    )
+    verdict = IN_PART if housner[-1] - ked[-1] < 0.1 * (housner[0] - ked[0]) else FAILS
+    claims.append(Claim("3", _CONVERGENCE, verdict, evidence, "amplitudes of the fold: difference, but not ratio"))
+    return [*claims, *(_basin_claim(result, other) for other in ("ked", "calibrated"))]
+
+
+def _basin_claim(result: GaiborReproduction, other: str) -> Claim:
+    """Judge whether the difference in overturning cells decreases from its maximum on, within the counting noise."""
+    gap, noise = [], []
+    for slenderness in SLENDERNESS:
+        first, second = (result.basins[slenderness, model].kind == OVERTURNED_CELL for model in (other, "housner"))
+        gap.append((int(first.sum()) - int(second.sum())) / first.size)
+        noise.append(2.0 * math.sqrt((first != second).sum()) / first.size)
+    sizes = np.abs(gap[int(np.argmax(np.abs(gap))) :])
+    fades = len(sizes) > 1 and bool((np.diff(sizes) < noise[-1]).all())
+    verdict = FAILS if not fades else HOLDS if sizes[-1] < noise[-1] else IN_PART
+    r = [result.case(SLENDERNESS[-1], model, result.effort.frequencies[0]).numbers for model in (other, "housner")]
+    evidence = (
+        f"by slenderness {', '.join(f'{value:+.3f}' for value in gap)}; counting noise (95 %) {max(noise):.3f}; "
+        f"coefficients at slenderness {SLENDERNESS[-1]}: {r[0]['restitution']:.4f} and {r[1]['restitution']:.4f}"
+    )
+    return Claim("3", _CONVERGENCE, verdict, evidence, f"overturning cells of the basin, {other} and housner")
