@@ -29,6 +29,13 @@ from .studies._overturning_map import overturning_map as overturning_map
 from .studies._rocking_spectrum import rocking_spectrum as rocking_spectrum
 from .studies.fragility import fragility as fragility
 from .studies.inventory import inventory as inventory
+from .studies.longrun.interface import basin as basin
+from .studies.longrun.interface import bifurcation as bifurcation
+from .studies.longrun.interface import lyapunov as lyapunov
+from .studies.longrun.interface import periodic_orbits as periodic_orbits
+from .studies.longrun.interface import poincare as poincare
+from .studies.longrun.system import Harmonic as Harmonic
+from .studies.longrun.system import HarmonicRocking as HarmonicRocking
 from .studies.minimum_acceleration import minimum_overturning_acceleration as minimum_overturning_acceleration
 
 __version__: str

@@ -110,6 +110,8 @@ def lost_contact(results: Any) -> FloatArray:
     >>> lost_contact({"outcome": [1, 1, 0, 3], "least_force": [-0.1, 0.2, np.nan, np.nan]}).tolist()
     [1.0, 0.0, 0.0, nan]
     """
+    if "least_force" not in results:
+        return np.zeros(0)
     force = np.asarray(results["least_force"], dtype=np.float64)
     unknown = np.isnan(force) & (np.asarray(results["outcome"]) != Outcome.NO_UPLIFT.code)
     return np.where(unknown, np.nan, force < 0.0)

@@ -559,6 +559,59 @@ _CAMPAIGN = (
     Quantity("free", "B", "free disk space"),
     Quantity("bytes", "B", "size of the file"),
 )
+def _coded(*words: str) -> dict[int, str]:
+    return dict(enumerate(words))
+
+
+_ATTRACTORS = _coded("rest", "sticking", "periodic", "irregular", "overturned", "failed")
+_FINAL_STATES = _coded("overturned", "small", "settled", "failed")
+_BRANCH_POINTS = _coded("none", "fold", "pitchfork", "period doubling")
+_LONG_RUN = (
+    Quantity("amplitude_ratio", "1", "peak ground acceleration over that of uplift", label="amplitude / uplift"),
+    Quantity("frequency_ratio", "1", "circular frequency of the ground motion over p", label="frequency / p"),
+    Quantity("ground_phase", "rad", "phase of the ground motion at the impact", label="phase"),
+    Quantity("speed_ratio", "1", "angular velocity after the impact over alpha p", label="speed / (alpha p)"),
+    Quantity("rotation_ratio", "1", "rotation at the end of the period over alpha", label="rotation / alpha"),
+    Quantity("velocity_ratio", "1", "angular velocity at the end of the period over alpha p"),
+    Quantity("initial_state", "1", "index of the initial state"),
+    Quantity("period_number", "1", "number of the period of the ground motion"),
+    Quantity("orbit", "1", "index of the orbit"),
+    Quantity("branch", "1", "index of the branch: 0 is the symmetric branch"),
+    Quantity("point", "1", "index of the orbit on the branch; bifurcations first"),
+    Quantity("attractor", "1", "kind of the motion: at rest, with rests, periodic, irregular, overturned, failed",
+             _ATTRACTORS),
+    Quantity("periods", "1", "number of periods of the ground motion after which the motion repeats; 0 if none"),
+    Quantity("is_symmetric", "1", "1 if the motion is periodic and symmetric, else 0"),
+    Quantity("impacts_per_period", "1", "number of impacts per period of the ground motion"),
+    Quantity("exponent", "1/s", "largest Lyapunov exponent; minus infinity with rests", digits="+.4g"),
+    Quantity("second_exponent", "1/s", "second Lyapunov exponent; minus infinity with rests", digits="+.4g"),
+    Quantity("exponent_error", "1/s", "standard error of the mean largest exponent", digits=".2g"),
+    Quantity("exponent_over_p", "1", "largest Lyapunov exponent over p", label="exponent / p", digits="+.4g"),
+    Quantity("impact_rate", "1/s", "number of impacts per second"),
+    Quantity("orbits_counted", "1", "number of orbits in the mean", label="orbits"),
+    Quantity("orbits_sticking", "1", "number of orbits with rests", label="with rests"),
+    Quantity("orbits_overturned", "1", "number of orbits that overturn", label="overturned"),
+    Quantity("final_state", "1", "overturned, small (slow impact), settled (still rocking), failed", _FINAL_STATES),
+    Quantity("is_uncertain", "1", "1 if the final state changes with the step error, else 0"),
+    Quantity("stability", "1", "fraction of the initial states that do not overturn", digits=".4f"),
+    *(
+        Quantity(f"cells_{name}", "1", f"number of initial states: {name}", label=name)
+        for name in (*_FINAL_STATES.values(), "uncertain")
+    ),
+    Quantity("box_dimension", "1", "box-counting dimension of the boundary of overturning", digits=".3f"),
+    Quantity("multiplier", "1", "largest modulus of the multipliers of the orbit"),
+    Quantity("impacts_of_orbit", "1", "number of impacts until the orbit closes", label="impacts"),
+    Quantity("is_stable", "1", "1 if the orbit is stable, else 0"),
+    Quantity("branch_point", "1", "kind of the bifurcation", _BRANCH_POINTS, label="bifurcation"),
+    *(
+        Quantity(f"fraction_{name}", "1", f"fraction of the motions: {name}", label=name, digits=".4f")
+        for name in list(_ATTRACTORS.values())[:5]
+    ),
+    *(
+        Quantity(f"lowest_{name}", "1", f"lowest value with a motion that is {name}", label=f"lowest {name}")
+        for name in ("multiperiod", "irregular", "overturned")
+    ),
+)
 QUANTITIES: dict[str, Quantity] = {
     entry.name: entry
     for entry in (
@@ -578,6 +631,7 @@ QUANTITIES: dict[str, Quantity] = {
         *_HISTORY_IN_SPACE,
         *_HISTORY_ON_THE_HULL,
         *_SAMPLES,
+        *_LONG_RUN,
         *_IMPACTS_AND_INTERVALS,
     )
 }
@@ -599,15 +653,15 @@ _PARTS = """
     by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
     components concerns contributions converged crossing_curves crossings curves decides definition designs died
     directions doubts edges ends envelope errata event evidence examples facets file file_unit files finding
-    first_corner folder forced from growth hazard headline hierarchy identities ignored im im_description inputs
-    intensity interfaces intervals inventory islands judged_by label laboratories language last_state league
-    left_out_groups level likelihood likelihood_scale lowest lowest_uplift mean messages method methods mirrored
-    models motion motions_apart new not_assessed not_objects not_read not_sampled note notes objects one_by_one
-    other_models outside overturning passed_over passes plan plane_is_weakest poses prediction progress reason
-    reasons records refused reliability remedies resolved restitution_drawn results rigid rings scores section
-    sensitivity sentence sentences sets sides slow software solid source sources spacing spectrum stable stages
-    standing starts_overturned stated stored tables target target_spectrum test text threads title to too_sure
-    traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y
+    findings first_corner folder forced from growth hazard headline hierarchy identities ignored im im_description
+    inputs intensity interfaces intervals inventory islands judged_by label laboratories language last_state
+    league left_out_groups level likelihood likelihood_scale lowest lowest_uplift mean messages method methods
+    mirrored models motion motions_apart new not_assessed not_objects not_read not_sampled note notes objects
+    one_by_one other_models outside overturning passed_over passes plan plane_is_weakest poses prediction progress
+    reason reasons records refused reliability remedies resolved restitution_drawn results rigid rings scores
+    section sensitivity sentence sentences sets sides slow software solid source sources spacing spectrum stable
+    stages standing starts_overturned stated stored tables target target_spectrum test text threads title to
+    too_sure traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
 

@@ -20,7 +20,7 @@ from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.processes import chosen
 from rocking.campaigns.running import run
 from rocking.campaigns.status import CampaignStatus, Progress, Summary
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 
@@ -240,15 +240,16 @@ class Campaign:
         Parameters
         ----------
         *names : str
-            Keys of `fast_engine.RESULTS`; all of them if none is given.
+            Names of results; all of them if none is given.
 
         Returns
         -------
         dict of str to ndarray
             Those keys, one entry a history.
         """
-        wanted = [checks.one_of("column", name, RESULTS) for name in names or RESULTS]
-        whole = {name: np.empty(self.plan.count, RESULTS[name]) for name in wanted}
+        types = self.histories.columns
+        wanted = [checks.one_of("column", name, types) for name in names or types]
+        whole = {name: np.empty(self.plan.count, types[name]) for name in wanted}
         for piece in self.pieces():
             for name, values in whole.items():
                 values[piece.first : piece.last] = piece.results[name]

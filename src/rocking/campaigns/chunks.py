@@ -4,6 +4,7 @@ import hashlib
 import json
 import struct
 import zlib
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -11,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking.campaigns.disk import CampaignDamagedError
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import LARGEST_CHUNK
 
@@ -19,9 +20,16 @@ MAGIC = b"ROCKSHRD"
 FORMAT = 2  # version of the files of a campaign
 _LENGTHS = struct.Struct("<8sII")
 _SEAL = 32
-_COLUMNS = {name: np.dtype(kind).newbyteorder("<") for name, kind in RESULTS.items()}
-_NAMES = [[name, kind.str] for name, kind in _COLUMNS.items()]
-WIDTH = sum(kind.itemsize for kind in _COLUMNS.values())  # results of one history [bytes]
+
+
+def width(types: Mapping[str, Any]) -> int:
+    """Return the size of the results of one history [bytes]."""
+    return sum(np.dtype(kind).itemsize for kind in types.values())
+
+
+def _kinds(header: Any) -> dict[str, np.dtype[Any]]:
+    return {name: np.dtype(kind) for name, kind in header["columns"]}
+
 
 DEFAULT_CHUNK = 65536
 """Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
@@ -95,9 +103,16 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
     """
     count = chunk.last - chunk.first
-    columns = {name: np.ascontiguousarray(arrays[name][:count], kind).data for name, kind in _COLUMNS.items()}
+    kinds = {name: values.dtype.newbyteorder("<") for name, values in arrays.items()}
+    columns = {name: np.ascontiguousarray(arrays[name][:count], kind).data for name, kind in kinds.items()}
     sums = {name: zlib.crc32(column) for name, column in columns.items()}
-    content = {"name": chunk.name, "first": chunk.first, "last": chunk.last, "columns": _NAMES, "crc32": sums}
+    content = {
+        "name": chunk.name,
+        "first": chunk.first,
+        "last": chunk.last,
+        "columns": [[name, kind.str] for name, kind in kinds.items()],
+    }
+    content["crc32"] = sums
     header = json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
     head = _LENGTHS.pack(MAGIC, FORMAT, len(header)) + header
     digest = hashlib.sha256(head)
@@ -138,12 +153,13 @@ def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
 
 def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
     count, arrays = chunk.last - chunk.first, {}
-    if header.get("first") != chunk.first or header.get("last") != chunk.last or header.get("columns") != _NAMES:
+    if header.get("first") != chunk.first or header.get("last") != chunk.last or not header.get("columns"):
         raise CampaignDamagedError("its header does not fit its name")
-    if (due := place + count * WIDTH + _SEAL) != len(data):
+    kinds = _kinds(header)
+    if (due := place + count * width(kinds) + _SEAL) != len(data):
         raise CampaignDamagedError("it has {count} bytes, {expected} are due", count=len(data), expected=due)
-    for name, kind in _COLUMNS.items():
-        arrays[name] = np.frombuffer(data, kind, count, place).astype(RESULTS[name], copy=False)
+    for name, kind in kinds.items():
+        arrays[name] = np.frombuffer(data, kind, count, place).astype(kind.newbyteorder("="), copy=False)
         place += count * kind.itemsize
     return arrays
 
@@ -171,9 +187,10 @@ def _where_broken(data: bytes, place: int) -> str:
     with suppress(CampaignDamagedError, KeyError, TypeError, ValueError):
         header = _read_header(data, place)
         count = int(header["last"]) - int(header["first"])
-        if (due := place + count * WIDTH + _SEAL) != len(data):
+        kinds = _kinds(header)
+        if (due := place + count * width(kinds) + _SEAL) != len(data):
             return f"it has {len(data)} bytes, {due} are due: cut short?"
-        for name, kind in _COLUMNS.items():
+        for name, kind in kinds.items():
             end = place + count * kind.itemsize
             if zlib.crc32(memoryview(data)[place:end]) != header["crc32"][name]:
                 return f"column {name} has changed"

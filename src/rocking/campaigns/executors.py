@@ -152,7 +152,7 @@ class WorkerTask:
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:
         """Return the shard of a chunk, or of as much of it from its start as takes a second; None if it was stopped."""
-        results = empty_results(chunk.last - chunk.first)
+        results = empty_results(chunk.last - chunk.first, self.histories.columns)
         last = self.fill(results, chunk, threads, stop)
         return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)
 
@@ -252,7 +252,7 @@ class Serial(Executor):
             chunk = next(chunks, None)
             if chunk is None:
                 return None
-            results = empty_results(chunk.last - chunk.first)
+            results = empty_results(chunk.last - chunk.first, job.histories.columns)
             # in the context of the caller: what NumPy does about an overflow is part of it
             return chunk, results, pool.submit(copy_context().run, compute, results, chunk)
 

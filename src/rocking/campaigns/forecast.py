@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.campaigns.chunks import WIDTH, Plan
+from rocking.campaigns.chunks import Plan, width
 from rocking.campaigns.disk import CampaignStorageError
 from rocking.campaigns.identity import usual_chunk
 from rocking.campaigns.status import NOISE, CampaignStatus, Estimate
@@ -43,7 +43,7 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
     """Compute a sample of the histories, and compare the room on the disk with what is needed."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
-    needed = left * WIDTH + chunks * _BESIDE
+    needed = left * width(histories.columns) + chunks * _BESIDE
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(
@@ -90,14 +90,15 @@ def job_forecast(job: "Job", workers: int = 1, folder: Path | None = None) -> Jo
     count = histories.count
     chunk = min(job.document.campaign.chunk or usual_chunk(histories), count)
     chunks = -(-count // chunk)
+    size = width(histories.columns)
     each, later = trial(histories), None if search is None else search.later(count)
     work = each.at(workers / count)
-    memory = workers * (_BASE + 4 * WIDTH * chunk + _bytes_of(job.problem.motions))
+    memory = workers * (_BASE + 4 * size * chunk + _bytes_of(job.problem.motions))
     if search is not None and later is not None:
         memory += _KEPT * (count + int(search.kept * later[1]))
     return JobForecast(
         count, chunks, chunk, 1.0 / each.seconds, work.seconds, (work.low, work.high), memory,
-        disk=WIDTH * count + 5000 * chunks,
+        disk=size * count + 5000 * chunks,
         free=None if folder is None else _free(folder),
         later=later,
     )  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from rocking.campaigns.disk import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.executors import path_of
 from rocking.campaigns.identity import SHARDS, Identity
 from rocking.campaigns.status import Costs
-from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 
 NAME = "ledger.sqlite"
 _ALL = "(SELECT * FROM chunks UNION ALL SELECT * FROM pieces)"
@@ -216,7 +216,7 @@ class HistoryRange(NamedTuple):
 
     first: int
     last: int  # not included
-    results: Arrays  # the keys of `fast_engine.RESULTS`
+    results: Arrays  # by the names of `Histories.columns`
 
 
 def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
@@ -233,11 +233,12 @@ def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
 
 def digest(ranges: Iterator[HistoryRange]) -> str:
     """Return the SHA-256 of results, names and types; it does not depend on how they are cut."""
-    columns = {name: hashlib.sha256() for name in RESULTS}
+    columns: dict[str, Any] = {}
     for piece in ranges:
         for name, values in piece.results.items():
-            columns[name].update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
-    text = "".join(f"{name} {np.dtype(RESULTS[name]).name} {each.hexdigest()}\n" for name, each in columns.items())
+            each = columns.setdefault(f"{name} {values.dtype.name}", hashlib.sha256())
+            each.update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
+    text = "".join(f"{name} {each.hexdigest()}\n" for name, each in columns.items())
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -331,7 +331,7 @@ class _CampaignRun:
         chunk, pieces = self.plan.chunk(number), self.earlier.pieces[number]
         if sum(each.last - each.first for each in pieces) < chunk.last - chunk.first:
             return False
-        results = empty_results(chunk.last - chunk.first)
+        results = empty_results(chunk.last - chunk.first, self.job.histories.columns)
         for each in pieces:
             path = path_of(self.job.folder, each)
             try:

@@ -32,6 +32,12 @@ GROUPS = {
         "histories": "Simulate many motions, scale factors and models.",
         "equilibria": "Find the stable poses and energy barriers of a solid.",
     },
+    "Long-run dynamics": {
+        "bifurcation": "Compute a bifurcation diagram under harmonic motion.",
+        "orbits": "Follow periodic orbits and find their bifurcations.",
+        "lyapunov": "Compute Lyapunov exponents under harmonic motion.",
+        "basins": "Compute basins of overturning and their erosion.",
+    },
     "Restitution": {
         "restitution": "Compute coefficients of restitution of a body.",
         "identify": "Identify the coefficient from a measurement.",
@@ -56,6 +62,7 @@ RECORD = {
     "formats": "List the record formats.",
 }
 SUBCOMMANDS = ("record", "measurements", "campaign")
+_GENERIC = {"histories", "bifurcation", "orbits", "lyapunov", "basins"}  # from the table of the study
 _MODULES = {"assess": "predict", "models": "catalogues", "record formats": "catalogues"}
 
 
@@ -67,7 +74,7 @@ def commands() -> dict[str, str]:
 def added_studies() -> dict[str, str]:
     """Return the studies that are files of `rocking.spec.questions` alone, by kind, and what each is."""
     files = {module.name for module in iter_modules([f"{folder}/questions" for folder in spec.__path__])}
-    known = {*commands(), "minimum"}  # the table of overturning-pga
+    known = {*commands(), "minimum", "long_run"}  # the table of overturning-pga, and four commands
     if files <= known:  # the questions themselves take long to be imported
         return {}
     from rocking.spec.questions import questions
@@ -137,7 +144,7 @@ def _add(app: typer.Typer, name: str, summary: str, panel: str, second: str | No
 
 
 def _command(name: str) -> Callable[..., None]:
-    if name == "histories" or (name not in commands() and not name.startswith("record ")):
+    if name in _GENERIC or (name not in commands() and not name.startswith("record ")):
         from rocking.cli.histories import command_of
 
         return command_of(name)

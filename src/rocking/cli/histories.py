@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 COUNT, SEED = 20, 1  # synthetic motions by default
 _OF_FILES = {"body", "motion_provenance"}  # coordinates that files alone have
-_PLURALS = {"body": "bodies"}
+_PLURALS = {"body": "bodies", "branch": "branches"}
 _BODY: options.Options = {"body": (options.BodyFile, None)}
 _MOTIONS: options.Options = {
     "record": (options.SeveralRecords, None),
@@ -45,7 +45,9 @@ def command_of(kind: str) -> Callable[..., None]:
     exports = {name: export for name, export in DATASET.items() if pictured or name != "picture"}
     names = [name for name, field in table.model_fields.items() if _is_option(kinds_of(field))]
 
-    @options.takes(options.keys(table, *names), *([_BODY] * has_body), _MOTIONS, before="restitution")
+    @options.takes(
+        options.keys(table, *names), *([_BODY] * has_body), *([_MOTIONS] * question.has_motions()), before="restitution"
+    )
     @options.takes(options.SIZES if has_body else {"units": (options.RecordUnits, None)})
     @options.takes({"output": (Annotated[list[str] | None, options.output(exports)], None)}, before="as_json")
     def command(
@@ -65,7 +67,8 @@ def command_of(kind: str) -> Callable[..., None]:
             arguments = Arguments(context, *TABLES, own)
             length = arguments.length
             stated = arguments.table(own, arguments.values(table))
-            motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
+            usual = {"count": COUNT, "seed": SEED}
+            motions = motions_of(arguments, arguments.of_body, usual) if question.has_motions() else []
             if has_body:
                 problem = of_body(arguments, kind, stated, restitution, motions)
             else:
@@ -113,6 +116,15 @@ class HistoriesAnswer:
             "gravity": problem.settings.gravity,
             **{name: dataset[name].values.tolist() for name in names},
             "modes": mode_shares(dataset["mode"].values),
+            "findings": [
+                *problem.document.findings(problem, dataset),
+                *(
+                    row
+                    for name, other in problem.with_compared_models.items()
+                    if hasattr(self.others[name], "data_vars")
+                    for row in problem.document.findings(other, self.others[name])
+                ),
+            ],
             "contact": contact_words(lost_contact(dataset)),
             **model_facts(self.label, self.others, _overturned, problem.bodies[0]),
         })  # fmt: skip
@@ -127,11 +139,14 @@ class HistoriesAnswer:
         page.facts([("restitution", self.label)])
         page.facts(source_lines(summaries_of(problem.kept_motions)))
         counts = [
-            f"{size} {name if size == 1 else _PLURALS.get(str(name), f'{name}s')}"
+            f"{size} {name if size == 1 else _PLURALS.get(str(name), f'{name}s')}".replace("_", " ")
             for name, size in self.dataset["mode"].sizes.items()
         ]
         page.line(f"histories:    {' x '.join(counts)}\n")
-        page.rows(answer["modes"], ("mode", "count", "share"), dense=False)
+        if answer["findings"]:
+            page.rows(answer["findings"])
+        else:
+            page.rows(answer["modes"], ("mode", "count", "share"), dense=False)
         page.warn(filter(None, [answer["contact"]]))
         show_models(page, answer, Display(), self.label, _overturned(self.dataset))
 

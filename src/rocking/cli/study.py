@@ -85,7 +85,8 @@ def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
     compared: with those of the models that the default is compared with.
     """
     document, models = problem.document, 1 + len(problem.with_compared_models) * compared
-    return int(math.prod(document.sizes) * len(problem.motions) // document.motion_count) * models
+    motions = len(problem.motions) / document.motion_count if document.motions else 1.0
+    return int(round(math.prod(document.sizes) * motions) * models)
 
 
 def body_and_motion(

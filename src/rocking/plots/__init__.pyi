@@ -17,6 +17,11 @@ from .ground_motion import spectra_picture as spectra_picture
 from .identification import identification_picture as identification_picture
 from .inventory import inventory_distribution as inventory_distribution
 from .inventory import inventory_picture as inventory_picture
+from .long_run import basins_picture as basins_picture
+from .long_run import bifurcation_picture as bifurcation_picture
+from .long_run import lyapunov_picture as lyapunov_picture
+from .long_run import orbits_picture as orbits_picture
+from .long_run import poincare_picture as poincare_picture
 from .overturning_map import overturning_map_picture as overturning_map_picture
 from .overturning_map import refined_map_picture as refined_map_picture
 from .paper_figures import paper_figure as paper_figure

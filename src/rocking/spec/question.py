@@ -91,6 +91,11 @@ class StudyQuestion(JobTable):
             )  # fmt: skip
         return super()._unknown(key)
 
+    @classmethod
+    def has_motions(cls) -> bool:
+        """Return True if the study has a table [motions]."""
+        return cls.model_fields["motions"].is_required()
+
     @property
     def bodies(self) -> list[dict[str, Any]]:
         """The tables of the bodies."""
@@ -138,6 +143,10 @@ class StudyQuestion(JobTable):
     def study(self, problem: "StudyProblem") -> "Study":
         """Return the histories of the study, their dimensions, and the evaluation of their results."""
         raise NotImplementedError
+
+    def findings(self, problem: "StudyProblem", dataset: Any) -> list[dict[str, Any]]:
+        """Return a summary of all results as records of quantities; empty for a summary by outcome."""
+        return []
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
         """Draw a finished campaign with one restitution; without a name, with the first or with all."""

@@ -57,7 +57,9 @@ class StudyProblem:
                 raise InvalidValueError("bodies of a study are all plane or all in space")
             settings = study_settings(next(iter(bodies), None), stated, stated.pop("gravity", g))
         plane = document.plane or kinds == {True}
-        motions = motions_of(document.motions, inputs, paired=kinds == {False}, plane=plane)
+        motions: MotionSet = MotionList.empty()
+        if document.motions:
+            motions = motions_of(document.motions, inputs, paired=kinds == {False}, plane=plane)
         seed, mechanics = document.campaign.seed, mechanics_of(settings)
         restitutions = restitutions_of(document.restitution, seed, bodies, inputs, mechanics=mechanics)
         return cls(document, bodies, motions, restitutions, settings, inputs)
@@ -90,7 +92,8 @@ class StudyProblem:
     @property
     def kept_motions(self) -> MotionList:
         """The motions, all in memory."""
-        return MotionList([self.motions[k] for k in range(len(self.motions))])
+        motions = self.motions
+        return motions if isinstance(motions, MotionList) else MotionList([motions[k] for k in range(len(motions))])
 
     def only(self, things: str) -> Any:
         """Return the one body, motion or restitution of a study that takes no more."""

@@ -15,7 +15,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.batch import Batch
 from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
-from rocking.dynamics.plane.fast_engine import Arrays, empty_results
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, empty_results
 from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.rows import PIECE, ROWS, SIDE_DEFAULTS, Rows
 from rocking.dynamics.settings import Settings, check_progress
@@ -65,6 +65,11 @@ class Histories(ABC):
     def together(self) -> int:
         """Histories of one motion that stand in a row, from a multiple of this number on: the best places to cut."""
         return 1
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Types of the results, by their names."""
+        return RESULTS
 
     @property
     def parts(self) -> "tuple[Histories, ...]":
@@ -154,7 +159,7 @@ class Histories(ABC):
         Returns
         -------
         dict of str to ndarray
-            The keys of `fast_engine.RESULTS`, one entry a history.
+            The keys of `columns`, one entry a history.
 
         Raises
         ------
@@ -234,7 +239,7 @@ def results_of(
 ) -> Arrays:
     """Return the results of all histories, computed piece by piece so that progress can be told."""
     check_progress(progress)
-    results = empty_results(histories.count)
+    results = empty_results(histories.count, histories.columns)
     for first in range(0, histories.count, PIECE):
         last = min(first + PIECE, histories.count)
         for name, values in histories.run(first, last, threads=threads).items():

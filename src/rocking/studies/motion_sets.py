@@ -82,6 +82,13 @@ class MotionList(MotionSet):
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
         self._motions: list[Motion] = found
 
+    @classmethod
+    def empty(cls) -> "MotionList":
+        """Return a set without motions, for bodies under a harmonic ground motion."""
+        made = cls.__new__(cls)
+        made._motions = []
+        return made
+
     def __len__(self) -> int:
         return len(self._motions)
 

@@ -91,8 +91,16 @@ class Study:
         """Length of every dimension."""
         return tuple(self.dims.values())
 
+    @property
+    def types(self) -> dict[str, Any]:
+        """Types of the results as users know them."""
+        own = self.histories.columns
+        return TYPES if own is RESULTS else own
+
     def derived(self, first: int, last: int, results: Arrays) -> Arrays:
         """Return the results of some histories as users know them, with what follows from them."""
+        if self.types is not TYPES:
+            return results
         own = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(own["peak_rotation"], sides["alpha_right"], sides["alpha_left"])

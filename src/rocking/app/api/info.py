@@ -83,6 +83,7 @@ KindOfStudy: Any = shape(
     name=str,
     table=str,
     has_body=(bool, "whether its job has a table of a body"),
+    has_motions=(bool, "whether its job has a table of motions"),
 )
 KeyFacts: Any = shape(
     "KeyFacts",
@@ -183,7 +184,12 @@ def _constant(*kinds: type) -> dict[str, Any]:
         "measures": listed_measures(),
         "axes": [{**_quantity(entry), "usual": entry.usual} for entry in axes().values()],
         "study_kinds": [
-            {"name": kind, "table": question.own_table(), "has_body": issubclass(question, BodyQuestion)}
+            {
+                "name": kind,
+                "table": question.own_table(),
+                "has_body": issubclass(question, BodyQuestion),
+                "has_motions": question.has_motions(),
+            }
             for kind, question in launched.items()
         ],
         "steps": steps(),

@@ -104,11 +104,11 @@ class JobDocument:
 
     def toml(self, path_of: Callable[[str], str]) -> str:
         """Return the job as a job file."""
-        motions = [dict(table) for table in _listed(self.tables["motions"])]
+        motions = [dict(table) for table in _listed(self.tables.get("motions") or [])]
         for table in motions:
             if table.get("records") is not None:
                 table["records"] = [path_of(name) for name in _listed(table["records"])]
-        return toml_of({**self.tables, "motions": motions})
+        return toml_of({**self.tables, **({"motions": motions} if motions else {})})
 
 
 def _listed(value: Any) -> list[Any]:

@@ -34,7 +34,6 @@ from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.studies.fragility.measure_comparison import MeasureComparison
 from rocking.studies.islands import safe_islands
 from rocking.studies.sensitivity.comparison import Sensitivity
-from rocking.studies.study_plan import TYPES
 from rocking.tables import (
     Column,
     Grid,
@@ -254,7 +253,7 @@ def _write_study(
 
         if suffix != ".csv":  # which has no attributes
             attributes = {**attributes, "contact": _contact_words(folder)}
-        FORMATS[suffix](Grid("histories", study.dims, study.coordinates, TYPES, pieces, attributes), path)
+        FORMATS[suffix](Grid("histories", study.dims, study.coordinates, study.types, pieces, attributes), path)
         if suffix != ".nc" or "refined" not in study.exports:
             return
     result = answer(folder)

@@ -17,7 +17,7 @@ from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
 from rocking.studies.sensitivity.comparison import Sensitivity, drawn_in
-from rocking.studies.study_plan import TYPES, AdaptiveResult, Study
+from rocking.studies.study_plan import AdaptiveResult, Study
 from rocking.tables import PIECE
 
 if TYPE_CHECKING:
@@ -126,7 +126,8 @@ def assessment(folder: JobFolder) -> "Assessment":
 def comparable(folder: JobFolder) -> bool:
     """Return whether a campaign has several restitutions that `comparison` can compare."""
     study = folder.job.study
-    return len(folder.job.problem.restitutions) > 1 and study.search is None and study.assess is None
+    is_alone = study.search is not None or study.assess is not None or "peak_ratio" not in study.types
+    return len(folder.job.problem.restitutions) > 1 and not is_alone
 
 
 def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_ratio")) -> Sensitivity:
@@ -172,10 +173,10 @@ def pieces_of(
                 progress(last - first)
 
 
-def datasets(folder: JobFolder, names: Collection[str] = tuple(TYPES)) -> "dict[str, xr.Dataset]":
+def datasets(folder: JobFolder, names: Collection[str] = ()) -> "dict[str, xr.Dataset]":
     """Return results of all histories by label of the restitution, as the studies' functions return them."""
     study, labels = folder.job.study, list(folder.job.problem.restitutions)
-    flat = {name: np.empty(study.histories.count, TYPES[name]) for name in names}
+    flat = {name: np.empty(study.histories.count, study.types[name]) for name in names or study.types}
     for first, last, results in pieces_of(study, folder.campaign.pieces()):
         for name, values in flat.items():
             values[first:last] = results[name]

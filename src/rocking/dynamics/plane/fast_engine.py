@@ -1,7 +1,7 @@
 """The fast engine of pure rocking: availability, arrays in and out, and one history with all samples."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -126,11 +126,11 @@ def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int
     return before
 
 
-def empty_results(count: int) -> Arrays:
-    """Return arrays for the results of histories by the keys of `RESULTS`, filled with NaN or 0."""
+def empty_results(count: int, types: Mapping[str, Any] = RESULTS) -> Arrays:
+    """Return arrays for the results of histories by name, filled with NaN or 0."""
     return {
         name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype)
-        for name, dtype in RESULTS.items()
+        for name, dtype in types.items()
     }
 
 

@@ -212,21 +212,29 @@ def bifurcation(
     checks.one_of("memory", memory, ("none", "up", "down"))
     settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
     starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(checks.real_array("starts", starts))
-    options = {"settled": settled, "kept": kept, "vectors": int(exponents), "numerics": numerics}
-    tables = []
-    for system in named.values():
-        results = _swept(system, values, parameter, starts, memory, options)
-        tables.append(
-            [_columns(system.changed(parameter, float(v)), r, exponents) for v, r in zip(values, results, strict=True)]
-        )
-    shape = (len(named), len(values), len(starts))
+    options: Any = {"memory": memory, "cycles": (settled, kept), "exponents": exponents, "numerics": numerics}
+    tables = [arrays([system.changed(parameter, v) for v in values.tolist()], starts, **options)
+              for system in named.values()]  # fmt: skip
     data = {}
-    for name in tables[0][0]:
-        column = np.array([[row[name] for row in table] for table in tables])
-        dimensions = ("system", parameter, "start", "cycle")[: column.ndim]
-        data[name] = (dimensions, column.reshape(shape + column.shape[3:]), _ATTRIBUTES[name])
+    for name in tables[0]:
+        column = np.array([table[name] for table in tables])
+        data[name] = (("system", parameter, "start", "cycle")[: column.ndim], column, _ATTRIBUTES[name])
     coordinates = {"system": list(named), parameter: values, "cycle": np.arange(settled, settled + kept)}
     return xr.Dataset(data, coordinates, {"kinds": list(KINDS), "memory": memory, "settled": settled})
+
+
+def arrays(
+    systems: Sequence[HarmonicRocking], starts: FloatArray, *, memory: str = "none", cycles: tuple[int, int],
+    exponents: bool = False, numerics: Numerics = DEFAULTS,
+) -> dict[str, Any]:  # fmt: skip
+    """Return the attractors of one system after another, arrays of shape (systems, starts[, cycles])."""
+    options = {
+        "settled": cycles[0], "kept": cycles[1], "vectors": int(exponents), "most_impacts": 4 * LONGEST,
+        "numerics": numerics,
+    }  # fmt: skip
+    results = _swept(list(systems), starts, memory, options)
+    columns = [_columns(system, result, exponents) for system, result in zip(systems, results, strict=True)]
+    return {name: np.array([column[name] for column in columns]) for name in columns[0]}
 
 
 _ATTRIBUTES = {
@@ -234,27 +242,24 @@ _ATTRIBUTES = {
     "velocity": {"units": "-", "long_name": "angular velocity / (slenderness angle x p)"},
     "kind": {"long_name": "kind of history"},
     "period": {"units": "-", "long_name": "periods of the ground motion"},
+    "symmetric": {"long_name": "1 if a periodic history is symmetric"},
     "impacts": {"units": "-", "long_name": "impacts per period"},
     "peak": {"units": "-", "long_name": "largest rotation / slenderness angle"},
     "exponent": {"units": "1/s", "long_name": "largest Lyapunov exponent"},
 }
 
 
-def _swept(
-    system: HarmonicRocking, values: FloatArray, parameter: Parameter, starts: FloatArray, memory: str,
-    options: dict[str, Any],
-) -> list[Periods]:  # fmt: skip
+def _swept(systems: list[HarmonicRocking], starts: FloatArray, memory: str, options: dict[str, Any]) -> list[Periods]:
     number = len(starts)
     if memory == "none":
-        rows = [system.changed(parameter, float(value)) for value in values]
         everything = over_periods(
-            [row for row in rows for _ in range(number)], np.tile(starts, (len(rows), 1)), **options
+            [row for row in systems for _ in range(number)], np.tile(starts, (len(systems), 1)), **options
         )
-        return [_cut(everything, slice(k * number, (k + 1) * number)) for k in range(len(values))]
+        return [_cut(everything, slice(k * number, (k + 1) * number)) for k in range(len(systems))]
     results: list[Periods] = []
     states = starts.copy()
-    for value in values if memory == "up" else values[::-1]:
-        result = over_periods(system.changed(parameter, float(value)), states, **options)
+    for system in systems if memory == "up" else systems[::-1]:
+        result = over_periods(system, states, **options)
         alive = result.ending == NONE
         states[alive, 1:] = result.states[alive, -1]
         states[~alive] = starts[~alive]  # a body that has overturned starts again
@@ -270,9 +275,23 @@ def _columns(system: HarmonicRocking, result: Periods, exponents: bool) -> dict[
     kind, period, impacts = classified(result, system.alpha, system.p)
     columns = {
         "rotation": result.states[..., 0] / system.alpha, "velocity": result.states[..., 1] / (system.alpha * system.p),
-        "kind": kind, "period": period, "impacts": impacts, "peak": result.peak,
+        "kind": kind, "period": period, "symmetric": _symmetric(system, result, period), "impacts": impacts,
+        "peak": result.peak,
     }  # fmt: skip
     if exponents:
         growth = result.growth[:, 0] / (result.states.shape[1] * system.excitation.period)
-        columns["exponent"] = np.where(kind == STICKING, -np.inf, np.where(kind == LOST, np.nan, growth))
+        columns["exponent"] = np.where(kind <= STICKING, -np.inf, np.where(kind == LOST, np.nan, growth))
     return columns
+
+
+def _symmetric(system: HarmonicRocking, result: Periods, period: Any) -> Any:
+    """Return 1 for periodic histories whose impacts repeat on the other foot half a period later, else 0."""
+    time, after = result.hits[..., 0], result.hits[..., 1]
+    first = np.nanmin(time, axis=1, initial=np.inf, keepdims=True)
+    inside = time < first + (period[:, None] - 1e-6) * system.excitation.period
+    point = np.where(inside, after * np.exp(1j * system.excitation.frequency * time), 0.0) / (system.alpha * system.p)
+    moments = [np.abs((np.sign(after) * point**n).sum(axis=1, where=inside)) for n in (1, 2)]
+    count = inside.sum(axis=1)
+    return ((period > 0) & (count > 0) & (count < time.shape[1]) & (np.max(moments, axis=0) < CLOSURE * count)).astype(
+        int
+    )

@@ -81,7 +81,7 @@ class Basin:
             sizes.append(size)
             numbers.append(mixed.sum())
             size *= 2
-        if len(sizes) < 2 or min(numbers) == 0:
+        if len(sizes) < 3 or min(numbers) == 0:
             return math.nan
         return float(-np.polyfit(np.log(sizes), np.log(numbers), 1)[0])
 
@@ -167,17 +167,25 @@ def basin(
     ----------
     Soliman and Thompson (1989), J. Sound Vib. 135:453-475 (erosion of basins).
     """
+    phase, speed = cells(phases, speeds, highest)
+    x, y = (axis.ravel() for axis in np.meshgrid(phase, speed, indexing="ij"))
+    kind, other = checked_ends(system, x, y, checks.whole("impacts", impacts, 1), small, numerics, check=check)
+    return Basin(phase, speed, kind.reshape(phases, speeds), (kind != other).reshape(phases, speeds))
+
+
+def cells(phases: int, speeds: int, highest: float) -> tuple[FloatArray, FloatArray]:
+    """Return the phases [rad] and speeds over alpha p of the centres of cells."""
     phase = (np.arange(checks.whole("phases", phases, 1)) + 0.5) * 2.0 * math.pi / phases
-    speed = (np.arange(checks.whole("speeds", speeds, 1)) + 0.5) * checks.positive("highest", highest) / speeds
-    grid = [axis.ravel() for axis in np.meshgrid(phase, speed, indexing="ij")]
-    checks.whole("impacts", impacts, 1)
+    return phase, (np.arange(checks.whole("speeds", speeds, 1)) + 0.5) * checks.positive("highest", highest) / speeds
 
-    def kinds(numerics: Numerics) -> Any:
-        return ends_of(system, *grid, impacts=impacts, small=small, numerics=numerics).reshape(phases, speeds)
 
-    kind = kinds(numerics)
-    other = kinds(replace(numerics, step_error=30.0 * numerics.step_error)) if check else kind
-    return Basin(phase, speed, kind, kind != other)
+def checked_ends(
+    system: HarmonicRocking, phase: Any, speed: Any, impacts: int, small: float, numerics: Numerics, *, check: bool
+) -> Any:
+    """Return the kinds of histories, and those with another step error, shape (2, rows)."""
+    steps = [numerics, replace(numerics, step_error=30.0 * numerics.step_error)][: 1 + check]
+    kinds = [ends_of(system, phase, speed, impacts=impacts, small=small, numerics=each) for each in steps]
+    return np.array([kinds[0], kinds[-1]])
 
 
 @dataclass(frozen=True)

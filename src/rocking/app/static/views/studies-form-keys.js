@@ -5,7 +5,7 @@ import { filled } from "/questions/parts.js";
 import { motionsOf } from "/views/studies-form-parts.js";
 
 /** Form of the keys of a table. @param {{ app: App, question: StudyQuestion, kind: Server.KindOfStudy, label: string }} props */
-export const KeysQuestion = ({ app, question, kind: { name, table, has_body: hasBody }, label }) => {
+export const KeysQuestion = ({ app, question, kind: { name, table, has_body: hasBody, has_motions: moves }, label }) => {
   /** @type {Signal<{ [key: string]: string }>} */
   const texts = useSignal({});
   const keys = app.info.keys[table];
@@ -14,7 +14,8 @@ export const KeysQuestion = ({ app, question, kind: { name, table, has_body: has
     tables: (inputs) => {
       if (hasBody && !inputs.body) throw new Error("This study needs a body. Choose a body in the step Body.");
       const body = hasBody ? { body: inputs.body } : {};
-      return { kind: name, job: { ...body, motions: motionsOf(inputs), [table]: filled(texts.value, keys) } };
+      const motions = moves ? { motions: motionsOf(inputs) } : {};
+      return { kind: name, job: { ...body, ...motions, [table]: filled(texts.value, keys) } };
     },
   };
   return html`<div class="question"><div class="fields">${Object.entries(keys).map(([key, facts]) => html`

@@ -1,0 +1,276 @@
+"""Pictures of long-run dynamics: bifurcation diagrams, sections, exponents, basins and branches of orbits."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.plots.labels import plain
+from rocking.plots.style import (
+    COLORS,
+    DOUBLE,
+    GREY,
+    INK,
+    MARKS,
+    PALE,
+    SINGLE,
+    in_journal_style,
+    legend_below,
+    look,
+    new_figure,
+    patch,
+)
+from rocking.quantities import quantity
+from rocking.restitution import models
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_FATES = ((PALE, "overturned"), (COLORS[0], "small"), (COLORS[1], "settled"), (INK, "failed"))
+_KINDS = ((3, COLORS[1], "irregular"), (2, COLORS[0], "periodic"), (1, COLORS[2], "with rests"), (0, GREY, "at rest"))
+_LABELS = {
+    "amplitude_ratio": r"$a\,/\,(g\,\tan\,\alpha)$ [-]", "frequency_ratio": r"$\omega\,/\,p$ [-]",
+    "slenderness_ratio": "slenderness h/b [-]", "semi_diagonal": "semi-diagonal R [m]",
+    "coefficient": "coefficient of restitution r [-]", "rotation_ratio": r"$\theta\,/\,\alpha$ [-]",
+    "velocity_ratio": r"$\dot\theta\,/\,(\alpha\,p)$ [-]", "ground_phase": "phase at impact [rad]",
+    "speed_ratio": r"speed after impact $/\,(\alpha\,p)$ [-]",
+}  # fmt: skip
+
+
+@in_journal_style
+def bifurcation_picture(results: Any) -> "Figure":
+    """Draw bifurcation diagrams: rotation once per period over the parameter, and the largest exponent.
+
+    Parameters
+    ----------
+    results : xarray.Dataset or mapping
+        Result of `bifurcation`, or one result per restitution by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One column of panels per restitution.
+    """
+    shown = _by_restitution(results)
+    has_exponents = all("exponent" in data for data in shown.values())
+    figure, columns = _panels(shown, 3.4, (2.2, 1.0)) if has_exponents else _panels(shown, 2.6)
+    for data, column in zip(shown.values(), columns, strict=True):
+        axis = str(data["attractor"].dims[1])
+        x = data[axis].broadcast_like(data["rotation_ratio"])
+        for code, color, _ in _KINDS:
+            points = data["rotation_ratio"].where(data["attractor"] == code)
+            options: Any = {"color": color, "rasterized": True, "zorder": 3 - code, "markersize": 0.9}
+            column[0].plot(x.values.ravel(), points.values.ravel(), "o", markeredgewidth=0.0, **options)
+        _mark_overturning(column[0], data, axis)
+        if has_exponents:
+            exponent = data["exponent"].isel(period_number=0)
+            largest = exponent.where(np.isfinite(exponent)).max(dim=("sweep", "initial_state"))
+            largest = largest / data.attrs["frequency_parameter"]
+            column[1].axhline(0.0, color=GREY, linewidth=0.6)
+            column[1].plot(data[axis], largest, linewidth=0.8, color=COLORS[0])
+    _label(columns, axis, _LABELS["rotation_ratio"], *["largest\nexponent / p [-]"] * has_exponents)
+    legend = [*(patch(color, name) for _, color, name in _KINDS), patch(INK, "fraction overturned (top)")]
+    legend_below(figure, legend, 3 if len(shown) == 1 else 5)
+    return figure
+
+
+def _mark_overturning(axes: "Axes", data: "xr.Dataset", axis: str) -> None:
+    """Draw a strip above the diagram with the fraction of initial states that overturn, from white to black."""
+    lost = (data["attractor"].isel(period_number=0) == 4).mean(dim=("sweep", "initial_state")).values
+    x = data[axis].values
+    middles = 0.5 * (x[1:] + x[:-1])
+    edges = np.concatenate([x[:1], middles, x[-1:]])
+    options: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
+    axes.pcolormesh(edges, [1.01, 1.06], lost[None], cmap="Greys", vmin=0.0, vmax=1.0, **options)
+    axes.set_xlim(x[0], x[-1])
+
+
+@in_journal_style
+def lyapunov_picture(results: Any) -> "Figure":
+    """Draw the largest exponent of each orbit, with mean and three standard errors.
+
+    Parameters
+    ----------
+    results : xarray.Dataset or mapping
+        Result of `lyapunov`, or one result per restitution by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One row of points per restitution; one column wide.
+    """
+    shown = _by_restitution(results)
+    figure, (axes,) = new_figure(SINGLE, 1.2 + 0.3 * len(shown))
+    axes.axvline(0.0, color=GREY, linewidth=0.6)
+    for row, data in enumerate(shown.values()):
+        values = data["exponent"].values / data.attrs["frequency_parameter"]
+        finite = values[np.isfinite(values)]
+        axes.plot(finite, np.full(finite.size, row), "|", color=COLORS[0], alpha=0.5)
+        if finite.size > 1:
+            error = 3.0 * finite.std(ddof=1) / np.sqrt(finite.size)
+            axes.errorbar(finite.mean(), row + 0.2, xerr=error, fmt="o", color=INK, markersize=3, capsize=2)
+        elif not finite.size:
+            text = "orbits with rests: minus infinity" if np.isneginf(values).any() else "all orbits overturn"
+            axes.text(0.5, row, text, transform=axes.get_yaxis_transform(), ha="center", va="center", fontsize=7)
+    axes.set_yticks(range(len(shown)), [_name(label) for label in shown])
+    axes.set_ylim(len(shown) - 0.4, -0.6)
+    axes.set_xlabel("largest Lyapunov exponent / p [-]")
+    return figure
+
+
+@in_journal_style
+def basins_picture(results: Any) -> "Figure":
+    """Draw basins over phase and speed, or the erosion of basins over the amplitude.
+
+    Parameters
+    ----------
+    results : xarray.Dataset or mapping
+        Result of `basin`, or one result per restitution by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One map per restitution for one amplitude; one curve per restitution for several.
+    """
+    from scipy.stats import beta
+
+    shown = _by_restitution(results)
+    if next(iter(shown.values())).sizes["amplitude_ratio"] > 1:
+        figure, (axes,) = new_figure(SINGLE, 2.4)
+        for k, (label, data) in enumerate(shown.items()):
+            safe = (data["final_state"] != 0).sum(dim=("ground_phase", "speed_ratio")).values
+            number = data["final_state"][0].size
+            x, style = data["amplitude_ratio"], look(k)
+            low, high = beta.ppf(0.025, safe, number - safe + 1), beta.ppf(0.975, safe + 1, number - safe)
+            axes.fill_between(
+                x, np.nan_to_num(low), np.nan_to_num(high, nan=1.0), color=style["color"], alpha=0.2, lw=0
+            )
+            axes.plot(x, safe / number, label=_name(label), **style)
+        axes.set(xlabel=_LABELS["amplitude_ratio"], ylabel="fraction without overturning [-]", ylim=(-0.02, 1.02))
+        axes.legend()
+        return figure
+    from matplotlib.colors import ListedColormap
+
+    figure, columns = _panels(shown, 2.6)
+    for data, (axes,) in zip(shown.values(), columns, strict=True):
+        phases, speeds = data["ground_phase"].values, data["speed_ratio"].values
+        extent = (0.0, 2.0 * np.pi, 0.0, speeds[-1] + speeds[0])
+        axes.imshow(
+            data["final_state"][0].values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest",
+            cmap=ListedColormap([color for color, _ in _FATES]), vmin=-0.5, vmax=3.5,
+        )  # fmt: skip
+        places = np.argwhere(data["is_uncertain"][0].values)
+        axes.plot(phases[places[:, 0]], speeds[places[:, 1]], "x", color=INK, markersize=2)
+        axes.set_xticks([0.0, np.pi, 2.0 * np.pi], ["0", r"$\pi$", r"$2\pi$"])
+    _label(columns, "ground_phase", _LABELS["speed_ratio"])
+    legend_below(figure, [patch(color, name) for color, name in _FATES[:3]], 3)
+    return figure
+
+
+@in_journal_style
+def orbits_picture(results: Any) -> "Figure":
+    """Draw branches of periodic orbits: speed after impact over the parameter, and their bifurcations.
+
+    Parameters
+    ----------
+    results : xarray.Dataset or mapping
+        Result of `periodic_orbits`, or one result per restitution by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel per restitution; stable orbits are solid, unstable ones dashed.
+    """
+    shown = _by_restitution(results)
+    figure, columns = _panels(shown, 2.6)
+    words = quantity("branch_point").codes  # type: ignore[union-attr]
+    for data, (axes,) in zip(shown.values(), columns, strict=True):
+        axis = next(name for name in _LABELS if name in data.data_vars and name not in {"ground_phase", "speed_ratio"})
+        for number in range(data.sizes["branch"]):
+            branch = data.isel(branch=number)
+            curve = branch.isel(point=np.flatnonzero(branch["branch_point"].values == 0))
+            for is_stable, style in ((1, "-"), (0, (0, (3, 2)))):
+                y = curve["speed_ratio"].where(curve["is_stable"] == is_stable)
+                axes.plot(curve[axis], y, linestyle=style, color=COLORS[number % 6], linewidth=0.9)
+        for code in (1, 2, 3):
+            points = data.where(data["branch_point"] == code)
+            values = points["speed_ratio"].values.ravel()
+            axes.plot(points[axis].values.ravel(), values, MARKS[code], color=INK, markersize=3.5, label=words[code])
+    _label(columns, axis, _LABELS["speed_ratio"])
+    columns[0][0].legend(loc="best")
+    return figure
+
+
+@in_journal_style
+def poincare_picture(results: Any) -> "Figure":
+    """Draw Poincare sections.
+
+    Parameters
+    ----------
+    results : xarray.Dataset or mapping
+        Result of `poincare`, or one result per restitution by label.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel per restitution.
+    """
+    shown = _by_restitution(results)
+    figure, columns = _panels(shown, 2.6)
+    for data, (axes,) in zip(shown.values(), columns, strict=True):
+        first, second = list(data.data_vars)[:2]
+        axes.plot(
+            data[first].values.ravel(),
+            data[second].values.ravel(),
+            "o",
+            markersize=0.8,
+            markeredgewidth=0.0,
+            color=COLORS[0],
+            rasterized=True,
+        )
+    _label(columns, str(first), _LABELS[str(second)])
+    return figure
+
+
+def _by_restitution(results: Any) -> "dict[str, xr.Dataset]":
+    """Return one dataset per restitution, by label."""
+    if isinstance(results, Mapping) and not hasattr(results, "data_vars"):
+        return dict(results)
+    if "restitution" not in results.dims:
+        return {str(results.attrs.get("restitution", "")): results}
+    return {str(label): results.sel(restitution=label) for label in results["restitution"].values}
+
+
+def _panels(
+    shown: Mapping[str, Any], height: float, ratios: tuple[float, ...] = (1.0,), **options: Any
+) -> "tuple[Figure, list[list[Axes]]]":
+    """Return a figure with one column of panels per restitution, at most four side by side."""
+    across = min(len(shown), 4)
+    bands, rows = -(-len(shown) // across), len(ratios)
+    options = {"sharex": True, "sharey": "row" if rows > 1 else True, "height_ratios": ratios * bands, **options}
+    width = SINGLE if across == 1 else DOUBLE
+    figure, panels = new_figure(width, height * bands, rows=rows * bands, columns=across, **options)
+    grid = np.array(panels).reshape(bands, rows, across)
+    columns = [list(grid[k // across, :, k % across]) for k in range(bands * across)]
+    for label, column in zip(shown, columns, strict=False):
+        column[-1].tick_params(labelbottom=True)
+        column[0].set_title(_name(label), loc="left", y=1.06 if rows > 1 else None)
+    for column in columns[len(shown) :]:
+        for axes in column:
+            axes.set_visible(False)
+    return figure, columns[: len(shown)]
+
+
+def _label(columns: "list[list[Axes]]", x: str, *y: str) -> None:
+    """Label the lowest panel of each column, and all panels of the first columns."""
+    for k, column in enumerate(columns):
+        column[-1].set_xlabel(_LABELS[x])
+        if k % 4 == 0:
+            for axes, label in zip(column, y, strict=True):
+                axes.set_ylabel(label)
+
+
+def _name(label: str) -> str:
+    return plain(models()[label].short_name if label in models() else label)
