@@ -559,6 +559,8 @@ _CAMPAIGN = (
     Quantity("free", "B", "free disk space"),
     Quantity("bytes", "B", "size of the file"),
 )
+
+
 def _coded(*words: str) -> dict[int, str]:
     return dict(enumerate(words))
 
@@ -578,8 +580,12 @@ _LONG_RUN = (
     Quantity("orbit", "1", "index of the orbit"),
     Quantity("branch", "1", "index of the branch: 0 is the symmetric branch"),
     Quantity("point", "1", "index of the orbit on the branch; bifurcations first"),
-    Quantity("attractor", "1", "kind of the motion: at rest, with rests, periodic, irregular, overturned, failed",
-             _ATTRACTORS),
+    Quantity(
+        "attractor",
+        "1",
+        "kind of the motion: at rest, with rests, periodic, irregular, overturned, failed",
+        _ATTRACTORS,
+    ),
     Quantity("periods", "1", "number of periods of the ground motion after which the motion repeats; 0 if none"),
     Quantity("is_symmetric", "1", "1 if the motion is periodic and symmetric, else 0"),
     Quantity("impacts_per_period", "1", "number of impacts per period of the ground motion"),

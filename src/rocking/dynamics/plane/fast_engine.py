@@ -129,8 +129,7 @@ def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int
 def empty_results(count: int, types: Mapping[str, Any] = RESULTS) -> Arrays:
     """Return arrays for the results of histories by name, filled with NaN or 0."""
     return {
-        name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype)
-        for name, dtype in types.items()
+        name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype) for name, dtype in types.items()
     }
 
 

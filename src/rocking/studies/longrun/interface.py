@@ -14,7 +14,7 @@ from rocking.studies.longrun.study import (
     Cells,
     Diagram,
     Exponents,
-    Section,
+    SectionTask,
     long_run_study,
     random_states,
     systems_of,
@@ -74,7 +74,7 @@ def poincare(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> poincare(block, motion, "housner", cycles=(50, 10)).sizes["period_number"]
     10
     """
-    task = Section(_states(starts, seed), _cycles(cycles), checks.one_of("at", at, ("period", "impact")))
+    task = SectionTask(_states(starts, seed), _cycles(cycles), checks.one_of("at", at, ("period", "impact")))
     return _computed(systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
 
 
@@ -88,13 +88,15 @@ def bifurcation(  # noqa: PLR0913 - every one of them is a question that users a
 
     Parameters
     ----------
-    body, excitation, restitution, starts, seed, linear, gravity, threads
+    body, excitation
         As for `poincare`.
     axis : {"amplitude", "frequency", "slenderness", "size", "restitution"}
         Parameter: amplitude over that of uplift, frequency over p, slenderness h/b of a block with constant amplitude
         and frequency ratios, semi-diagonal [m] with constant ground motion, or coefficient of restitution.
     values : array_like
         Increasing values of the parameter.
+    restitution, starts
+        As for `poincare`.
     sweeps : tuple of {"none", "up", "down"}, optional
         Directions of the sweeps. Up and down, each history starts in the last state at the previous value.
     cycles : tuple of int, optional
@@ -102,6 +104,8 @@ def bifurcation(  # noqa: PLR0913 - every one of them is a question that users a
         recognised, at most 64.
     exponents : bool, optional
         True also computes the largest Lyapunov exponent.
+    seed, linear, gravity, threads
+        As for `poincare`.
 
     Returns
     -------
@@ -144,12 +148,14 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
 
     Parameters
     ----------
-    body, excitation, restitution, seed, linear, gravity, threads
+    body, excitation, restitution
         As for `poincare`.
     orbits : int, optional
         Number of orbits with random initial states; orbits that overturn within 60 periods are replaced if possible.
     cycles : tuple of int, optional
         Number of periods before growth is counted, and with counted growth.
+    seed, linear, gravity, threads
+        As for `poincare`.
 
     Returns
     -------
@@ -184,7 +190,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
 
     Parameters
     ----------
-    body, excitation, restitution, linear, gravity, threads
+    body, excitation, restitution
         As for `poincare`.
     amplitudes : array_like, optional
         Amplitudes over that of uplift [-]; that of the ground motion by default. Several show the erosion.
@@ -199,6 +205,8 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
         Speed over alpha p after an impact below which a history ends as small.
     check : bool, optional
         True repeats the computation with another step error and marks the cells that differ.
+    linear, gravity, threads
+        As for `poincare`.
 
     Returns
     -------
@@ -243,16 +251,20 @@ def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that use
 
     Parameters
     ----------
-    body, excitation, restitution, linear, gravity
+    body, excitation
         As for `poincare`. The body is symmetric, and the amplitude is that of the first orbit.
     axis : {"amplitude", "frequency", "restitution"}, optional
         Parameter: amplitude over that of uplift, frequency over p, or coefficient of restitution.
     limits : tuple of float, optional
         Limits of the parameter.
+    restitution
+        As for `poincare`.
     doublings : int, optional
         Number of branches that branch off in turn: at the pitchfork, then at period doublings.
     points : int, optional
         Number of orbits of each branch.
+    linear, gravity
+        As for `poincare`.
 
     Returns
     -------

@@ -186,7 +186,7 @@ def _started(system: HarmonicRocking, states: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Section(Task):
+class SectionTask(Task):
     """Poincare sections; rows are states at the ends of periods, or after impacts."""
 
     starts: FloatArray

@@ -121,7 +121,8 @@ def test_one_file_is_a_study_everywhere(added, capsys):
 def test_one_file_has_a_form(added):
     """The page hears of the kind, its table, and the unit, default and limits of each key."""
     info = _constant.__wrapped__()
-    assert {"name": "polarity", "table": "polarity", "has_body": True} in info["study_kinds"]
+    kind = {"name": "polarity", "table": "polarity", "has_body": True, "has_motions": True}
+    assert kind in info["study_kinds"]
     facts = {"unit": "-", "words": "scale factor of both polarities", "kind": "number", "usual": "1.0", "gt": 0.0}
     assert info["keys"]["polarity"] == {"factor": {**facts, "needed": False, "choices": []}}
 
