@@ -8,7 +8,7 @@ import pytest
 
 from rocking.evidence import gaibor_2026
 from rocking.evidence.claims_of_errors import FAILS, HOLDS
-from rocking.evidence.gaibor_2026 import FULL, Effort, case, main_branch
+from rocking.evidence.gaibor_2026 import FULL, ComparisonEffort, case, main_branch
 from rocking.studies.longrun import HarmonicRocking
 
 pytest.importorskip("rocking.dynamics._longrun", reason="the compiled engine is missing")
@@ -72,7 +72,7 @@ def test_the_difference_fades_with_slenderness():
     assert 0.62 < ratios[-1] < 2.0 / 3.0
 
 
-TINY = Effort((2.0,), 0.2, 0.2, 2, 40, 10)
+TINY = ComparisonEffort((2.0,), 0.2, 0.2, 2, 40, 10)
 
 
 @pytest.mark.verifies("behaviour")

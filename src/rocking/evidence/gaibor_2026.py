@@ -39,7 +39,7 @@ _LIMITS = (0.0, 100.0)  # amplitudes of continuations
 
 
 @dataclass(frozen=True)
-class Effort:
+class ComparisonEffort:
     """Numbers of a reproduction: frequency ratios, amplitude steps, starts, amplitudes of a cascade, basin cells."""
 
     frequencies: tuple[float, ...] = (2.0, 5.0)
@@ -53,7 +53,7 @@ class Effort:
         return np.round(np.arange(round(LOWEST / step), round(HIGHEST / step) + 1) * step, 6)
 
 
-FAST, FULL = Effort(), Effort((2.0, 3.0, 5.0), 0.05, 0.01, 8, 400, 100)
+FAST, FULL = ComparisonEffort(), ComparisonEffort((2.0, 3.0, 5.0), 0.05, 0.01, 8, 400, 100)
 
 
 QUANTITIES_OF_CASES = {
@@ -90,7 +90,7 @@ QUANTITIES_OF_CASES = {
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class HarmonicCase:
     """One slenderness, model and frequency."""
 
     slenderness: int
@@ -109,15 +109,15 @@ class Case:
 class GaiborReproduction:
     """The comparison: one case per slenderness, model and frequency, basins, and the statements of the abstract."""
 
-    effort: Effort
-    cases: tuple[Case, ...]
+    effort: ComparisonEffort
+    cases: tuple[HarmonicCase, ...]
     basins: dict[tuple[int, str], Basin]
 
-    def case(self, slenderness: int, model: str, frequency: float) -> Case:
+    def case(self, slenderness: int, model: str, frequency: float) -> HarmonicCase:
         wanted = (slenderness, model, frequency)
         return next(case for case in self.cases if (case.slenderness, case.model, case.frequency) == wanted)
 
-    def pairs(self, frequencies: Iterable[float] = ()) -> "list[tuple[Case, Case]]":
+    def pairs(self, frequencies: Iterable[float] = ()) -> "list[tuple[HarmonicCase, HarmonicCase]]":
         """Return the cases of Housner and KED with equal slenderness and frequency."""
         return [
             (self.case(slenderness, "housner", frequency), self.case(slenderness, "ked", frequency))
@@ -155,12 +155,12 @@ class GaiborReproduction:
         }, QUANTITIES_OF_CASES)  # fmt: skip
 
 
-def steps(effort: Effort = FAST) -> int:
+def steps(effort: ComparisonEffort = FAST) -> int:
     """Return the number of steps of a reproduction."""
     return len(SLENDERNESS) * len(MODELS) * (len(effort.frequencies) + 1)
 
 
-def reproduce(effort: Effort = FAST, step: Callable[[str], None] = lambda name: None) -> GaiborReproduction:
+def reproduce(effort: ComparisonEffort = FAST, step: Callable[[str], None] = lambda name: None) -> GaiborReproduction:
     """Compute the comparison; step: called before each step."""
     cases, basins = [], {}
     for slenderness in SLENDERNESS:
@@ -181,7 +181,7 @@ def _system(slenderness: float, model: str, frequency: float, amplitude: float =
     return HarmonicRocking.of_ratios(body, amplitude, frequency, restitution=model)
 
 
-def case(slenderness: int, model: str, frequency: float, effort: Effort = FAST) -> Case:
+def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffort = FAST) -> HarmonicCase:
     """Return one case."""
     system = _system(slenderness, model, frequency)
     rest, rest_kind, _ = _attractors(system, effort.amplitudes(effort.step_at_rest), np.zeros((1, 3)), (300, 200))
@@ -208,7 +208,7 @@ def case(slenderness: int, model: str, frequency: float, effort: Effort = FAST) 
         "complex_amplitudes": float(is_complex.mean()), "chaotic_amplitudes": float(is_chaotic.any(axis=1).mean()),
         **after_doublings,
     }  # fmt: skip
-    return Case(
+    return HarmonicCase(
         slenderness, model, frequency, numbers,
         {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
         is_complex, is_chaotic.any(axis=1), _points(amplitudes, found, is_one | is_multi | is_chaotic),
@@ -292,7 +292,7 @@ _PREVALENCE = "complex oscillation is more widespread with KED"
 _CONVERGENCE = "the difference between the models fades as slenderness grows"
 
 
-Pairs = list[tuple[Case, Case]]
+Pairs = list[tuple[HarmonicCase, HarmonicCase]]
 
 
 def _values(pairs: Pairs, name: str) -> FloatArray:

@@ -13,8 +13,8 @@ from rocking.evidence.gaibor_2026 import (
     HIGHEST,
     MODELS,
     SLENDERNESS,
-    Case,
     GaiborReproduction,
+    HarmonicCase,
 )
 from rocking.plots.style import (
     COLORS,
@@ -82,7 +82,7 @@ def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
     return figure
 
 
-def _r(case: Case) -> str:
+def _r(case: HarmonicCase) -> str:
     return f"{case.numbers['restitution']:.4f}"
 
 
