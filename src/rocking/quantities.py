@@ -655,19 +655,20 @@ def closely(**digits: str) -> dict[str, Quantity]:
 
 # other keys of answers: sections, sentences, labels, and numbers with a quantity of their answer only
 _PARTS = """
-    adjusted advice all all_bodies analysis answer answers assumptions base base_tolerances better_by bodies body
-    by_data_set called_safe claim claims code_methods_outside coefficients columns_not_read comparison comparisons
-    components concerns contributions converged crossing_curves crossings curves decides definition designs died
-    directions doubts edges ends envelope errata event evidence examples facets file file_unit files finding
-    findings first_corner folder forced from growth hazard headline hierarchy identities ignored im im_description
-    inputs intensity interfaces intervals inventory islands judged_by label laboratories language last_state
-    league left_out_groups level likelihood likelihood_scale lowest lowest_uplift mean messages method methods
-    mirrored models motion motions_apart new not_assessed not_objects not_read not_sampled note notes objects
-    one_by_one other_models outside overturning passed_over passes plan plane_is_weakest poses prediction progress
-    reason reasons records refused reliability remedies resolved restitution_drawn results rigid rings scores
-    section sensitivity sentence sentences sets sides slow software solid source sources spacing spectrum stable
-    stages standing starts_overturned stated stored tables target target_spectrum test text threads title to
-    too_sure traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y
+    adjusted advice all all_bodies amplitude_step analysis answer answers assumptions base base_tolerances basins
+    better_by bodies body by_data_set called_safe cases cells_per_basin claim claims code_methods_outside
+    coefficients columns_not_read comparison comparisons components concerns contributions converged crossing_curves
+    crossings curves decides definition designs died directions doubts edges ends envelope errata event evidence
+    examples facets file file_unit files finding findings first_corner folder forced from growth hazard headline
+    hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory islands judged_by
+    label laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest
+    lowest_uplift mean messages method methods mirrored models motion motions_apart new not_assessed not_objects
+    not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning passed_over
+    passes plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies
+    resolved restitution_drawn results rigid rings scores section sense sensitivity sentence sentences sets sides
+    slow software solid source sources spacing spectrum stable stages standing starts_overturned
+    starts_per_amplitude stated statement stored tables target target_spectrum test text threads title to too_sure
+    traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
 

@@ -75,7 +75,6 @@ QUANTITIES_OF_CASES = {
             "overturned_cells": "fraction of the cells of a basin that overturn",
         },
         ".3g": {
-            "frequency_over_p": "circular frequency of the ground motion over p",
             "amplitude_step": "step of the amplitude ratios",
             "starts_per_amplitude": "starts per amplitude",
             "cells_per_basin": "cells per basin",
@@ -142,7 +141,7 @@ class GaiborReproduction:
             for slenderness, model in self.basins
         ]
         cases = [
-            {"slenderness_ratio": case.slenderness, "model": case.model, "frequency_over_p": case.frequency}
+            {"slenderness_ratio": case.slenderness, "model": case.model, "frequency_ratio": case.frequency}
             | case.numbers
             for case in self.cases
         ]
