@@ -17,7 +17,7 @@ from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
 from rocking.studies.sensitivity.comparison import Sensitivity, drawn_in
-from rocking.studies.study_plan import AdaptiveResult, Study
+from rocking.studies.study_plan import TYPES, AdaptiveResult, Study
 from rocking.tables import PIECE
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def assessment(folder: JobFolder) -> "Assessment":
 def comparable(folder: JobFolder) -> bool:
     """Return whether a campaign has several restitutions that `comparison` can compare."""
     study = folder.job.study
-    is_alone = study.search is not None or study.assess is not None or "peak_ratio" not in study.types
+    is_alone = study.search is not None or study.assess is not None or study.types is not TYPES
     return len(folder.job.problem.restitutions) > 1 and not is_alone
 
 

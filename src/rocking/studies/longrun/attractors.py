@@ -213,7 +213,8 @@ def bifurcation(
     settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
     starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(checks.real_array("starts", starts))
     options: Any = {"memory": memory, "cycles": (settled, kept), "exponents": exponents, "numerics": numerics}
-    tables = [arrays([system.changed(parameter, v) for v in values.tolist()], starts, **options)
+    each = np.broadcast_to(starts, (len(values), *starts.shape))
+    tables = [arrays([system.changed(parameter, v) for v in values.tolist()], each, **options)
               for system in named.values()]  # fmt: skip
     data = {}
     for name in tables[0]:
@@ -227,7 +228,7 @@ def arrays(
     systems: Sequence[HarmonicRocking], starts: FloatArray, *, memory: str = "none", cycles: tuple[int, int],
     exponents: bool = False, numerics: Numerics = DEFAULTS,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return the attractors of one system after another, arrays of shape (systems, starts[, cycles])."""
+    """Return the attractors of systems from their starts, arrays of shape (systems, starts[, cycles])."""
     options = {
         "settled": cycles[0], "kept": cycles[1], "vectors": int(exponents), "most_impacts": 4 * LONGEST,
         "numerics": numerics,
@@ -250,20 +251,18 @@ _ATTRIBUTES = {
 
 
 def _swept(systems: list[HarmonicRocking], starts: FloatArray, memory: str, options: dict[str, Any]) -> list[Periods]:
-    number = len(starts)
+    number = starts.shape[1]
     if memory == "none":
-        everything = over_periods(
-            [row for row in systems for _ in range(number)], np.tile(starts, (len(systems), 1)), **options
-        )
+        everything = over_periods([row for row in systems for _ in range(number)], starts.reshape(-1, 3), **options)
         return [_cut(everything, slice(k * number, (k + 1) * number)) for k in range(len(systems))]
     results: list[Periods] = []
-    states = starts.copy()
-    for system in systems if memory == "up" else systems[::-1]:
-        result = over_periods(system, states, **options)
-        alive = result.ending == NONE
-        states[alive, 1:] = result.states[alive, -1]
-        states[~alive] = starts[~alive]  # a body that has overturned starts again
-        results.append(result)
+    states = np.full((number, 2), np.nan)
+    order = 1 if memory == "up" else -1
+    for system, first in zip(systems[::order], starts[::order], strict=True):
+        again = np.isnan(states[:, :1])  # a body that has overturned starts again
+        begin = np.column_stack([first[:, 0], np.where(again, first[:, 1:], states)])
+        results.append(over_periods(system, begin, **options))
+        states = np.where((results[-1].ending == NONE)[:, None], results[-1].states[:, -1], np.nan)
     return results if memory == "up" else results[::-1]
 
 

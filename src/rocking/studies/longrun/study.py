@@ -130,7 +130,7 @@ class Diagram(Task):
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
         systems = [_at(system, self.axis, value) for value in self.values.tolist()]
         options: Any = {"cycles": self.cycles, "exponents": self.exponents, "numerics": numerics}
-        starts = _started(system, self.starts)
+        starts = np.array([_started(each, self.starts) for each in systems])
         sweeps = [attractors.arrays(systems, starts, memory=memory, **options) for memory in self.sweeps]
         whole = {new: np.stack([sweep[old] for sweep in sweeps]) for new, old in _NAMES.items() if old in sweeps[0]}
         modes = np.array([-2, -1, -1, -1, UNCOUNTED, -3])[whole["attractor"]]
