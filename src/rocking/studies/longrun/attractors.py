@@ -253,7 +253,8 @@ _ATTRIBUTES = {
 def _swept(systems: list[HarmonicRocking], starts: FloatArray, memory: str, options: dict[str, Any]) -> list[Periods]:
     number = starts.shape[1]
     if memory == "none":
-        everything = over_periods([row for row in systems for _ in range(number)], starts.reshape(-1, 3), **options)
+        every = [row for row in systems for _ in range(number)]
+        everything = over_periods(every, starts.reshape(-1, starts.shape[-1]), **options)
         return [_cut(everything, slice(k * number, (k + 1) * number)) for k in range(len(systems))]
     results: list[Periods] = []
     states = np.full((number, 2), np.nan)

@@ -7,6 +7,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
+from rocking.errors import InvalidValueError
 from rocking.studies.longrun.basins import cells
 from rocking.studies.longrun.study import (
     AXES,
@@ -297,7 +298,10 @@ def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that use
 def _states(starts: Any, seed: int) -> FloatArray:
     if isinstance(starts, int):
         return random_states(checks.whole("starts", starts, 1), checks.whole("seed", seed))
-    return np.atleast_2d(np.asarray(starts, dtype=np.float64))
+    states = np.atleast_2d(checks.real_array("starts", starts))
+    if states.ndim != 2 or states.shape[1] != 2:
+        raise InvalidValueError(parameter="starts", allowed="a number or an array of shape (starts, 2)", value=starts)
+    return states
 
 
 def _cycles(cycles: tuple[int, int]) -> tuple[int, int]:
