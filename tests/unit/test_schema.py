@@ -58,14 +58,19 @@ def test_both_names_of_a_key_are_refused():
 
 @pytest.mark.parametrize("name", ["map", "minimum", "stripes"])
 def test_a_campaign_of_schema_1_opens(name, tmp_path):
-    """Its job is the same, its histories have the same name and results, and what is missing is computed."""
+    """Its job is the same and its missing histories are computed; those without levels in ratios keep their name."""
     folder = tmp_path / name
     shutil.copytree(OLD / f"campaign_{name}", folder)
     job = Job.of_text((NEW / f"{name}.toml").read_text("utf-8"))
     for path in [each.parent for each in folder.glob("*/campaign.json")]:
         kept = Identity.read(path)
-        assert kept.plan.key == job.study.histories.key()
-        if (kept.plan.engine, kept.plan.software) != (engine_of(job.study.histories), software()):
+        if name != "minimum":  # since then, levels in equal ratios have the same bits on every processor
+            assert kept.plan.key == job.study.histories.key()
+        if (kept.plan.key, kept.plan.engine, kept.plan.software) != (
+            job.study.histories.key(),
+            engine_of(job.study.histories),
+            software(),
+        ):
             shutil.rmtree(path)  # the last digits of another processor or version: the job alone opens here
     opened = JobFolder.open(folder)
     opened.run(workers=1)

@@ -64,6 +64,19 @@ def logarithm(x: FloatArray) -> FloatArray:
     return np.where(x >= np.finfo(np.float64).tiny, e * _LOG2[0] + (s * p + e * _LOG2[1]), -np.inf)
 
 
+def geometric(low: FloatArray | float, high: FloatArray | float, count: int) -> FloatArray:
+    """Return numbers with equal ratios along the last axis; `numpy.geomspace` has other bits on other processors.
+
+    >>> geometric(1.0, 100.0, 3).round(12).tolist()
+    [1.0, 10.0, 100.0]
+    """
+    first, last = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
+    logarithms = logarithm(np.atleast_1d(last / first)).reshape(first.shape)
+    result = first[..., None] * exponential(logarithms[..., None] * np.linspace(0.0, 1.0, count))
+    result[..., :1], result[..., -1:] = first[..., None], last[..., None] if count > 1 else first[..., None]
+    return np.asarray(result)
+
+
 def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return cosine and sine, for arguments up to about 1000 turns [rad]."""
     if (module := compiled()) is not None:

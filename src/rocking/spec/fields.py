@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from rocking.bodies.formats.schema import StrictTable
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import geometric
 
 Positive = Annotated[float, Field(gt=0.0)]
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
@@ -102,7 +103,7 @@ class Values(JobTable):
             return np.array(self.values, dtype=np.float64)
         start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are there: checked above
         if self.spacing == "log":
-            return np.asarray(np.geomspace(start, stop, count), dtype=np.float64)
+            return geometric(start, stop, count)
         return np.linspace(start, stop, count)
 
 

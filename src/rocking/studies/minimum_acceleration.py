@@ -17,6 +17,7 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.messages import Parameter
+from rocking.motions.filters import geometric
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.outcome import contact_words
@@ -184,7 +185,7 @@ class Cases:
 
     def grid(self, samples: int) -> FloatArray:
         """Return the first factors on the motions, so many for each case, in equal ratios [-]."""
-        return np.asarray(np.geomspace(self.low, self.high, samples, axis=1) / self.peak[:, None])  # Eq. 182
+        return np.asarray(geometric(self.low, self.high, samples) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:

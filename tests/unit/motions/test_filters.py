@@ -47,6 +47,18 @@ def test_functions_are_within_a_unit_or_so_of_the_last_digit(name, monkeypatch):
     np.testing.assert_array_equal(_found(name, x), found)
 
 
+def test_numbers_in_equal_ratios(monkeypatch):
+    """As in numpy to 4 units of the last digit, with exact ends; the same bits without a compiler."""
+    low, high = np.array([2.0, 0.3, 1.0]), np.array([9.0, 0.7, 1.0])
+    numbers = filters.geometric(low, high, 50)
+    np.testing.assert_allclose(numbers, np.geomspace(low, high, 50, axis=1), rtol=1e-15)
+    assert (numbers[:, 0] == low).all()
+    assert (numbers[:, -1] == high).all()
+    assert filters.geometric(2.0, 9.0, 1).tolist() == [2.0]
+    monkeypatch.setattr(filters, "compiled", lambda: None)
+    np.testing.assert_array_equal(filters.geometric(low, high, 50), numbers)
+
+
 def test_ends(monkeypatch):
     """Zero, infinity, what is below the smallest number, and the last arguments before."""
     assert filters.exponential(np.array([-np.inf, -709.0, 0.0])).tolist() == [0.0, 0.0, 1.0]

@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import geometric
 from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
 from rocking.studies.fragility.incremental_dynamic_analysis import (
     IncrementalDynamicAnalysis,
@@ -106,4 +107,4 @@ def default_levels(subject: Subject) -> FloatArray:
         )
     low, high, count = _REACH
     lifts = subject.measure.uplift(subject.scale)
-    return np.geomspace(low * lifts, high * lifts, count)
+    return geometric(low * lifts, high * lifts, count)
