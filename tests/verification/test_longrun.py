@@ -16,7 +16,7 @@ from rocking import Block, MassPoints, simulate
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.motions.pulse import Sinusoids
 from rocking.studies.longrun.attractors import KINDS, bifurcation, poincare, start_states
-from rocking.studies.longrun.basins import basin, ends_of
+from rocking.studies.longrun.basins import basin, ends_of, uncertainty_exponent
 from rocking.studies.longrun.exponents import lyapunov_exponents
 from rocking.studies.longrun.orbits import (
     OrbitNotFoundError,
@@ -469,6 +469,31 @@ def test_basins_cell_for_cell(case):
     fraction, low, high = result.stability()
     assert fraction == pytest.approx(1.0 - counts[0] / 1e4)
     assert low < fraction < high
+
+
+UNCERTAINTY = {
+    # frequency, r, amplitude: exponent, standard error, fractions at 10^-2 and 10^-4 rad; 30,000 starts
+    (3, 0.9, 0.9): (0.415, 0.013, 0.0194, 0.0028),
+    (2, 0.7, 1.2): (0.405, 0.008, 0.0491, 0.0073),
+}
+
+
+@pytest.mark.verifies("computed anew", "an independent program, other random starts")
+@pytest.mark.parametrize("case", UNCERTAINTY)
+def test_uncertainty_exponents(case):
+    """Within three standard errors of both samples; a boundary that is smooth has an exponent of one."""
+    frequency, restitution, amplitude = case
+    value, error, *fractions = UNCERTAINTY[case]
+    system = system_of(4, amplitude, frequency, restitution, linear=True)
+    result = uncertainty_exponent(system, samples=15000)
+    assert result.distance[[4, 0]] == pytest.approx([1e-2, 1e-4])
+    assert abs(result.value - value) < 3.0 * math.hypot(error, result.standard_error)
+    for own, other in zip(result.fraction[[4, 0]], fractions, strict=True):
+        assert abs(own - other) < 3.0 * math.sqrt(other / 15000 + other / 30000)
+    below = system.changed("amplitude", 0.85 * slender_thresholds(frequency, restitution).heteroclinic)  # control
+    smooth = uncertainty_exponent(below, samples=4000, distances=[0.01, 0.03, 0.1, 0.3])
+    assert abs(smooth.value - 1.0) < 3.0 * smooth.standard_error
+    assert abs(smooth.value - value) > 3.0 * smooth.standard_error
 
 
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="1e-9")

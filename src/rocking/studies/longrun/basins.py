@@ -195,8 +195,8 @@ class UncertaintyExponent:
     Parameters
     ----------
     value, standard_error : float
-        The exponent; the dimension of the boundary is 2 less the exponent. The error neglects that all distances use
-        the same starts: it is a lower bound.
+        The exponent; the dimension of the boundary is 2 less the exponent. The error includes that all distances use
+        the same starts.
     distance : ndarray
         Distances in phase [rad], shape (distances,).
     fraction : ndarray
@@ -256,13 +256,13 @@ def uncertainty_exponent(
         return ends_of(system, phase, speed, impacts=impacts, numerics=numerics) == LOST
 
     is_lost = are_lost(phase)
-    uncertain = [(are_lost(phase - step) != is_lost) | (are_lost(phase + step) != is_lost) for step in distance]
-    counts = np.array([row.sum() for row in uncertain])
-    if not counts.all():
-        return UncertaintyExponent(math.nan, math.nan, distance, counts / samples)
-    fraction = counts / samples
-    weights = counts / (1.0 - fraction)  # inverse variance of the logarithm of a binomial fraction
+    uncertain = np.array([(are_lost(phase - d) != is_lost) | (are_lost(phase + d) != is_lost) for d in distance])
+    fraction = uncertain.mean(axis=1)
+    if not fraction.all():
+        return UncertaintyExponent(math.nan, math.nan, distance, fraction)
+    weights = fraction / (1.0 - fraction)  # inverse variance of the logarithm of a binomial fraction, up to a factor
     x = np.log(distance) - np.average(np.log(distance), weights=weights)
-    y = np.log(fraction)
-    total = float((weights * x * x).sum())
-    return UncertaintyExponent(float((weights * x * y).sum() / total), 1.0 / math.sqrt(total), distance, fraction)
+    slopes = weights * x / float((weights * x * x).sum())
+    by_start = (slopes / fraction) @ uncertain
+    error = float(by_start.std(ddof=1)) / math.sqrt(samples)
+    return UncertaintyExponent(float(slopes @ np.log(fraction)), error, distance, fraction)
