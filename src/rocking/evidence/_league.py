@@ -220,7 +220,7 @@ def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None 
     data = all_measurements() if measurements is None else measurements
     if (count := len(set(zip(data.group, data.labels, data.slenderness.tolist(), strict=True)))) < FEWEST:
         raise InvalidValueError(
-            "a league requires measurements of {fewest} or more blocks, got {count}", fewest=FEWEST, count=count
+            "measurements of at least {fewest} blocks are required, got {count}", fewest=FEWEST, count=count
         )
     rows = [*_standing(data), *(_row(as_it_is(model), data) for model in extra)]
     return tuple(sorted(rows, key=lambda row: row.rmse))

@@ -55,6 +55,6 @@ def test_what_is_refused(refuses, own, tmp_path):
     """A word that is no selection, a file that is none, and too few blocks are refused in a sentence."""
     refuses(["measurements", "calibrate", "T"], "unknown measurements 'T'")
     refuses(["measurements", "calibrate", "own"], "rocking measurements add FILE")
-    refuses(["measurements", "calibrate", own], "at least 5 blocks, got 2")
+    refuses(["measurements", "calibrate", own], "at least 5 blocks are required, got 2")
     refuses(["measurements", "add", tmp_path / "none.csv"], "cannot be read")
     assert store.own_files() == []

@@ -270,7 +270,7 @@ def test_the_store(own):
         store.selected(["own", str(own)])
     with pytest.raises(InvalidValueError, match="unknown measurements 'T'"):
         store.selected(["T"])
-    with pytest.raises(InvalidValueError, match="5 or more blocks, got 2"):
+    with pytest.raises(InvalidValueError, match="at least 5 blocks are required, got 2"):
         league(measurements=store.selected(["own"]))
 
 
