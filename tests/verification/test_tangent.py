@@ -207,3 +207,39 @@ def test_the_slope_of_the_law_counts():
     flat = replace(response, parameters=replace(response.parameters, law=SpeedRestitution([0.0, 4.0], [1.0, 1.0])))
     assert tangent_of(response).by_start[-1] == pytest.approx(twins, rel=1e-5, abs=1e-6)
     assert np.abs(tangent_of(flat).by_start[-1] / twins - 1.0).max() > 0.01
+
+
+def until(duration, amplitude=1.3):
+    """Return a sine of 3 p that ends after a duration; amplitude over g alpha."""
+    side = BLOCK.side("right", 9.81)
+    peak = amplitude * 9.81 * side.slenderness_angle
+    wave = (peak, 3.0 * side.frequency_parameter, 0.0)
+    return Sinusoids("sine", (wave,), duration, peak, amplitude, 1.0)
+
+
+@pytest.mark.verifies("computed anew", "an independent program of 40 digits", within="1e-13")
+def test_the_first_peak_by_the_amplitude():
+    """The derivative of the first peak of a slender body under a sine, 0.236936097334396549 alpha."""
+    side = BLOCK.side("right", 9.81)
+    time = 1.0114154702946756 / side.frequency_parameter
+    options = {"linear": True, "gravity": 9.81, "engine": "reference", "duration": time}
+    response = rk.simulate(BLOCK, until(time), 0.9, **options)
+    assert response.angular_velocity[-1] == pytest.approx(0.0, abs=1e-14)
+    derivative = -response.tangent().by_parameter["amplitude"][-1, 0] / (1.3 * side.slenderness_angle)
+    assert derivative == pytest.approx(0.236936097334396549, rel=1e-13)
+
+
+@pytest.mark.verifies(
+    "second engine", "twins of the engine with friction, as for the growth of predictions", within="1e-4"
+)
+def test_twins_of_predictions_measure_the_same_growth():
+    """The relative change of a rotation by a change of 1e-6 in scale, through impacts with large friction."""
+    motion, coefficients = formula(0.05, 3.0), {"left": 0.8, "right": 0.85}
+    options = {"rotation": 0.1, "duration": 3.0}
+    response = rk.simulate(LEANING, motion, coefficients, rest_speed=0.0, **options)
+    ends = [
+        rk.simulate(LEANING, motion, coefficients, friction=10.0, scale=1.0 + d, **options).rotation[-1]
+        for d in (1e-6, -1e-6)
+    ]
+    own = response.tangent().by_parameter["amplitude"][-1, 0]
+    assert own == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-4)
