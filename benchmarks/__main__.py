@@ -1,7 +1,7 @@
 """Run the benchmarks, print their tables and keep them in benchmarks/.
 
-`python -m benchmarks` runs all; `python -m benchmarks restitution`, `engine [--full]`, `studies`, `bed`, `spatial` or
-`hull` one part. `python -m benchmarks house` measures the code instead: its size, names, circles and paths.
+`python -m benchmarks` runs all; `python -m benchmarks restitution`, `engine [--full]`, `studies`, `bed`, `spatial`,
+`hull` or `longrun` one part. `python -m benchmarks house` measures the code instead: its size, names, circles, paths.
 """
 
 import argparse
@@ -10,10 +10,10 @@ import sys
 
 import numpy as np
 
-from benchmarks import bed, engine, house, hull, ked, section, spatial, start, studies, table
+from benchmarks import bed, engine, house, hull, ked, longrun, section, spatial, start, studies, table
 from benchmarks.table import Row
 
-PARTS = ("restitution", "engine", "studies", "bed", "spatial", "hull")
+PARTS = ("restitution", "engine", "studies", "bed", "spatial", "hull", "longrun")
 PARTS_ALONE = ("house",)  # not of speed
 
 
@@ -76,7 +76,7 @@ def main() -> None:
         good = engine.main(full=asked.full, count=asked.histories) and good
     if asked.part in {"all", "studies"}:
         good = studies.main() and good
-    for part, made in (("bed", bed), ("spatial", spatial), ("hull", hull)):
+    for part, made in (("bed", bed), ("spatial", spatial), ("hull", hull), ("longrun", longrun)):
         if asked.part in {"all", part}:
             good = made.main() and good
     if asked.part == "house":
