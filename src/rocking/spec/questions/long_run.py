@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 Sweep = Literal["none", "up", "down"]
 
 
+def _words(stated: Any) -> Any:
+    return stated.split(",") if isinstance(stated, str) else stated
+
+
 class HarmonicTable(JobTable):
     """Harmonic ground motion."""
 
@@ -40,7 +44,7 @@ class BifurcationTable(HarmonicTable):
         description="increasing values of the axis; 0.2 to 4 if not given",
     )
     starts: int = key("number of initial states: at rest, then random after an impact", 4, ge=1, le=10_000)
-    sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(in_list)] = key(
+    sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(_words)] = key(
         "sweeps with memory: none, up, down", ["none"]
     )
     settled: int = key("number of periods before the kept ones", 300, ge=0, le=1_000_000)

@@ -1,8 +1,14 @@
 """Long-run dynamics of rocking under harmonic ground motion: orbits, bifurcations, exponents, basins, thresholds."""
 
-from rocking.studies.longrun.attractors import PoincareSection, bifurcation, poincare, start_states
-from rocking.studies.longrun.basins import Basin, UncertaintyExponent, basin, ends_of, uncertainty_exponent
-from rocking.studies.longrun.exponents import LyapunovExponents, lyapunov_exponents
+from rocking.studies.longrun.attractors import PoincareSection
+from rocking.studies.longrun.attractors import bifurcation as bifurcation
+from rocking.studies.longrun.attractors import poincare as poincare
+from rocking.studies.longrun.attractors import start_states as start_states
+from rocking.studies.longrun.basins import Basin, UncertaintyExponent, uncertainty_exponent
+from rocking.studies.longrun.basins import basin as basin
+from rocking.studies.longrun.basins import ends_of as ends_of
+from rocking.studies.longrun.exponents import LyapunovExponents
+from rocking.studies.longrun.exponents import lyapunov_exponents as lyapunov_exponents
 from rocking.studies.longrun.orbits import (
     Bifurcation,
     Branch,
@@ -15,7 +21,9 @@ from rocking.studies.longrun.orbits import (
     slender_orbit,
     symmetric_orbit,
 )
-from rocking.studies.longrun.system import Harmonic, HarmonicRocking, Numerics, over_impacts, over_periods
+from rocking.studies.longrun.system import Harmonic, HarmonicRocking, Numerics
+from rocking.studies.longrun.system import over_impacts as over_impacts
+from rocking.studies.longrun.system import over_periods as over_periods
 from rocking.studies.longrun.thresholds import SlenderThresholds, slender_thresholds
 
 __all__ = [
@@ -31,20 +39,12 @@ __all__ = [
     "PoincareSection",
     "SlenderThresholds",
     "UncertaintyExponent",
-    "basin",
-    "bifurcation",
     "bifurcation_curve",
     "branch_off",
     "continue_orbit",
-    "ends_of",
     "find_orbit",
-    "lyapunov_exponents",
-    "over_impacts",
-    "over_periods",
-    "poincare",
     "slender_orbit",
     "slender_thresholds",
-    "start_states",
     "symmetric_orbit",
     "uncertainty_exponent",
 ]

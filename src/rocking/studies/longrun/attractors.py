@@ -30,22 +30,7 @@ KINDS = ("rest", "sticking", "periodic", "irregular", "overturned", "failed")
 
 
 def start_states(system: HarmonicRocking, phases: Any, speeds: Any) -> FloatArray:
-    """Return starts right after an impact onto the right foot.
-
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    phases : array_like
-        Phases of the ground motion [rad].
-    speeds : array_like
-        Speeds over alpha p [-].
-
-    Returns
-    -------
-    ndarray
-        Time [s], rotation [rad] and angular velocity [rad/s] of all combinations, shape (phases x speeds, 3).
-    """
+    """Return time, rotation and velocity of all combinations of phase and speed over alpha p after an impact."""
     phase, speed = (grid.ravel() for grid in np.meshgrid(phases, speeds, indexing="ij"))
     times = (phase - system.excitation.phase) / system.excitation.frequency
     return np.column_stack([times, np.zeros(len(phase)), speed * system.alpha * system.p])
@@ -81,33 +66,7 @@ def poincare(
     at: Literal["period", "impact"] = "period",
     numerics: Numerics = DEFAULTS,
 ) -> PoincareSection:
-    """Return the section of long histories.
-
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    starts : array_like
-        Time [s], rotation [rad] and angular velocity [rad/s], shape (histories, 3).
-    cycles : int, optional
-        Number of periods with returned states.
-    settled : int, optional
-        Periods before the returned states.
-    at : {"period", "impact"}, optional
-        States at the ends of periods, or right after impacts.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    PoincareSection
-        The states.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range.
-    """
+    """Return the section of long histories from times, rotations and velocities, shape (histories, 3)."""
     checks.one_of("at", at, ("period", "impact"))
     cycles, settled = checks.whole("cycles", cycles, 1), checks.whole("settled", settled, 0)
     most = 8 * cycles if at == "impact" else 0
@@ -120,26 +79,7 @@ def poincare(
 
 
 def classified(result: Periods, alpha: float, p: float, longest: int = LONGEST) -> tuple[Any, Any, Any]:
-    """Return kind, number of periods and symmetry of long histories.
-
-    Parameters
-    ----------
-    result : Periods
-        Histories with at least ``2 * longest`` kept periods.
-    alpha, p : float
-        Slenderness angle [rad] and frequency parameter [rad/s], which scale the states.
-    longest : int, optional
-        Longest period that is recognised, in periods of the ground motion.
-
-    Returns
-    -------
-    kind : ndarray of int
-        Index in `KINDS`, shape (rows,).
-    period : ndarray of int
-        Periods of the ground motion after which a periodic history repeats; 0 for others, shape (rows,).
-    per_period : ndarray
-        Impacts per period of the ground motion, shape (rows,).
-    """
+    """Return kind (index in `KINDS`), period and impacts per period of histories, with 2 * longest periods."""
     states = result.states / np.array([alpha, alpha * p])
     kept = states.shape[1]
     kind = np.full(len(states), IRREGULAR)
@@ -166,43 +106,9 @@ def bifurcation(
     exponents: bool = False,
     numerics: Numerics = DEFAULTS,
 ) -> "xr.Dataset":
-    """Compute a bifurcation diagram: the attractors over one parameter.
+    """Return the attractors of systems by name over the values of one parameter, as a dataset.
 
-    Parameters
-    ----------
-    systems : HarmonicRocking or dict
-        System, or several by name, such as one per restitution model.
-    values : array_like
-        Values of the parameter, as for `HarmonicRocking.changed`, shape (values,).
-    parameter : {"amplitude", "frequency", "restitution", "slenderness"}, optional
-        The parameter.
-    starts : ndarray, optional
-        Time [s], rotation [rad] and angular velocity [rad/s] of the histories at each value, shape (starts, 3); at rest
-        by default.
-    memory : {"none", "up", "down"}, optional
-        With a sweep up or down, each history starts in the last state at the previous value.
-    cycles : tuple of int, optional
-        Periods before states are kept, and periods with states.
-    exponents : bool, optional
-        True also computes the largest Lyapunov exponent.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over system, value, start and cycle: `rotation` over alpha and `velocity` over alpha p at the ends of periods;
-        `kind` (index in the attribute `kinds`), `period` in periods of the ground motion, `impacts` per period, `peak`
-        over alpha, and `exponent` [1/s], minus infinity where the body comes to rest.
-
-    Raises
-    ------
-    InvalidValueError
-        If the values do not increase, or a number is outside its range.
-
-    References
-    ----------
-    Hogan (1989), Proc. R. Soc. Lond. A 425:441-476; Gaibor and Lopez (2026), arXiv:2606.14288.
+    The starts are times, rotations and velocities, shape (starts, 3), at rest by default.
     """
     import xarray as xr
 

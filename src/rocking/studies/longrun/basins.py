@@ -95,26 +95,7 @@ def ends_of(
     small: float = 0.02,
     numerics: Numerics = DEFAULTS,
 ) -> Any:
-    """Return the kinds of histories that start after an impact onto the right foot.
-
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    phase, speed : array_like
-        Phase of the ground motion [rad] and speed over alpha p [-] at the start, shape (rows,).
-    impacts : int, optional
-        Number of impacts that are followed.
-    small : float, optional
-        Speed over alpha p after an impact below which a history ends as small.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    ndarray of int
-        Index in `KINDS`, shape (rows,).
-    """
+    """Return the kinds (index in `KINDS`) of histories from phases and speeds over alpha p after an impact."""
     numerics = replace(numerics, rest_speed=small)
     flight = over_impacts(system, phase, speed, impacts, parameter="none", numerics=numerics)
     kind = np.where(flight.event == REST, SMALL, SETTLED)
@@ -134,39 +115,7 @@ def basin(
     check: bool = True,
     numerics: Numerics = DEFAULTS,
 ) -> Basin:
-    """Compute the basin of overturning over phase and speed after an impact.
-
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    phases, speeds : int, optional
-        Number of cells; states are at their centres.
-    highest : float, optional
-        Upper end of the speeds over alpha p [-].
-    impacts : int, optional
-        Number of impacts that are followed.
-    small : float, optional
-        Speed over alpha p after an impact below which a history ends as small.
-    check : bool, optional
-        True repeats the computation with another step error and marks the cells that differ.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    Basin
-        The kinds of all cells.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range.
-
-    References
-    ----------
-    Soliman and Thompson (1989), J. Sound Vib. 135:453-475 (erosion of basins).
-    """
+    """Return the basin over phase and speed after an impact; check: repeat it with another step error."""
     phase, speed = cells(phases, speeds, highest)
     x, y = (axis.ravel() for axis in np.meshgrid(phase, speed, indexing="ij"))
     kind, other = checked_ends(system, x, y, checks.whole("impacts", impacts, 1), small, numerics, check=check)

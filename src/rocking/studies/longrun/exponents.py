@@ -77,41 +77,7 @@ def lyapunov_exponents(
     seed: int = 0,
     numerics: Numerics = DEFAULTS,
 ) -> LyapunovExponents:
-    """Return the Lyapunov exponents of the attractors of a system.
-
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    starts : ndarray, optional
-        Time [s], rotation [rad] and angular velocity [rad/s] at the start of each orbit, shape (orbits, 3).
-    orbits : int, optional
-        Number of orbits with random phase and speed after an impact, 0 to 1 alpha p, if `starts` is missing.
-    settled, kept : int, optional
-        Periods before growth is counted, and in which it is counted. Tangent vectors align in the first ones.
-    seed : int, optional
-        Random seed of the starts.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    LyapunovExponents
-        Exponents of each orbit, their means and standard errors.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range; `settled` is at least 60.
-
-    Examples
-    --------
-    >>> from rocking import Block
-    >>> system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 1.2, 2.0, restitution="housner")
-    >>> result = lyapunov_exponents(system, orbits=4)
-    >>> print(round(result.values[0] / system.p, 3))  # (W / pi) ln r of a stable orbit, W the frequency ratio
-    -0.227
-    """
+    """Return the exponents of orbits from times, rotations and velocities, shape (orbits, 3), or random states."""
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:
         draws = np.random.default_rng(checks.whole("seed", seed)).random((checks.whole("orbits", orbits, 1), 2))

@@ -339,32 +339,9 @@ def over_periods(
     most_impacts: int = 0,
     numerics: Numerics = DEFAULTS,
 ) -> Periods:
-    """Follow histories over whole periods.
+    """Follow histories over whole periods, from times, rotations and angular velocities, shape (rows, 3).
 
-    Parameters
-    ----------
-    systems : HarmonicRocking or list of HarmonicRocking
-        One system for all rows, or one per row; the law and the equations of the first apply to all.
-    starts : array_like
-        Time [s], rotation [rad] and angular velocity [rad/s] at the start, shape (rows, 3).
-    settled, kept : int, optional
-        Periods before the returned states, and periods with returned states.
-    vectors : {0, 1, 2}, optional
-        Number of tangent vectors.
-    most_impacts : int, optional
-        Number of impacts that are kept.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    Periods
-        The states.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range, or the starts are not finite rows of three numbers, one per system.
+    One system for all rows, or one per row; the law and the equations of the first apply to all.
     """
     checks.whole("settled", settled, 0), checks.whole("kept", kept, 1), checks.whole("most_impacts", most_impacts, 0)
     checks.whole("vectors", vectors, 0, 2)
@@ -436,34 +413,9 @@ def over_impacts(
     side: Any = 1.0,
     numerics: Numerics = DEFAULTS,
 ) -> ImpactFlights:
-    """Follow flights from the state after one impact over several impacts, with derivatives.
+    """Follow flights from phases and speeds over alpha p after one impact over several impacts, with derivatives.
 
-    Parameters
-    ----------
-    system : HarmonicRocking
-        Body and ground motion.
-    phase : array_like
-        Phases of the ground motion at the start [rad].
-    speed : array_like
-        Speeds after the impact over alpha p of the right foot [-].
-    impacts : int, optional
-        Number of impacts.
-    parameter : {"", "amplitude", "frequency", "restitution", "slenderness", "none"}, optional
-        Parameter of `by_parameter`; "none" computes no derivatives.
-    side : array_like, optional
-        1 for a body that moves over its right foot at the start, -1 for the left.
-    numerics : Numerics, optional
-        Numerical settings.
-
-    Returns
-    -------
-    ImpactFlights
-        Ends and derivatives.
-
-    Raises
-    ------
-    InvalidValueError
-        If a number is outside its range, or a derivative by an amplitude of zero is wanted.
+    parameter: that of `by_parameter`, "none" without derivatives; side: 1 for a body over its right foot, -1 left.
     """
     checks.whole("impacts", impacts, 1), checks.one_of("parameter", parameter, tuple(_CODES))
     if parameter == "amplitude" and not system.excitation.amplitude:
