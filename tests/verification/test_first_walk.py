@@ -85,7 +85,7 @@ def test_the_walk(tmp_path, monkeypatch, printed):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lean.toml").write_text(BODY)
     (tmp_path / "mymodel.py").write_text(MODEL)
-    assert "Which model to use" in printed("restitution", "lean.toml", "--recommend")
+    assert "Recommended model" in printed("restitution", "lean.toml", "--recommend")
     assert "a student's idea" in printed("models", "mymodel.py:SpreadImpulse")
     own = ("--restitution", "mymodel.py:SpreadImpulse")
     text = printed("restitution", "lean.toml", *own, "--restitution", "ked")

@@ -1,4 +1,4 @@
-"""The command line: what `rocking --help` lists."""
+"""The command line; `rocking --help` lists the commands."""
 
 import gc
 import json
@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rocking.errors import RockingError
 
-_FEW_COLLECTIONS = 100_000  # objects until garbage is looked for: a command imports many that all stay
+_FEW_COLLECTIONS = 100_000  # objects between two collections of garbage: imported objects remain
 
 
 def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None:
-    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted.
+    """Run the command line and exit: 0 done, 2 invalid input, 130 interrupted.
 
-    Errors do not name `unnamed_file`, which the caller has written himself.
+    Errors do not name `unnamed_file`, a file that the caller has written.
     """
     gc.set_threshold(_FEW_COLLECTIONS)
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # to look for them reads every installed distribution
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # their search reads every installed distribution
     from typer import BadParameter
 
     from rocking.cli.application import SUBCOMMANDS, application
@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     from rocking.cli.spelling import no_command, spelled
     from rocking.errors import RockingError, SlowEngineWarning
 
-    click_exception: Any = BadParameter.__mro__[2]  # versions of typer differ in where they keep click
+    click_exception: Any = BadParameter.__mro__[2]  # the module of click depends on the version of typer
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     no_command()
     Output.reset()
@@ -38,8 +38,8 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
             warnings.showwarning = _Notes()
             _register_own_models()
             # without a command the help is the answer
-            words = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
-            code = application(arguments)(args=words, prog_name="rocking", standalone_mode=False, obj=main)
+            full_arguments = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
+            code = application(arguments)(args=full_arguments, prog_name="rocking", standalone_mode=False, obj=main)
     except RockingError as error:
         refusal = error.without_file(unnamed_file)
     except click_exception as error:
@@ -52,7 +52,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
     except KeyboardInterrupt:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
-    except Exception as error:  # noqa: BLE001 - raised again unless it is of an own model
+    except Exception as error:  # noqa: BLE001 - raised again unless a user's own model has caused it
         refusal = _of_own_model(error)
     else:
         Output.finish()
@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
 
 
 def _of_own_model(error: Exception) -> "RockingError":
-    """Return an error of a user's own model; raise any other again."""
+    """Return the refusal of an error in a user's own model; raise any other error again."""
     from rocking.errors import RockingError
     from rocking.restitution.from_file import in_own_model
 
@@ -82,7 +82,7 @@ def _register_own_models() -> None:
 
 
 def _help_of(error: Any) -> str:
-    """Return the reference to the help of the command whose options were wrong."""
+    """Return a reference to the help of the command with the invalid option."""
     from rocking.messages import Message
 
     context = getattr(error, "ctx", None)
@@ -90,7 +90,7 @@ def _help_of(error: Any) -> str:
 
 
 def _refusal(error: Any) -> "RockingError":
-    """Return the error of an option, with a key for an option that does not exist, or a comma for a point."""
+    """Return the refusal of an invalid option; its hint names the input-file key of an unknown option."""
     from pydantic import ValidationError  # and numpy below, which help does not need
 
     from rocking.bodies.formats.words import from_pydantic
@@ -115,7 +115,7 @@ def _refusal(error: Any) -> "RockingError":
 
 
 class _Notes:
-    """Print a warning as a note, each sentence once: Python's own "once" forgets whenever a filter changes."""
+    """Print a warning as a note, each sentence once; Python's own "once" resets when a filter changes."""
 
     def __init__(self) -> None:
         self.sentences: set[str] = set()

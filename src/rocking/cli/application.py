@@ -1,4 +1,4 @@
-"""The commands and their help; a command is imported when it is called, all of them for the list."""
+"""The commands and their help; each command is imported when it runs."""
 
 from collections.abc import Callable, Sequence
 from importlib import import_module
@@ -54,7 +54,7 @@ GROUPS = {
         "examples": "List examples; run an example in this folder.",
     },
 }
-"""Commands by group, and what each does; the command itself is imported when it is called."""
+"""Summaries of the commands by group."""
 RECORD = {
     "show": "Show a record or a pulse: intensity measures and response spectrum.",
     "batch": "Compute the intensity measures and spectra of many records; select and scale records.",
@@ -72,19 +72,21 @@ def commands() -> dict[str, str]:
 
 
 def added_studies() -> dict[str, str]:
-    """Return the studies that are files of `rocking.spec.questions` alone, by kind, and what each is."""
+    """Return the summaries of studies without a command module, by kind: files of `rocking.spec.questions`."""
     files = {module.name for module in iter_modules([f"{folder}/questions" for folder in spec.__path__])}
-    known = {*commands(), "minimum", "long_run"}  # the table of overturning-pga, and four commands
-    if files <= known:  # the questions themselves take long to be imported
+    tables_of_commands = {*commands(), "minimum", "long_run"}  # tables of overturning-pga and of four commands
+    if files <= tables_of_commands:  # the import of the questions is slow
         return {}
     from rocking.spec.questions import questions
 
-    classes = {kind: question for kind, question in questions().items() if question.own_table() not in known}
+    classes = {
+        kind: question for kind, question in questions().items() if question.own_table() not in tables_of_commands
+    }
     return {kind: (getdoc(question) or "").partition("\n")[0] for kind, question in classes.items()}
 
 
 class CommandList(TyperGroup):
-    """A command with subcommands, which the help lists by group."""
+    """A command with subcommands, listed by group in its help."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the groups in plain text, each with its commands."""
@@ -99,8 +101,8 @@ class CommandList(TyperGroup):
 
 
 def application(arguments: Sequence[str] | None = None) -> typer.Typer:
-    """Return the command line application; for the words of one call, the command they name, or a list."""
-    named, second, *_ = *(arguments or words_on_the_line()), "", ""
+    """Return the application with all commands; for the arguments of a call, only with the command of that call."""
+    command_name, subcommand_name, *_ = *(arguments or words_on_the_line()), "", ""
     app = typer.Typer(
         name="rocking",
         cls=CommandList,
@@ -112,26 +114,26 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
     )
     app.callback()(_root)
     groups = GROUPS
-    if named not in commands() and (added := added_studies()):
+    if command_name not in commands() and (added := added_studies()):
         groups = GROUPS | {"More studies": added}
-    known = {name for group in groups.values() for name in group}
+    listed = {name for group in groups.values() for name in group}
     for panel, summaries in groups.items():
         for name, summary in summaries.items():
-            if arguments is None or name == named:
-                _add(app, name, summary, panel, second if arguments is not None else None)
-            elif named not in known:
+            if arguments is None or name == command_name:
+                _add(app, name, summary, panel, subcommand_name if arguments is not None else None)
+            elif command_name not in listed:
                 app.command(name, short_help=summary, rich_help_panel=panel)(_nothing)
     return app
 
 
 def _add(app: typer.Typer, name: str, summary: str, panel: str, second: str | None) -> None:
-    """Add a command; second: its subcommand that is called, all of them if None."""
+    """Add a command; second: the subcommand of the call, None for all subcommands."""
     if name == "record":
         group = typer.Typer(name=name, no_args_is_help=True, pretty_exceptions_enable=False, add_completion=False)
-        for one, about in RECORD.items():
-            called = second is None or one == second
-            command = with_common(_command(f"{name} {one}")) if called else _nothing
-            group.command(one, cls=Command if called else None, help=about)(command)
+        for subcommand, summary_of_subcommand in RECORD.items():
+            called = second is None or subcommand == second
+            command = with_common(_command(f"{name} {subcommand}")) if called else _nothing
+            group.command(subcommand, cls=Command if called else None, help=summary_of_subcommand)(command)
     elif name in SUBCOMMANDS:
         group = getattr(import_module(f"rocking.cli.{name}"), name)
         for registered in group.registered_commands:
@@ -155,7 +157,7 @@ def _command(name: str) -> Callable[..., None]:
 
 
 def _nothing() -> None:
-    """Stand for a command in the list."""
+    """Represent a command in the list of commands."""
 
 
 def _version(is_asked: bool) -> None:

@@ -1,4 +1,4 @@
-"""From what was typed to the document that a file would hold: one way into every question."""
+"""Tables of an input file from the arguments of a command."""
 
 import re
 import shlex
@@ -33,12 +33,12 @@ NO_MOTION = "No ground motion. Give a record file, or a pulse such as sine:ampli
 
 
 def is_body(text: str) -> bool:
-    """Return whether a name is that of a body file, by how it ends."""
+    """Return True if a name has the extension of a body file."""
     return Path(text).suffix.lower() in FORMATS
 
 
 def is_file(text: str) -> bool:
-    """Return whether there is a file of a name."""
+    """Return True if the file exists."""
     try:
         return bool(text) and Path(text).exists()
     except (OSError, ValueError):  # no file can have such a name
@@ -46,7 +46,7 @@ def is_file(text: str) -> bool:
 
 
 def is_found(pattern: str) -> bool:
-    """Return whether a pattern finds a file."""
+    """Return True if a pattern matches a file."""
     from rocking.motions.formats.record_set import paths_of
 
     try:
@@ -55,17 +55,17 @@ def is_found(pattern: str) -> bool:
         return False
 
 
-_SHORT = re.compile(r"[+-]?(\.\d+|\d+\.)([eE][+-]?\d+)?")  # .01 and 2., which TOML takes for no number
+_SHORT = re.compile(r"[+-]?(\.\d+|\d+\.)([eE][+-]?\d+)?")  # .01 and 2., which are no numbers in TOML
 
 
-def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
+def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
     """Return the tables of ``--set table.key=value``.
 
     >>> parsed_sets(["settings.gravity=9.81", "settings.friction=.5", "body.up=y"], ["settings", "body"])
     {'settings': {'gravity': 9.81, 'friction': 0.5}, 'body': {'up': 'y'}}
     """
     tables: Tables = {}
-    present = dict(renamed_keys())  # the keys of files of earlier versions are no keys here
+    present = dict(renamed_keys())  # options accept the present keys only
     for text in texts or ():
         path, equals, value = text.partition("=")
         table, dot, key = path.strip().partition(".")
@@ -74,11 +74,11 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
                 "{parameter} must be table.key=value, such as settings.gravity=9.81, got {value}", parameter="--set",
                 value=text,
             )  # fmt: skip
-        if table not in known:
-            near = checks.nearest(table, list(known))
+        if table not in allowed:
+            near = checks.nearest(table, list(allowed))
             raise InvalidValueError(
                 "{parameter}: no table named {table!r:.60} here; there are {names}", parameter="--set", table=table,
-                names=", ".join(known), hint=near,
+                names=", ".join(allowed), hint=near,
             )  # fmt: skip
         if (new := present.get(f"{table}.{key}")) is not None:
             raise InvalidValueError(
@@ -90,13 +90,13 @@ def parsed_sets(texts: Sequence[str] | None, known: Iterable[str]) -> Tables:
         try:
             tables[table][key] = tomllib.loads(f"value = {value.strip()}")["value"]
         except (tomllib.TOMLDecodeError, ValueError, RecursionError):
-            word = value.strip()  # what TOML does not know is text, but for numbers as people write them
+            word = value.strip()  # invalid TOML is text, except numbers such as .01
             tables[table][key] = float(word) if _SHORT.fullmatch(word) else word
     return tables
 
 
 def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
-    """Return the tables of a file with the keys that ``--set`` changes; lists: a table may stand as a list of one."""
+    """Return the tables of a file with the keys of ``--set``; lists: a list of one table counts as a table."""
     tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options have the present keys
     changed = dict(tables)
     for table, keys in sets.items():
@@ -105,9 +105,9 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
         if lists and isinstance(stated, list) and len(stated) == 1:
             (stated,) = stated
         if not isinstance(stated, dict):
-            why = f"it has several [[{name}]]" if isinstance(stated, list) else f"its {name} is no table"
+            reason = f"it has several [[{name}]]" if isinstance(stated, list) else f"its {name} is no table"
             raise InvalidValueError(
-                "{parameter} {key}: {reason}", parameter="--set", key=f"{table}.{next(iter(keys))}", reason=why,
+                "{parameter} {key}: {reason}", parameter="--set", key=f"{table}.{next(iter(keys))}", reason=reason,
                 hint="change the file",
             )  # fmt: skip
         changed[name] = {**stated, **keys}
@@ -115,22 +115,22 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
 
 
 def document_file(
-    context: "typer.Context", word: str | None, tables: Collection[str], beside: Collection[str] = (), has: str = ""
+    context: "typer.Context", word: str | None, tables: Collection[str], allowed: Collection[str] = (), has: str = ""
 ) -> Path | None:
-    """Return the file with everything, TOML with [body] or another table; beside: options that go with it."""
+    """Return the input file, TOML with [body] or another table, or None; allowed: options accepted with a file."""
     if word is None or not {*tables, "body"} & set(tables_in(Path(word)) or ()):
         return None
-    taken = {"body", "objects", "motions", "threads", "output", "as_json", "sets", "details", *beside}
-    if stated := typed(context, *(name for name in context.params if name not in taken)):
+    allowed = {"body", "objects", "motions", "threads", "output", "as_json", "sets", "details", *allowed}
+    if stated := typed(context, *(name for name in context.params if name not in allowed)):
         raise InvalidValueError(
-            "{file} {content}says everything itself, so it takes no {options}", file=word, content=has,
-            options=", ".join(stated), hint="--set changes a key",
+            "{file} {content}contains the whole input; {options} cannot be combined with it", file=word, content=has,
+            options=", ".join(stated), hint="use --set to change a key",
         )  # fmt: skip
     return Path(word)
 
 
 class Arguments:
-    """What was typed after a command, and the tables of a document that it makes; tables: those that --set changes."""
+    """Arguments of a command, and the tables of its input; tables: those that --set can change."""
 
     def __init__(self, context: "typer.Context", *tables: str) -> None:
         self.context, self.options = context, context.params
@@ -144,7 +144,7 @@ class Arguments:
         return body is not None and describes_solid(body)
 
     def spelt(self, option: str) -> str:
-        """Return how an option was typed; empty if it was not."""
+        """Return an option as typed, such as --units; empty if the option was not typed."""
         return next(iter(typed(self.context, option)), "")
 
     def table(
@@ -154,21 +154,21 @@ class Arguments:
         spelt: Mapping[str, str] | None = None,
         keys: Collection[str] | None = None,
     ) -> Tables:
-        """Return a table of what options say, and `--set`, which wins over what was not typed."""
-        # spelt: how values were typed that are no option of that name, empty if they were not; keys: those of `--set`
-        # that are meant, all if not given
+        """Return a table with the values of options and of `--set`; `--set` replaces defaults only."""
+        # spelt: options as typed, by key, where the option has another name than the key, empty if not typed
+        # keys: the keys of `--set` to include, by default all
         sets = {key: value for key, value in self.sets.get(name, {}).items() if keys is None or key in keys}
         for key in sets:
             option = (spelt or {}).get(key, self.spelt(key))
             if option and values.get(key) is not None:
                 raise InvalidValueError(
-                    "{parameter} and --set {key} say the same: leave one out", parameter=option[:100],
+                    "{parameter} and --set {key} set the same key; remove one", parameter=option[:100],
                     key=f"{name}.{key}",
                 )  # fmt: skip
         return {**{key: value for key, value in values.items() if value is not None}, **sets}
 
     def values(self, table: "type[BaseModel]") -> Tables:
-        """Return the values of keys of a table that options say."""
+        """Return the values of those keys of a table that have an option."""
         return {
             name: value_of(field, f"--{name.replace('_', '-')}", self.options[name])
             for name, field in table.model_fields.items() if self.options.get(name) is not None
@@ -176,12 +176,12 @@ class Arguments:
 
     @property
     def sizes(self) -> dict[str, str]:
-        """The sizes of a block that were typed, as they are spelt, by their key."""
-        ways = {key: f"--set body.{key}" for pair in _SIZES for key in pair if key in self.sets.get("body", {})}
-        return {name: f"--{name}" for name in _SIZES[0] if self.options.get(name) is not None} | ways
+        """The options of the size of a block as typed, by key."""
+        by_sets = {key: f"--set body.{key}" for pair in _SIZES for key in pair if key in self.sets.get("body", {})}
+        return {name: f"--{name}" for name in _SIZES[0] if self.options.get(name) is not None} | by_sets
 
     def body_and_motions(self) -> tuple[str | None, list[str]]:
-        """Return the file of the body, none if it is given by its size, and the words of motions."""
+        """Return the body file, None for a block of given size, and the arguments of motions."""
         body, record, motions = (self.options.get(name) for name in ("body", "record", "motion"))
         positional = [] if record is None else [record] if isinstance(record, str) else list(record)
         if self.sizes and body is not None and not (positional and is_body(body)):
@@ -189,33 +189,32 @@ class Arguments:
         for word in positional:
             if body is not None and is_body(word) and not is_body(body):
                 raise InvalidValueError(
-                    "the body comes first, then the motion: {motion} {body}, not the reverse", motion=word[:100],
-                    body=body[:100],
+                    "the body file must precede the motion: {motion} {body}", motion=word[:100], body=body[:100],
                 )  # fmt: skip
         return body, [*positional, *(motions or ())]
 
     @property
     def several(self) -> list[str]:
-        """The words of motions where they are of several: two words, a folder, a pattern or a list of records."""
+        """The arguments of several motions: two arguments, a folder, a pattern or a list of records; else empty."""
         from rocking.spec.reading import CommandFiles
         from rocking.spec.record_sets import is_set
 
-        _, words = self.body_and_motions()
-        several = len(words) > 1 or any(is_set(word, CommandFiles(Path())) for word in words)
-        return words if several and not any(word[:2] in {"x=", "y=", "z="} for word in words) else []
+        _, motions = self.body_and_motions()
+        several = len(motions) > 1 or any(is_set(word, CommandFiles(Path())) for word in motions)
+        return motions if several and not any(word[:2] in {"x=", "y=", "z="} for word in motions) else []
 
     def hinted(self) -> AbstractContextManager[None]:
-        """Say what to type, or what a file may be, where that of the body or the first motion is refused."""
+        """Add a hint to a refusal of the body file or the first motion."""
         body, motions = self.body_and_motions()
-        axis, _, rest = motions[0].partition("=") if motions else ("", "", "")
-        return hinted(body, rest if axis in {"x", "y", "z"} else next(iter(motions), None))
+        axis, _, source = motions[0].partition("=") if motions else ("", "", "")
+        return hinted(body, source if axis in {"x", "y", "z"} else next(iter(motions), None))
 
     def restitution(self, usual: Tables | None = None) -> Tables:
-        """Return the table [restitution]: what `--set` says, or the usual one, or that of the option; may be empty."""
+        """Return the table [restitution] of `--set`, else the default, else that of the option; may be empty."""
         keys: Tables = self.sets.get("restitution", {})
         if keys and (option := self.spelt("restitution")):
             raise InvalidValueError(
-                "{parameter} and --set {key} say the same: leave one out", parameter=option,
+                "{parameter} and --set {key} set the same key; remove one", parameter=option,
                 key=f"restitution.{next(iter(keys))}",
             )  # fmt: skip
         model = self.options.get("restitution")
@@ -229,52 +228,51 @@ class Arguments:
             in_toml = Path(file).suffix.lower() == ".toml"
             stated = not {"density", *_KNOWN}.isdisjoint(values)
             if self.sizes or "depth" in values or (stated and in_toml):
-                raise InvalidValueError("give a body file or dimensions, not both")
+                raise InvalidValueError("Give a body file or dimensions, not both.")
             return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
         if set(self.sizes) not in map(set, _SIZES):
             raise InvalidValueError(
-                "a body is a file, or --width and --height, or --set body.slenderness_angle and body.semi_diagonal; "
-                "got {options}", options=" ".join(self.sizes.values()) or "none of them",
+                "No complete body: got {options}. Give a body file, --width and --height, or --set "
+                "body.slenderness_angle and body.semi_diagonal", options=" ".join(self.sizes.values()) or "no option",
             )  # fmt: skip
         return {"units": "m", **self.table("body", {"units": self.length, **values})}
 
     def motion_table(self, word: str, keys: Collection[str] | None = None) -> Tables:
-        """Return the table of one motion; keys: those of `--set motion` that are meant, all if not given."""
-        place = _place(word)
+        """Return the table of one motion; keys: the keys of `--set motion` to include, by default all."""
+        source = _place(word)
         units = self.acceleration if keys is None or "units" in keys else None
-        table = self.table("motion", {**place, "units": units}, dict.fromkeys(place, word), keys)
+        table = self.table("motion", {**source, "units": units}, dict.fromkeys(source, word), keys)
         spelt = ["--units" if key == "units" and units is not None else f"motion.{key}" for key in table]
-        if "pulse" in place and (odd := [how for key, how in zip(table, spelt, strict=True) if key in OF_FILES]):
+        if "pulse" in source and (odd := [origin for key, origin in zip(table, spelt, strict=True) if key in OF_FILES]):
             raise InvalidValueError(
-                "a pulse takes no {options}: these are for files; got {pulse!r}", options=", ".join(odd),
-                pulse=word[:200],
+                "{options} is for record files, not for the pulse {pulse!r}", options=", ".join(odd), pulse=word[:200],
             )  # fmt: skip
         return table
 
     def one_motion(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of a plane body: one motion, and its vertical part where z= names it."""
+        """Return the table [motion] of a plane body: one motion, with the vertical component of z=."""
         along = _along(motions)
         if "y" in along:
-            raise InvalidValueError("a plane body has one horizontal motion, along x, and a vertical one, along z")
+            raise InvalidValueError("a plane body accepts motions along x (horizontal) and z (vertical), not along y")
         if "x" not in along:
-            raise InvalidValueError("give the motion along x too: --motion x=FILE --motion z=FILE")
+            raise InvalidValueError("No motion along x. Give --motion x=FILE --motion z=FILE")
         table = self.motion_table(along["x"])
         if "z" not in along:
             return table
-        upright = _place(along["z"])
-        if "record" not in table or "record" not in upright:
-            raise InvalidValueError("the vertical motion of a plane body stands in a record file, as the one along x")
+        vertical = _place(along["z"])
+        if "record" not in table or "record" not in vertical:
+            raise InvalidValueError("for a plane body with vertical motion, x and z must be record files")
         if odd := sorted({"vertical", "vertical_file"} & set(table)):
             raise InvalidValueError(
-                "z={file} and --set {key} say the same: leave one out", file=along["z"][:100], key=f"motion.{odd[0]}"
+                "z={file} and --set {key} set the same key; remove one", file=along["z"][:100], key=f"motion.{odd[0]}"
             )
-        component = {"vertical": upright["component"]} if "component" in upright else {}
-        same = Path(upright["record"]) == Path(table["record"]) and component
-        return {**table, **component, **({} if same else {"vertical_file": upright["record"]})}
+        component = {"vertical": vertical["component"]} if "component" in vertical else {}
+        same = Path(vertical["record"]) == Path(table["record"]) and component
+        return {**table, **component, **({} if same else {"vertical_file": vertical["record"]})}
 
     def components(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of a body in space: a motion along each axis that was named."""
-        # what `--set` says of format, unit and step is for every file, the rest for the one along x, or the first
+        """Return the tables of the motions of a 3D body by axis."""
+        # `--set` of format, unit and time step applies to every file, other keys to the motion along x, or the first
         along = _along(motions)
         if not along:
             raise InvalidValueError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")
@@ -282,19 +280,21 @@ class Arguments:
             return self.motion_table(along["x"])
         records = [axis for axis, word in along.items() if "record" in _place(word)]
         if len(records) > 1 and "component" in self.sets.get("motion", {}):
-            raise InvalidValueError("motion.component is of one file, and there are several: say FILE#COMPONENT")
+            raise InvalidValueError(
+                "motion.component accepts one record file, got {count}: use FILE#COMPONENT", count=len(records)
+            )
         first = next((axis for axis in ("x", *records, *along) if axis in (records or along)), "x")
-        stated = {*self.sets.get("motion", {}), "units"} - {"scale"}  # which is of all of them
+        stated = {*self.sets.get("motion", {}), "units"} - {"scale"}  # scale applies to all motions
         keys = {axis: _OF_EVERY_FILE if axis in records else set() for axis in along} | {first: stated}
         return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
 
     def of_body(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of the body, in space if it is a solid or moves along y too."""
+        """Return the table [motion] of the body: of a 3D body if it is a solid or has a motion along y."""
         return self.components(motions) if self.solid or "y" in _along(motions) else self.one_motion(motions)
 
     @staticmethod
     def each(motions: Sequence[str], table: Callable[[Sequence[str]], Tables]) -> list[Tables]:
-        """Return the tables of several motions: an axis that is named again begins the next one."""
+        """Return the tables of several motions; a repeated axis begins the next motion."""
         groups: list[list[str]] = []
         for word in motions:
             if not groups or set(_along([word])) & set(_along(groups[-1])):
@@ -304,7 +304,7 @@ class Arguments:
 
 
 def _place(word: str) -> Tables:
-    """Return where a motion is: a file that is there, with the component behind #, or a pulse."""
+    """Return the source of a motion: an existing file, with the component after #, or a pulse."""
     path, mark, component = word.rpartition("#")
     if is_file(word) or (is_pattern(word) and is_found(word)):
         return {"record": word}
@@ -313,7 +313,7 @@ def _place(word: str) -> Tables:
     name, colon, _ = word.partition(":")
     if (not colon and name not in catalogue()) or "/" in name or "\\" in word:
         raise RecordError(
-            "{file}: no such file; a pulse is written as sine:amplitude=3,period=0.8, with one of {names}",
+            "{file}: no such file. A pulse has the form sine:amplitude=3,period=0.8; pulses: {names}",
             file=word[:200], names=", ".join(sorted(catalogue())),
         )  # fmt: skip
     return {"pulse": word}
@@ -322,20 +322,20 @@ def _place(word: str) -> Tables:
 def _along(motions: Sequence[str]) -> dict[str, str]:
     along: dict[str, str] = {}
     for word in motions:
-        axis, equals, rest = word.partition("=")
-        axis, rest = (axis, rest) if equals and axis in {"x", "y", "z"} else ("x", word)
+        axis, equals, source = word.partition("=")
+        axis, source = (axis, source) if equals and axis in {"x", "y", "z"} else ("x", word)
         if axis in along:
             raise InvalidValueError(
-                "one motion along {axis}, please: got {first!r} and {second!r}", axis=axis, first=along[axis][:100],
-                second=rest[:100],
+                "Several motions along {axis}: {first!r} and {second!r}. Remove one.", axis=axis,
+                first=along[axis][:100], second=source[:100],
             )  # fmt: skip
-        along[axis] = rest
+        along[axis] = source
     return along
 
 
 @contextmanager
-def hinted(body: str | None, word: str | None, upright: str = "") -> Iterator[None]:
-    """Say what to type, or what a file may be, where a file was refused; upright: its vertical component."""
+def hinted(body: str | None, word: str | None, vertical_component: str = "") -> Iterator[None]:
+    """Add a hint to the refusal of a body file or a record; vertical_component: its name in the record."""
     try:
         yield
     except BodyFileError as error:
@@ -349,6 +349,6 @@ def hinted(body: str | None, word: str | None, upright: str = "") -> Iterator[No
     except InvalidValueError as error:
         if word is not None and (components := error.facts.get("components")):
             file = word.rpartition("#")[0] or word
-            names = " or ".join(shlex.quote(f"{file}#{name}") for name in components if name != upright)
-            error.hint = f"say which one: {names}"
+            names = " or ".join(shlex.quote(f"{file}#{name}") for name in components if name != vertical_component)
+            error.hint = f"use {names}"
         raise

@@ -1,4 +1,4 @@
-"""`rocking campaign`: very many histories that a job file describes, computed once, whatever happens on the way."""
+"""`rocking campaign`: large studies of a job file, which can be stopped and resumed."""
 
 from pathlib import Path
 from typing import Annotated
@@ -61,8 +61,8 @@ def run(
     from rocking.cli import campaign_output
 
     with campaign_output.codes(output):
-        who = campaign_output.executor_of(executor, workers, address)
-        campaign_output.compute(JobFolder.create(output, Job.read(job)), who, as_json)
+        how = campaign_output.executor_of(executor, workers, address)
+        campaign_output.compute(JobFolder.create(output, Job.read(job)), how, as_json)
 
 
 @campaign.command(epilog=_CODES)
@@ -79,8 +79,8 @@ def resume(
     from rocking.cli import campaign_output
 
     with campaign_output.codes(folder):
-        who = campaign_output.executor_of(executor, workers, address)
-        campaign_output.compute(JobFolder.open(folder, inputs), who, as_json)
+        how = campaign_output.executor_of(executor, workers, address)
+        campaign_output.compute(JobFolder.open(folder, inputs), how, as_json)
 
 
 @campaign.command(epilog=_CODES)

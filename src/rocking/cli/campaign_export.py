@@ -1,4 +1,4 @@
-"""What `rocking campaign export` writes."""
+"""Files of `rocking campaign export`."""
 
 import hashlib
 from collections.abc import Iterator
@@ -18,137 +18,143 @@ from rocking.errors import InvalidValueError, RockingError, extra
 from rocking.tables import target_of
 
 REPORT, PICTURE = "report", "picture"  # the ranked table of an inventory with its lights; the picture of a study
-_SAFE = "the campaign itself is safe"
+_SAFE = "the campaign is unchanged"
 
 
 def write(
     folder: Path, out: list[str], *, restitution: str | None, crossing_curves: Any, inputs: Path | None, as_json: bool
 ) -> None:
-    """Write the results of a campaign into files, and say so; ``WHAT=FILE`` says what a file holds."""
+    """Write the results of a campaign into files; ``CONTENT=FILE`` selects the content of a file."""
     opened = JobFolder.open(folder, inputs)
     targets = [_target(text, opened) for text in out]
     paths = [path.resolve() for path, _ in targets]
-    if twice := next((path for path in paths if paths.count(path) > 1), None):
+    if duplicate := next((path for path in paths if paths.count(path) > 1), None):
         raise InvalidValueError(
-            "{parameter} names {file} twice: the second would replace the first", parameter="--output", file=twice.name
+            "{parameter} {file} is given twice; use another name", parameter="--output", file=duplicate.name
         )
-    for path, what in targets:
-        _check(opened, path, what, restitution, crossing_curves)
+    for path, content in targets:
+        _check(opened, path, content, restitution, crossing_curves)
     facts: list[dict[str, Any]] = []
     left_out: list[str] = []
-    for path, what in targets:
+    for path, content in targets:
         written = [path]
-        if what == REPORT:
+        if content == REPORT:
             written, missing = _report(opened, path)
             left_out += missing
-        elif what == PICTURE:
+        elif content == PICTURE:
             from rocking.plots.campaign import campaign_picture
             from rocking.plots.style import write as write_picture
 
             with _stored(path):
                 write_picture(campaign_picture(opened, restitution), path)
         else:
-            _file(opened, path, what, restitution, crossing_curves, quiet=as_json)
-        facts += [_facts(opened, each, what) for each in written]
+            _file(opened, path, content, restitution, crossing_curves, quiet=as_json)
+        facts += [_facts(opened, file, content) for file in written]
     if as_json:
         print_json(*map(Answer, facts))
         return
-    for each in facts:
-        print(f"wrote {each['file']} ({each['bytes']} bytes, {_words(each['what'], each)})")
+    for entry in facts:
+        print(f"wrote {entry['file']} ({entry['bytes']} bytes, {_described(entry['what'], entry)})")
     for sentence in left_out:
         print(f"left out: {sentence}")
 
 
 def _target(text: str, folder: JobFolder) -> tuple[Path, str]:
-    """Return the file that is meant and what it will hold: what was said, or what suits its ending and the kind."""
-    what, equals, rest = text.partition("=")
-    if equals and (what in {*ENDINGS, REPORT, PICTURE} or ("/" not in what and "." not in what)):
-        return Path(rest), what
+    """Return a file and its content: the stated content, or the default for its extension and the study."""
+    content, equals, file = text.partition("=")
+    if equals and (content in {*ENDINGS, REPORT, PICTURE} or ("/" not in content and "." not in content)):
+        return Path(file), content
     path, is_inventory = Path(text), folder.job.study.assess is not None
     if path.suffix.lower() in PICTURES and not (is_inventory and path.suffix.lower() == ".pdf"):
         return path, PICTURE
     return path, REPORT if is_inventory else exports_of(folder)[0]
 
 
-def _check(folder: JobFolder, to: Path, what: str, restitution: str | None, crossing_curves: Any) -> None:
-    """Refuse a file that could not be written, before any is."""
-    if what == REPORT:
+def _check(folder: JobFolder, to: Path, content: str, restitution: str | None, crossing_curves: Any) -> None:
+    """Refuse a file that could not be written, before the first file is written."""
+    if content == REPORT:
         from rocking.reports.inventory_folder import check_form
 
         if folder.job.study.assess is None or restitution is not None or crossing_curves is not None:
-            raise InvalidValueError("a report is of an inventory, without restitution and crossing_curves")
+            raise InvalidValueError("report is for inventories, without --restitution and --crossing-curves")
         if to.suffix:
             check_form(to)
             if not to.parent.is_dir():
-                raise InvalidValueError("cannot write {file}: there is no folder {folder}", file=to, folder=to.parent)
-    elif what == PICTURE:
+                raise InvalidValueError(
+                    "cannot write {file}: folder {folder} does not exist", file=to, folder=to.parent
+                )
+    elif content == PICTURE:
         from rocking.plots.campaign import check_picture
 
         target_of(to)
         if to.suffix.lower() not in PICTURES:
             raise InvalidValueError(
-                "a picture is {endings}, got {ending!r}", endings=", ".join(PICTURES), ending=to.suffix or "no ending"
+                "a picture must be {endings}, got {ending!r}",
+                endings=", ".join(PICTURES),
+                ending=to.suffix or "no extension",
             )
         if crossing_curves is not None:
-            raise InvalidValueError(
-                "crossing_curves goes with fragility and fema-p58: it is about curves that are written"
-            )
+            raise InvalidValueError("--crossing-curves is for fragility and fema-p58, not for a picture")
         check_picture(folder, restitution)
         extra("matplotlib", "a picture")
-    elif what not in ENDINGS:
+    elif content not in ENDINGS:
         raise InvalidValueError(
-            parameter="what", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=what
+            parameter="CONTENT", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=content
         )
     else:
-        checked(folder, to, what, restitution, crossing_curves)
+        checked(folder, to, content, restitution, crossing_curves)
 
 
-def _words(what: str, facts: dict[str, Any]) -> str:
+def _described(content: str, facts: dict[str, Any]) -> str:
     if "rounds" not in facts:
-        return f"{facts['histories']} histories" if what == "histories" else f"{what} of {facts['histories']} histories"
-    if what == "histories":
+        return (
+            f"{facts['histories']} histories"
+            if content == "histories"
+            else f"{content} of {facts['histories']} histories"
+        )
+    if content == "histories":
         return f"{facts['histories']} histories of the first round, of {facts['all_histories']} in all rounds"
-    return f"{what} of {facts['histories']} histories in {facts['rounds']} rounds"
+    return f"{content} of {facts['histories']} histories in {facts['rounds']} rounds"
 
 
 def _file(
-    folder: JobFolder, to: Path, what: str, restitution: str | None, crossing_curves: Any, *, quiet: bool
+    folder: JobFolder, to: Path, content: str, restitution: str | None, crossing_curves: Any, *, quiet: bool
 ) -> None:
     total = folder.campaign.plan.count
     done = 0
-    with bar(f"writing {to.name}", total, quiet=quiet) as tell:
+    with bar(f"writing {to.name}", total, quiet=quiet) as show:
 
         def step(count: int) -> None:
             nonlocal done
             done += count
-            tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
+            show(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
 
-        jobs.export(folder, to, what, restitution=restitution, crossing_curves=crossing_curves, progress=step)
+        jobs.export(folder, to, content, restitution=restitution, crossing_curves=crossing_curves, progress=step)
 
 
 def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:
-    """Write the report of an inventory: in one form, or into a folder in all."""
+    """Write the report of an inventory: one file, or a folder with all formats."""
     from rocking.reports.inventory_folder import STEM, write_inventory, write_inventory_file
 
-    found = assessment(folder)
+    result = assessment(folder)
     with _stored(to):
         if not to.suffix:
             to.mkdir(parents=True, exist_ok=True)
             write_provenance(folder.job.provenance, to / STEM)
-            return write_inventory(found, to)
-        # before the report: no report is ever there without it
-        beside = write_provenance(folder.job.provenance, to)
+            return write_inventory(result, to)
+        # before the report: every report has its provenance
+        provenance = write_provenance(folder.job.provenance, to)
         try:
-            return [write_inventory_file(found, to)], []
+            return [write_inventory_file(result, to)], []
         except BaseException:
             if not to.exists():
-                beside.unlink(missing_ok=True)
+                provenance.unlink(missing_ok=True)
             raise
 
 
 @contextmanager
 def _stored(to: Path) -> Iterator[None]:
-    """Say that the disk, and not the campaign, is at fault."""
+    """Turn an error of the disk into a refusal that confirms the campaign unchanged."""
     with disk.guarded(to, lambda: _SAFE):
         try:
             yield
@@ -156,18 +162,18 @@ def _stored(to: Path) -> Iterator[None]:
             if not isinstance(error.__cause__, OSError):
                 raise
             refusal = error.copied(CampaignStorageError)
-            refusal.add_hint(f"{_SAFE}; make room or allow writing, then export again")
+            refusal.add_hint(f"{_SAFE}; free disk space or allow writing, then export again")
             raise refusal from error
 
 
-def _facts(folder: JobFolder, path: Path, what: str) -> dict[str, Any]:
+def _facts(folder: JobFolder, path: Path, content: str) -> dict[str, Any]:
     rounds = finished_rounds(folder.path)
-    # tables of an adaptive study are made from all its rounds, its histories are those of the first
-    of_all = rounds is not None and what != "histories"
+    # tables of an adaptive study contain all rounds, its histories only the first round
+    of_all = rounds is not None and content != "histories"
     with path.open("rb") as file:
         return {
             "file": str(path),
-            "what": what,
+            "what": content,
             "histories": rounds["histories"] if rounds is not None and of_all else folder.campaign.plan.count,
             "bytes": path.stat().st_size,
             "sha256": hashlib.file_digest(file, "sha256").hexdigest(),

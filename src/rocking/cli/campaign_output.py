@@ -1,4 +1,4 @@
-"""What `rocking campaign` prints, shows while it computes, and exits with."""
+"""Output, progress and exit codes of `rocking campaign`."""
 
 import shlex
 import sys
@@ -27,7 +27,7 @@ from rocking.cli.page import lines, print_json
 from rocking.errors import InvalidValueError
 from rocking.quantities import Quantity
 
-INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes beside 0 (done) and 2 (bad input)
+INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes; 0 is done, 2 invalid input
 
 _CODES: dict[type[BaseException], int] = {
     CampaignInterrupted: INTERRUPTED,
@@ -39,37 +39,37 @@ _CODES: dict[type[BaseException], int] = {
 
 @contextmanager
 def codes(folder: Path | None = None) -> Iterator[None]:
-    """Turn what stops a campaign into a sentence and its exit code; the rest passes."""
+    """Turn the interruption of a campaign into a message and its exit code; other errors pass."""
     try:
         yield
     except tuple(_CODES) as error:
         print(f"rocking: {error}", file=sys.stderr)
         raise typer.Exit(next(code for kind, code in _CODES.items() if isinstance(error, kind))) from error
     except KeyboardInterrupt as error:
-        begun = folder is not None and (folder / JOB).exists()
-        safe = "what was recorded before is safe" if begun else "nothing was begun"
-        print(f"rocking: stopped; {safe}", file=sys.stderr)
+        has_begun = folder is not None and (folder / JOB).exists()
+        state = "finished results are kept" if has_begun else "nothing was computed"
+        print(f"rocking: stopped; {state}", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from error
 
 
 def executor_of(name: str, workers: int | None, address: str | None) -> tuple[str | Executor, int | None]:
-    """Return who computes."""
+    """Return the executor and its number of workers."""
     if name not in {"serial", "processes", "dask"}:
         raise InvalidValueError(parameter="--executor", allowed="serial, processes or dask", value=name)
     if (address is not None) != (name == "dask"):
-        raise InvalidValueError("--address goes with --executor dask, which needs it: tcp://host:8786")
+        raise InvalidValueError("--executor dask and --address tcp://host:8786 must be given together")
     if address is None:
         return name, workers
     if workers is not None:
-        raise InvalidValueError("--workers does not go with --executor dask: the cluster has its own")
+        raise InvalidValueError("--workers is not for --executor dask, whose cluster sets the number of workers")
     return DaskExecutor(address), None
 
 
-def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: bool) -> None:
-    """Compute what is missing of a campaign, with a bar, and say what was done."""
+def compute(folder: JobFolder, executor: tuple[str | Executor, int | None], as_json: bool) -> None:
+    """Compute the missing histories of a campaign, with a progress bar; print a summary."""
     name = folder.job.document.campaign.name
-    with bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
-        done = folder.run(who[0], workers=who[1], progress=tell)
+    with bar(name, folder.campaign.plan.count, quiet=as_json) as show:
+        done = folder.run(executor[0], workers=executor[1], progress=show)
     status = status_of(folder.path)
     facts = {
         **_facts(status),
@@ -91,7 +91,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
 
 
 def show_status(folder: Path, as_json: bool) -> None:
-    """Print how far a campaign is."""
+    """Print the progress of a campaign."""
     job_status = status_of(folder)
     status = job_status.status
     if as_json:
@@ -105,13 +105,13 @@ def show_status(folder: Path, as_json: bool) -> None:
 
 
 def show_verification(folder: Path, as_json: bool) -> None:
-    """Print what was found when everything that a campaign has was read."""
+    """Print the result of the verification of all stored results."""
     check = verified(folder)
     if as_json:
         print_json(Answer({"folder": str(folder), "whole": check.whole, **vars(check)}))
     else:
-        share = f"{check.verified} of {check.histories} histories were read and are what was written"
-        print(f"{folder}: {share}, in {_chunks(check.chunks)}{'' if check.whole else ' and pieces of others'}")
+        summary = f"{check.verified} of {check.histories} histories verified"
+        print(f"{folder}: {summary}, in {_chunks(check.chunks)}{'' if check.whole else ' and parts of others'}")
         for sentence in check.damaged:
             print(f"damaged: {sentence}")
         for first, last in check.missing:
@@ -123,7 +123,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
 
 
 def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> None:
-    """Print what a job will take."""
+    """Print the estimated time, memory and disk space of a job."""
     job = Job.read(path)
     estimate = forecast(job, workers, out)
     facts = {
@@ -138,19 +138,19 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
     if as_json:
         print_json(Answer(facts, {name: Quantity(name, "1", "size of a dimension") for name in job.study.dims}))
     else:
-        over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
+        dimensions = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         files = "1 input file" if len(job.inputs) == 1 else f"{len(job.inputs)} input files"
-        print(f"{path}: {facts['campaign']} ({facts['kind']}), {files}, no mistake found")
-        print(f"  histories  {estimate.histories} = {over}, in {_chunks(estimate.chunks)} of {estimate.chunk}")
+        print(f"{path}: {facts['campaign']} ({facts['kind']}), {files}, valid")
+        print(f"  histories  {estimate.histories} = {dimensions}, in {_chunks(estimate.chunks)} of {estimate.chunk}")
         if estimate.later is not None:
-            print("             in the first round, as are time and disk; what it finds decides on later rounds:")
             low, high = estimate.later
-            print(f"             usually {low} to {high} more histories, with their time and disk")
+            print("             histories, time and disk of the first round")
+            print(f"             later rounds usually add {low} to {high} histories")
         between = " to ".join(_span(seconds) for seconds in estimate.between)
-        rate = f"{estimate.rate:.3g} histories/s each"
-        print(f"  time       about {_span(estimate.seconds)} ({between}) with {workers} core(s): {rate}")
+        rate = f"{estimate.rate:.3g} histories/s per core"
+        print(f"  time       about {_span(estimate.seconds)} ({between}) with {workers} core(s), {rate}")
         print(f"  memory     about {estimate.memory / 1e6:.0f} MB{'' if estimate.later is None else ' in all rounds'}")
-        free = "" if estimate.free is None else f", {estimate.free / 1e6:.0f} MB are free"
+        free = "" if estimate.free is None else f", {estimate.free / 1e6:.0f} MB free"
         print(f"  disk       {estimate.disk / 1e6:.1f} MB{free}")
     if estimate.free is not None and estimate.free < estimate.disk:
         raise CampaignStorageError(
@@ -159,7 +159,7 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
 
 
 def _facts(job_status: JobStatus) -> dict[str, Any]:
-    """Return how far a campaign is, under keys that stay the same."""
+    """Return the progress of a campaign under stable keys."""
     status = job_status.status
     facts = {
         "campaign": job_status.name,
@@ -187,34 +187,34 @@ def _chunks(number: int) -> str:
 def _sentence(job_status: JobStatus) -> str:
     status, name, folder = job_status.status, job_status.name, job_status.path
     if status is None:
-        return f"{name}: nothing is computed yet; {resume_hint(folder)}"
+        return f"{name}: no history is computed yet; {resume_hint(folder)}"
     if job_status.complete:
-        many = "" if job_status.rounds is None else f"{job_status.rounds} rounds, "
-        return f"{name}: all {status.histories} histories ({many}{_chunks(status.chunks)}) are safe in {folder}"
-    now = f"{status.running} runs it" if status.running else resume_hint(folder)
-    share = (
+        rounds = "" if job_status.rounds is None else f"{job_status.rounds} rounds, "
+        return f"{name}: all {status.histories} histories ({rounds}{_chunks(status.chunks)}) are stored in {folder}"
+    next_step = f"running in {status.running}" if status.running else resume_hint(folder)
+    progress = (
         f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {_chunks(status.chunks)})"
     )
     if job_status.rounds is not None:
-        share = f"round {job_status.rounds} has begun, how many follow is not known; of these rounds {share}"
-    return f"{name}: {share} are safe in {folder}; {now}"
+        progress = f"round {job_status.rounds} has begun, the number of rounds is open; of these rounds {progress}"
+    return f"{name}: {progress} are stored in {folder}; {next_step}"
 
 
 @contextmanager
-def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show the progress, the rate and the time left: a bar on a terminal, else a line every few seconds."""
+def bar(title: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
+    """Show the progress, rate and remaining time: a bar on a terminal, else a line every few seconds."""
     if quiet:
         yield lambda progress: None
         return
     if not sys.stderr.isatty():
-        said = f"{what}: 0 of {total} histories"
+        status_line = f"{title}: 0 of {total} histories"
 
         def note(progress: Progress) -> None:
-            nonlocal said
+            nonlocal status_line
             left = "" if progress.left is None else f", {time_left(progress.left)}"
-            said = f"{what}: {progress.done_histories} of {progress.total} histories{left}"
+            status_line = f"{title}: {progress.done_histories} of {progress.total} histories{left}"
 
-        with lines(lambda: said):
+        with lines(lambda: status_line):
             yield note
         return
     from rich.console import Console
@@ -226,24 +226,24 @@ def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], 
         TextColumn("{task.fields[rate]}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
     )  # fmt: skip
     with Bar(*columns, console=Console(stderr=True), transient=True) as shown:
-        task = shown.add_task(what.replace("[", "\\["), total=total, rate="", left="")
+        task = shown.add_task(title.replace("[", "\\["), total=total, rate="", left="")
 
-        def tell(progress: Progress) -> None:
+        def show(progress: Progress) -> None:
             rate = f"{progress.rate:.0f} histories/s" if progress.rate else ""
-            left = "measuring the time left" if progress.left is None else time_left(progress.left)
+            left = "estimating the remaining time" if progress.left is None else time_left(progress.left)
             shown.update(task, completed=progress.done_histories, total=progress.total, rate=rate, left=left)
 
-        yield tell
+        yield show
 
 
 def time_left(left: Estimate) -> str:
-    """Return the time that is left, in words."""
+    """Return the remaining time as text."""
     low, high = _span(left.low), _span(left.high)
     return f"about {_span(left.seconds)} left" + ("" if low == high else f" ({low} to {high})")
 
 
 def _span(seconds: float) -> str:
-    """Return a time in words, to two figures."""
+    """Return a time with its unit, to two digits."""
     for unit, size in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.1f} {unit}"

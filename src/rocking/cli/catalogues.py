@@ -1,4 +1,4 @@
-"""`rocking models` and `rocking record formats`: what there is to choose from."""
+"""`rocking models` and `rocking record formats`: lists of restitution models and record formats."""
 
 import textwrap
 from dataclasses import dataclass
@@ -26,17 +26,17 @@ def models(
     from rocking.restitution.from_file import file_of, model_in_file
     from rocking.restitution.space import spatial_models
 
-    known: dict[str, Any] = {**restitution.models(), **spatial_models()}
+    kinds: dict[str, Any] = {**restitution.models(), **spatial_models()}
     if name is not None and file_of(name):
-        known[name] = type(model_in_file(name))
-    name = checks.spelling(name, known)
-    if name is not None and name not in known:
-        near = checks.nearest(name, known)
+        kinds[name] = type(model_in_file(name))
+    name = checks.spelling(name, kinds)
+    if name is not None and name not in kinds:
+        near = checks.nearest(name, kinds)
         raise UnknownModelError(
             "unknown restitution model {name!r}; models: {names}", parameter="restitution", name=name,
-            names=", ".join(known), hint=near,
+            names=", ".join(kinds), hint=near,
         )  # fmt: skip
-    deliver(_Models({key: kind for key, kind in known.items() if name in {None, key}}), as_json=as_json)
+    deliver(_Models({key: kind for key, kind in kinds.items() if name in {None, key}}), as_json=as_json)
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class _Models:
     kinds: dict[str, Any]
 
     def answer(self) -> Answer:
-        """Return what each model says of itself."""
+        """Return the title, reference, assumptions, domain and known defects of each model."""
         names = ("title", "reference", "assumptions", "domain", "known_defects")
         return Answer({key: {name: getattr(kind, name) for name in names} for key, kind in self.kinds.items()})
 
@@ -65,7 +65,7 @@ def record_formats(as_json: AsJson = False) -> None:
 
 class _Formats:
     def answer(self) -> Answer:
-        """Return what each format states and needs."""
+        """Return the title, extensions, stated quantities and notes of each format."""
         from rocking.motions.formats import formats as registered
 
         names = ("title", "suffixes", "states_unit", "states_time_step", "notes")
@@ -77,18 +77,18 @@ class _Formats:
         from rich.text import Text
 
         console = Console(highlight=False)
-        if not console.is_terminal:  # into a file or a pipe: the same width everywhere
+        if not console.is_terminal:  # a file or a pipe: fixed width
             console = Console(highlight=False, width=100)
         table = Table(box=None, pad_edge=False, header_style="bold")
         for head in ("name", "files", "unit", "step"):
             table.add_column(head, no_wrap=head != "files", max_width=14)
-        table.add_column("what it is, and what to know", ratio=1)
+        table.add_column("description", ratio=1)
         for name, fact in self.answer().values.items():
             about = Text(fact["title"])
             if fact["notes"]:
                 about.append(f"\n{fact['notes']}\n", style="dim")
-            stated = ("stated" if fact[key] else "you say" for key in ("states_unit", "states_time_step"))
+            stated = ("in file" if fact[key] else "required" for key in ("states_unit", "states_time_step"))
             table.add_row(name, " ".join(fact["suffixes"]) or "any", *stated, about)
         console.print(table)
-        page.line("unit, step: stated in the file, or you say them with --units and --set motion.time_step=SECONDS.")
-        page.line("Content decides which format a file has, not its ending; --set motion.format=NAME overrides.")
+        page.line("unit, step: in the file, or required: --units and --set motion.time_step=SECONDS.")
+        page.line("The format is found by content, not by extension; --set motion.format=NAME overrides.")

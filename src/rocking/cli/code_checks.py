@@ -1,4 +1,4 @@
-"""`rocking code-checks`: what published rules say of bodies, and what their histories show."""
+"""`rocking code-checks`: code methods compared with time histories."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -29,14 +29,14 @@ if TYPE_CHECKING:
     from rocking.studies.code_methods.methods import CodeMethod
 
 COUNT, SEED, LEVEL = 100, 1, "2"
-"""Synthetic motions, and what they are brought to, where nobody says otherwise."""
+"""Default number and seed of synthetic motions, and the level that they are scaled to."""
 
 
 def _csv(answer: "CodesAnswer", path: "Path") -> None:
-    found, rows = answer.found, []
-    for method, (k, body), (j, level) in product(found.methods, enumerate(found.bodies), enumerate(found.levels)):
+    result, rows = answer.result, []
+    for method, (k, body), (j, level) in product(result.methods, enumerate(result.bodies), enumerate(result.levels)):
         name = method.name
-        called, bias, outside = found.called_safe(name, k, j), found.bias(name, k), found.outside.get(name, "")
+        called, bias, outside = result.called_safe(name, k, j), result.bias(name, k), result.outside.get(name, "")
         rows.append({
             "method": name, "body": body, "level": level, "histories_known": called.total, "safe": called.safe,
             "overturned": called.overturned, "limit_ratio": called.ratio, "median": bias.median,
@@ -88,20 +88,24 @@ def code_checks(
 
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, *TABLES)
-    wanted = measure_of(im)
+    intensity_measure = measure_of(im)
     problem = _problem(arguments)
     if levels is None and not arguments.body_and_motions()[1]:
-        levels = LEVEL if wanted.needs_body else None
-    at = None if levels is None else row("--levels", levels, "1" if wanted.unit == "-" else wanted.unit)[0]
+        levels = LEVEL if intensity_measure.needs_body else None
+    level_values = (
+        None
+        if levels is None
+        else row("--levels", levels, "1" if intensity_measure.unit == "-" else intensity_measure.unit)[0]
+    )
     with bar("histories", quiet=as_json) as progress:
-        found, others = with_models(
-            lambda one: compare_code_methods(
-                one.bodies, one.motions, one.restitution, levels=at, im=wanted, threads=threads,
-                progress=progress, **one.stated,
+        result, others = with_models(
+            lambda study: compare_code_methods(
+                study.bodies, study.motions, study.restitution, levels=level_values, im=intensity_measure, threads=threads,
+                progress=progress, **study.stated,
             ), problem,
         )  # fmt: skip
-    found = replace(found, bodies=_names(problem, Display(arguments.length or "m")))
-    deliver(CodesAnswer(found, others, details), exports, as_json=as_json)
+    result = replace(result, bodies=_names(problem, Display(arguments.length or "m")))
+    deliver(CodesAnswer(result, others, details), exports, as_json=as_json)
 
 
 def _problem(arguments: "Arguments") -> "StudyProblem":
@@ -115,15 +119,15 @@ def _problem(arguments: "Arguments") -> "StudyProblem":
 
 
 def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
-    """Return the tables of the bodies: a file, or blocks of every width and height that was typed."""
-    given = arguments.options
+    """Return the tables of the bodies: a file, or blocks of all given widths and heights."""
+    typed_options = arguments.options
     widths, heights, ratios = (
-        None if (text := given[name]) is None else row(f"--{name}", text, "1")[0].tolist()
+        None if (text := typed_options[name]) is None else row(f"--{name}", text, "1")[0].tolist()
         for name in ("width", "height", "slenderness")
     )
     if ratios is not None:
         if widths is not None or heights is None:
-            raise InvalidValueError("--slenderness goes with --height, in place of --width")
+            raise InvalidValueError("--slenderness needs --height and replaces --width")
         if min(ratios) <= 0.0:
             raise InvalidValueError(
                 parameter="--slenderness", allowed="above 0", value=min(ratios), hint="height over width"
@@ -132,16 +136,16 @@ def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
     widths, heights = widths or [None], heights or [None]
     if len(widths) != len(heights) and 1 not in {len(widths), len(heights)}:
         raise InvalidValueError(
-            "--width and --height must be as many, or one, got {widths} and {heights}", widths=len(widths),
-            heights=len(heights),
+            "--width and --height must have the same number of values, or one value; got {widths} and {heights}",
+            widths=len(widths), heights=len(heights),
         )  # fmt: skip
-    most = max(len(widths), len(heights))
+    count = max(len(widths), len(heights))
     tables = []
-    for k in range(most):
+    for k in range(count):
         size = {"width": widths[k % len(widths)], "height": heights[k % len(heights)]}
-        arguments.options = {**given, **size}
+        arguments.options = {**typed_options, **size}
         tables.append(arguments.body_table(file))
-    arguments.options = given
+    arguments.options = typed_options
     return tables
 
 
@@ -156,43 +160,43 @@ def _names(problem: "StudyProblem", display: Display) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class CodesAnswer:
-    """What methods say, and what histories show."""
+    """Code methods compared with time histories."""
 
-    found: "CodeComparison"
+    result: "CodeComparison"
     others: dict[str, Any]  # of the compared models
     details: bool = False
 
     def answer(self) -> Answer:
-        """Return what each method gives for each body."""
+        """Return the result of each method for each body, and the excluded methods."""
         from rocking.studies.code_methods import LEFT_OUT
 
-        models = model_facts(self.found.restitution, self.others, _overturned)
-        return self.found.answer() | {"left_out": LEFT_OUT, **models}
+        models = model_facts(self.result.restitution, self.others, _overturned)
+        return self.result.answer() | {"left_out": LEFT_OUT, **models}
 
     def show(self, page: Page) -> None:
         from rocking.cli.study import source_lines
 
-        found = self.found
-        fell, many = found.overturned[~(found.overturned != found.overturned)], len(found.motions)
-        motions = found.motions[0] if many == 1 else f"{many}"
+        result = self.result
+        outcomes, count = result.overturned[result.overturned == result.overturned], len(result.motions)  # not NaN
+        motions = result.motions[0] if count == 1 else f"{count}"
         page.facts([
-            ("bodies", "; ".join(found.bodies)), ("motions", f"{motions}, {'; '.join(found.levels)}"),
-            *source_lines(found.sources),
-            ("histories", f"{int(fell.sum())} of {fell.size} overturned, restitution {found.restitution}"),
+            ("bodies", "; ".join(result.bodies)), ("motions", f"{motions}, {'; '.join(result.levels)}"),
+            *source_lines(result.sources),
+            ("histories", f"{int(outcomes.sum())} of {outcomes.size} overturned, restitution {result.restitution}"),
         ])  # fmt: skip
         page.line()
-        rows = [_row(found, one.name) for one in found.methods]
+        rows = [_row(result, method.name) for method in result.methods]
         page.rows(rows, _SHOWN, Display(own=_OWN), most=len(rows), dense=False)
-        if self.details and len(found.bodies) * len(found.levels) > 1:
-            page.line("\nOverturned of those that are rated safe", "bold")
-            names = [one.name for one in found.methods]
-            for j, level in enumerate(found.levels):
+        if self.details and len(result.bodies) * len(result.levels) > 1:
+            page.line("\nFraction with overturning of the histories rated safe", "bold")
+            names = [method.name for method in result.methods]
+            for j, level in enumerate(result.levels):
                 page.line(level)
                 page.table(("body", *(name.replace("-", " ") for name in names)), [
-                    (body, *(_share(found.called_safe(name, k, j)) for name in names))
-                    for k, body in enumerate(found.bodies)
+                    (body, *(_share(result.called_safe(name, k, j)) for name in names))
+                    for k, body in enumerate(result.bodies)
                 ], ("body",))  # fmt: skip
-        show_limits(page, found.methods, found)
+        show_limits(page, result.methods, result)
         page.line()
         page.line("capacity/truth above 1: unsafe")
         if self.details:
@@ -200,30 +204,30 @@ class CodesAnswer:
             page.line("D/C: median of demand / capacity")
             page.line("capacity/truth: median of capacity / smallest intensity with overturning")
             page.line("scatter: half of the logarithm of the 84 % quantile / the 16 % quantile of capacity/truth")
-        if found.asymmetric.any():
+        if result.asymmetric.any():
             page.line("Asymmetric bodies: the weaker side governs, in methods and histories.")
-        show_models(page, self.answer(), Display(), found.restitution, _overturned(found))
+        show_models(page, self.answer(), Display(), result.restitution, _overturned(result))
         if not self.details:
             page.line("Definitions and single bodies: --details    Sources and domains: --json")
 
 
-def _overturned(found: "CodeComparison") -> dict[str, Any]:
-    known = found.overturned == found.overturned  # NaN where there is no result
-    return overturned(np.where(known, found.overturned - 1.0, -3.0))
+def _overturned(result: "CodeComparison") -> dict[str, Any]:
+    is_computed = result.overturned == result.overturned  # NaN: no result
+    return overturned(np.where(is_computed, result.overturned - 1.0, -3.0))
 
 
-def show_limits(page: Page, methods: "Iterable[CodeMethod]", found: "BodyAssessment | CodeComparison") -> None:
-    """Write the reasons of empty rows, and the treatment of vertical motion by each method."""
+def show_limits(page: Page, methods: "Iterable[CodeMethod]", result: "BodyAssessment | CodeComparison") -> None:
+    """Write the reasons for empty rows, and the treatment of vertical motion by each method."""
     from rocking.studies.code_methods.methods import VerticalMotion
 
-    reasons = {name: reason for name, reason in found.outside.items() if reason}
+    reasons = {name: reason for name, reason in result.outside.items() if reason}
     if reasons:
         page.line()
     for name, reason in reasons.items():
         page.line(f"{name}: outside its domain: {reason}")
-    if not found.vertical:
+    if not result.vertical:
         return
-    page.line(f"\nVertical motion: in {found.vertical} of {len(found.motions)} motions.")
+    page.line(f"\nVertical motion: in {result.vertical} of {len(result.motions)} motions.")
     for method in methods:
         treatment = f"{method.name} {method.vertical_motion}."
         if method.vertical is VerticalMotion.NOT_CONSIDERED:
@@ -232,21 +236,23 @@ def show_limits(page: Page, methods: "Iterable[CodeMethod]", found: "BodyAssessm
             page.line(treatment)
 
 
-def _row(found: "CodeComparison", name: str) -> dict[str, Any]:
-    called, bias = found.called_safe(name), found.bias(name)
-    if not called.total:
+def _row(result: "CodeComparison", name: str) -> dict[str, Any]:
+    rating, bias = result.called_safe(name), result.bias(name)
+    if not rating.total:
         return {"method": name, "safe": "outside"}
-    fell = bias.count - bias.censored
-    none = "none overturned" if bias.count else None
-    median: float | str | None = (bias.median if bias.median > 0.0 else "few overturned") if fell else none
+    overturned = bias.count - bias.censored
+    no_overturning = "none overturned" if bias.count else None
+    median: float | str | None = (
+        (bias.median if bias.median > 0.0 else "few overturned") if overturned else no_overturning
+    )
     return {
         "method": name,
-        "safe": called.safe == 1 if called.total == 1 else percent(round(called.safe / called.total, 3)),
-        "limit_ratio": called.ratio, "share": called.share, "share_95": called.interval if called.safe else None,
+        "safe": rating.safe == 1 if rating.total == 1 else percent(round(rating.safe / rating.total, 3)),
+        "limit_ratio": rating.ratio, "share": rating.share, "share_95": rating.interval if rating.safe else None,
         "median": median, "median_95": bias.interval if isinstance(median, float) else None,
-        "scatter": bias.scatter if fell else None,
+        "scatter": bias.scatter if overturned else None,
     }  # fmt: skip
 
 
-def _share(called: "CalledSafe") -> str:
-    return percent(round(called.share, 3)) if called.safe else "-"
+def _share(rating: "CalledSafe") -> str:
+    return percent(round(rating.share, 3)) if rating.safe else "-"

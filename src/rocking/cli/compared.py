@@ -1,4 +1,4 @@
-"""The default restitution model compared with others: the same study with each of them, as a table."""
+"""Comparison of the default restitution model with other models: the study repeated with each model."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping
@@ -25,7 +25,7 @@ _OWN = {
 
 
 def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem") -> tuple[Any, dict[str, Any]]:
-    """Return a result, and the results of the models that the default is compared with, or their errors, by model."""
+    """Return the result of a study, and the results or errors of the compared models by name."""
     others: dict[str, Any] = {}
     result = compute(problem)
     for name, other in problem.with_compared_models.items():
@@ -37,32 +37,35 @@ def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem
 
 
 def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any = None) -> dict[str, Any]:
-    """Return the model of the result of a body with the reason for it, and the values that other models give."""
-    given = {name: {"error": str(one)} if isinstance(one, RockingError) else facts(one) for name, one in others.items()}
-    return {"headline": headline(label, in_space=in_space(body)), "other_models": given}
+    """Return the sentence on the restitution model of a result, and the values of the compared models."""
+    values_of_models = {
+        name: {"error": str(result)} if isinstance(result, RockingError) else facts(result)
+        for name, result in others.items()
+    }
+    return {"headline": headline(label, in_space=in_space(body)), "other_models": values_of_models}
 
 
 def show_models(page: Page, answer: Answer, display: Display, label: str, own: dict[str, Any]) -> None:
-    """Write the results of all models as a table, and the model of the result; own: the values of that model."""
+    """Write a table of all models, and the sentence on the model of the result; own: values of that model."""
     page.line()
-    given = answer["other_models"]
-    if given:
-        rows = {label: own, **{name: values for name, values in given.items() if "error" not in values}}
+    other_models = answer["other_models"]
+    if other_models:
+        rows = {label: own, **{name: values for name, values in other_models.items() if "error" not in values}}
         page.line("Compare restitution models", "bold")
         shown = replace(display, own={**display.own, **_OWN})
         page.rows([{"model": name, **values} for name, values in rows.items()], (), shown)
-        page.warn(f"{name}: {values['error']}" for name, values in given.items() if "error" in values)
+        page.warn(f"{name}: {values['error']}" for name, values in other_models.items() if "error" in values)
     page.line(answer["headline"])
 
 
 def overturned(modes: "np.ndarray") -> dict[str, Any]:
-    """Return the number and the fraction of histories with overturning, of those that could be computed."""
+    """Return the number and the fraction of the computed histories with overturning."""
     computed, overturned = int((modes > -3).sum()), int((modes >= 0).sum())
     return {"overturned": overturned, "share": overturned / computed if computed else None}
 
 
 def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[str]]:
-    """Return groups of models: those shown alone, then the others by outcome."""
+    """Return groups of models: single models in `shown`, then the other models by outcome."""
     others: dict[str, list[str]] = {}
     for label, outcome in outcomes.items():
         if label not in shown:
@@ -71,12 +74,12 @@ def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[st
 
 
 def spanned(display: Display, name: str, values: Iterable[float | None]) -> str:
-    """Return the smallest and largest value of models; one number if both print the same."""
+    """Return the smallest and largest value of models; one number if both have the same text."""
     numbers = [value for value in values if value is not None and not math.isnan(value)]
     ends = (min(numbers), max(numbers)) if numbers else (None,)
     return "-".join(dict.fromkeys(display.cell(name, end) for end in ends))
 
 
 def by_foot(display: Display, left: Iterable[float], right: Iterable[float]) -> str:
-    """Return coefficients of restitution at the left and right foot; one entry if both print the same."""
+    """Return coefficients of restitution of the left and right foot; one entry if both have the same text."""
     return " / ".join(dict.fromkeys(spanned(display, "coefficient", foot) for foot in (left, right)))

@@ -52,8 +52,8 @@ def equilibria(
         raise InvalidValueError(
             "equilibria are those of a body in space: give a mesh, a file with [[solid.part]], or a block or a section"
         )
-    found = subject.equilibria(min_barrier=min_barrier)
-    deliver(EquilibriaAnswer(subject, found, arguments.length or "m"), exports, as_json=as_json)
+    result = subject.equilibria(min_barrier=min_barrier)
+    deliver(EquilibriaAnswer(subject, result, arguments.length or "m"), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
@@ -61,36 +61,36 @@ class EquilibriaAnswer:
     """All ways in which a solid can stand, and the one in which it does."""
 
     solid: Solid
-    found: Equilibria
+    equilibria: Equilibria
     length: str  # unit of lengths
 
     @cached_property
     def pose(self) -> StablePose:
         """The pose into which it settles from its way up."""
-        return self.found.settling((0.0, 0.0, -1.0))
+        return self.equilibria.settling((0.0, 0.0, -1.0))
 
     @cached_property
     def bases(self) -> tuple[BaseTolerance, ...]:
         """What it stands on by tolerance."""
-        return base_tolerances(self.found, self.pose, [t for t in TOLERANCES if t < self.pose.height])
+        return base_tolerances(self.equilibria, self.pose, [t for t in TOLERANCES if t < self.pose.height])
 
     @cached_property
     def directions(self) -> AnswerRows:
         """What it takes to lift and to topple it, by azimuth."""
         turns = [2.0 * math.pi * k / DIRECTIONS for k in range(DIRECTIONS)]
-        ends = [self.found.toppled(self.pose, turn) for turn in turns]
+        ends = [self.equilibria.toppled(self.pose, turn) for turn in turns]
         return AnswerRows({
             "azimuth": turns,
-            "straight_rise": [float(self.found.barrier(self.pose, turn)) for turn in turns],
-            "lowest_rise": [float(self.found.barrier(self.pose, turn, path="lowest")) for turn in turns],
+            "straight_rise": [float(self.equilibria.barrier(self.pose, turn)) for turn in turns],
+            "lowest_rise": [float(self.equilibria.barrier(self.pose, turn, path="lowest")) for turn in turns],
             "uplift_acceleration": [float(self.pose.uplift_acceleration(turn)) for turn in turns],
             "topples_into": [None if end is None else end.number for end in ends],
         })  # fmt: skip
 
     def answer(self) -> Answer:
         """Return every way to stand, what leaves the pose that it has, and how sure its base is."""
-        found, stable = self.found, self.found.stable
-        passes = found.neighbours(self.pose)
+        equilibria, stable = self.equilibria, self.equilibria.stable
+        passes = equilibria.neighbours(self.pose)
         return Answer({
             "body": self.solid.answer(),
             "stable": AnswerRows({
@@ -101,13 +101,13 @@ class EquilibriaAnswer:
                 "barrier": [pose.barrier for pose in stable],
                 "down": [pose.down.tolist() for pose in stable],
             }),
-            "saddles": len(found.saddles),
-            "summits": len(found.summits),
-            "rings": [{"kind": r.kind, "tilt": r.tilt, "centre_height": r.height} for r in found.rings],
+            "saddles": len(equilibria.saddles),
+            "summits": len(equilibria.summits),
+            "rings": [{"kind": r.kind, "tilt": r.tilt, "centre_height": r.height} for r in equilibria.rings],
             "stands_in": self.pose.number,
             "passes": AnswerRows({
-                "topples_into": [each.end for each in passes],
-                **{name: [getattr(each, name) for each in passes] for name in ("rise", "energy", "tilt", "azimuth")},
+                "topples_into": [saddle.end for saddle in passes],
+                **{name: [getattr(saddle, name) for saddle in passes] for name in ("rise", "energy", "tilt", "azimuth")},
             }),
             "directions": self.directions,
             "base_tolerances": AnswerRows({
@@ -120,30 +120,30 @@ class EquilibriaAnswer:
                     for name in ("azimuth", "uplift_acceleration", "barrier", "energy")
                 },
             }),
-            "notes": found.notes,
+            "notes": equilibria.notes,
         })  # fmt: skip
 
     def draw(self) -> "Figure":
         from rocking.plots import equilibria_picture
 
-        return equilibria_picture(self.solid, self.pose, equilibria=self.found)
+        return equilibria_picture(self.solid, self.pose, equilibria=self.equilibria)
 
     def write_glb(self, path: Path) -> None:
         from rocking.plots.space_glb import GltfFile
 
         file = GltfFile(self.solid)
-        file.add_equilibria(self.found, self.pose)
+        file.add_equilibria(self.equilibria, self.pose)
         file.write(path)
 
     def show(self, page: Page) -> None:
-        found, number = self.found, self.pose.number
+        equilibria, number = self.equilibria, self.pose.number
         answer, display = self.answer(), Display(self.length)
         show_body(page, answer["body"], display)
         page.line()
-        ways = "one way" if len(found.stable) == 1 else f"{len(found.stable)} ways"
+        ways = "one way" if len(equilibria.stable) == 1 else f"{len(equilibria.stable)} ways"
         page.line(
-            f"It can stand in {ways}; between them lie {len(found.saddles)} saddles and {len(found.summits)} summits."
-            if found.saddles
+            f"It can stand in {ways}; between them lie {len(equilibria.saddles)} saddles and {len(equilibria.summits)} summits."
+            if equilibria.saddles
             else f"It can stand in {ways}."
         )
         for ring in answer["rings"]:
@@ -151,7 +151,7 @@ class EquilibriaAnswer:
             lean, height = display.text("tilt", ring["tilt"]), display.text("centre_height", ring["centre_height"])
             page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
         names = ("pose", "centre_height", "energy", "nearest_edge", "barrier")
-        page.rows(answer["stable"], names, display, bold={number}, most=len(found.stable))
+        page.rows(answer["stable"], names, display, bold={number}, most=len(equilibria.stable))
         page.line()
         page.line(f"It stands in pose {number}. To topple it towards a direction its centre must rise", "bold")
         page.rows(self.directions, (), display)
@@ -163,4 +163,4 @@ class EquilibriaAnswer:
             ("tolerance", "touching", "corners", "nearest_edge", "azimuth", "uplift_acceleration", "barrier"),
             display,
         )
-        page.warn(found.notes)
+        page.warn(equilibria.notes)

@@ -1,4 +1,4 @@
-"""`rocking examples`: what comes with the package, and one of it run in the current folder."""
+"""`rocking examples`: list the examples; run an example in the current folder."""
 
 import shlex
 import sys
@@ -28,48 +28,50 @@ def examples(
     as_json: Annotated[bool, typer.Option("--json", help="List as JSON; run nothing.")] = False,
 ) -> None:
     """Run `rocking examples`."""
-    known = catalogue()
+    entries = catalogue()
     if name is None or dry_run or as_json:
-        chosen = known if name is None else {name: known[checks.one_of("example", name, known)]}
-        deliver(_Listed(chosen, whole=name is None), as_json=as_json)
+        chosen = entries if name is None else {name: entries[checks.one_of("example", name, entries)]}
+        deliver(_Listed(chosen, is_complete=name is None), as_json=as_json)
         return
-    _run(known[checks.one_of("example", name, known)], context.obj, force=force)
+    _run(entries[checks.one_of("example", name, entries)], context.obj, force=force)
 
 
 @dataclass(frozen=True)
 class _Listed:
-    """Some examples; whole: as a table of all of them."""
+    """Examples; is_complete: all examples, as a table."""
 
     chosen: Mapping[str, Example]
-    whole: bool
+    is_complete: bool
 
     def answer(self) -> Answer:
-        """Return what each example writes and runs."""
+        """Return the files and commands of each example."""
         names = ("name", "kind", "title", "writes", "commands", "outputs")
-        return Answer({"examples": [{name: getattr(one, name) for name in names} for one in self.chosen.values()]})
+        return Answer(
+            {"examples": [{name: getattr(example, name) for name in names} for example in self.chosen.values()]}
+        )
 
     def show(self, page: Page) -> None:
-        if self.whole:
-            rows = [(one.name, one.kind, one.title) for one in self.chosen.values()]
-            page.table(("name", "kind", "what it is"), rows, ("name", "kind", "what it is"), whole={0, 1})
+        if self.is_complete:
+            rows = [(example.name, example.kind, example.title) for example in self.chosen.values()]
+            page.table(("name", "kind", "title"), rows, ("name", "kind", "title"), unfolded={0, 1})
             page.line("\nRun an example in this folder: rocking examples NAME. In Python: rk.examples.")
             return
-        for one in self.chosen.values():
-            page.line(f"{one.name}: {one.title}")
-            page.line(f"writes {', '.join(one.writes)}, and by its commands {', '.join(one.outputs)}")
-            for command in one.commands:
+        for example in self.chosen.values():
+            page.line(f"{example.name}: {example.title}")
+            page.line(f"files: {', '.join(example.writes)}; files of its commands: {', '.join(example.outputs)}")
+            for command in example.commands:
                 page.line(f"$ {command}", "bold")
 
 
 def _run(chosen: Example, run: Callable[[list[str]], None], *, force: bool) -> None:
-    """Write the files and run the commands, one after the other as if they were typed; the first that fails ends it."""
+    """Write the files and run the commands in order; stop at the first failure."""
     page = Page()
-    there = [name for name in chosen.outputs if Path(name).exists()]
-    if folder := next((name for name in there if Path(name).is_dir()), None):
-        raise InvalidValueError("a folder of that name is there already", hint="take another folder").at(str(folder))
-    if there and not force:
+    existing = [name for name in chosen.outputs if Path(name).exists()]
+    if folder := next((name for name in existing if Path(name).is_dir()), None):
+        raise InvalidValueError("a folder of this name already exists", hint="use another folder").at(str(folder))
+    if existing and not force:
         raise InvalidValueError(
-            "{files}: there already", files=", ".join(there), hint="take another folder, or --force"
+            "{files}: already exists", files=", ".join(existing), hint="use another folder, or --force"
         )
     written = write(chosen.name, force=force)
     page.line(f"{chosen.name}: {chosen.title}\n")

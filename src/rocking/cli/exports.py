@@ -12,31 +12,31 @@ PICTURES = (".png", ".svg", ".pdf")
 
 @dataclass(frozen=True)
 class Export:
-    """One kind of file that an answer can be written as."""
+    """A kind of output file of a result."""
 
     endings: tuple[str, ...]
-    write: Callable[[Any, Path], Any]  # takes the answer and the file
-    needs: str = ""  # module without which it cannot be written
+    write: Callable[[Any, Path], Any]  # arguments: answer, path
+    needs: str = ""  # required module
 
 
 @dataclass(frozen=True)
 class Exports:
-    """Files that were asked for, by the name of their kind."""
+    """Requested output files by kind."""
 
     kinds: dict[str, Export]
     files: tuple[tuple[str, Path], ...]
 
     @classmethod
     def of(cls, texts: Sequence[str] | None, kinds: dict[str, Export]) -> "Exports":
-        """Return what `--output` says, refusing what could not be written before anything is computed."""
+        """Return the files of `--output`; refuse files that could not be written, before the computation."""
         files = tuple(_file(text, kinds) for text in texts or ())
         paths = [path for _, path in files]
-        if twice := next((path for path in paths if paths.count(path) > 1), None):
-            raise InvalidValueError("{parameter} {file} is given twice", parameter="--output", file=twice)
+        if duplicate := next((path for path in paths if paths.count(path) > 1), None):
+            raise InvalidValueError("{parameter} {file} is given twice", parameter="--output", file=duplicate)
         for name, path in files:
             if not path.parent.is_dir():
                 raise InvalidValueError(
-                    "no folder {folder!r} to write {file!r} into", folder=str(path.parent), file=path.name
+                    "cannot write {file!r}: folder {folder!r} does not exist", folder=str(path.parent), file=path.name
                 )
             if kinds[name].needs:
                 from rocking.errors import extra
@@ -46,69 +46,69 @@ class Exports:
 
     @property
     def names(self) -> set[str]:
-        """The kinds that were asked for."""
+        """The requested kinds of files."""
         return {name for name, _ in self.files}
 
-    def spare(self, *words: str | Path) -> None:
-        """Refuse to write over what an answer is made from: files, as they were typed, such as x=FILE#COMPONENT."""
-        names = [name for word in map(str, words) for name in (word, word.partition("=")[2])]
-        read = {Path(part).resolve() for name in names for part in (name, name.rpartition("#")[0]) if part}
-        if over := next((path for _, path in self.files if path.resolve() in read), None):
+    def spare(self, *sources: str | Path) -> None:
+        """Refuse to overwrite an input file; sources: files as typed, such as x=FILE#COMPONENT."""
+        names = [name for word in map(str, sources) for name in (word, word.partition("=")[2])]
+        read = {Path(source).resolve() for name in names for source in (name, name.rpartition("#")[0]) if source}
+        if overwritten := next((path for _, path in self.files if path.resolve() in read), None):
             raise InvalidValueError(
-                "{parameter} {file} is what is read, and would be written over", parameter="--output", file=over,
-                hint="take another name",
+                "{parameter} {file} would overwrite an input file", parameter="--output", file=overwritten,
+                hint="use another name",
             )  # fmt: skip
 
     def write(self, answer: Any) -> list[Path]:
-        """Write every file; return them."""
+        """Write all files; return their paths."""
         for name, path in self.files:
             try:
                 self.kinds[name].write(answer, path)
             except MissingExtraError:
                 raise
-            except ImportError as error:  # some libraries only notice when they write that one of theirs is not there
+            except ImportError as error:  # some libraries detect a missing module only while they write
                 raise MissingExtraError("cannot write {path}: {reason}", path=path, reason=str(error)) from error
         return [path for _, path in self.files]
 
 
 def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
-    name, equals, rest = text.partition("=")
+    name, equals, file = text.partition("=")
     if equals and name in kinds:
-        path = Path(rest)
+        path = Path(file)
         if path.suffix.lower() not in kinds[name].endings:
             raise InvalidValueError(
-                "{content} is {endings}, got {file!r:.60}", content=name, endings=_or(kinds[name].endings),
+                "{content} must be {endings}, got {file!r:.60}", content=name, endings=_or(kinds[name].endings),
                 file=path.name,
             )  # fmt: skip
         return name, path
     path = Path(text)
-    chosen = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
-    if chosen is None:
+    kind_name = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
+    if kind_name is None:
         raise InvalidValueError(
-            "{parameter} {file!r:.60}: by its ending a file is {contents}", parameter="--output", file=path.name,
+            "{parameter} {file!r:.60}: unknown extension; files: {contents}", parameter="--output", file=path.name,
             contents=_possible(kinds),
         )  # fmt: skip
-    return chosen, path
+    return kind_name, path
 
 
 def _possible(kinds: dict[str, Export]) -> str:
-    seen: set[str] = set()
+    extensions: set[str] = set()
     parts = []
     for name, export in kinds.items():
-        prefix = f"{name}=FILE with " if seen & set(export.endings) else ""
+        prefix = f"{name}=FILE with " if extensions & set(export.endings) else ""
         parts.append(f"{name} ({prefix}{_or(export.endings)})")
-        seen |= set(export.endings)
+        extensions |= set(export.endings)
     return ", ".join(parts)
 
 
 def described(kinds: dict[str, Export]) -> str:
     """Return the kinds of files, for the help of `--output`."""
     endings = dict.fromkeys(ending for export in kinds.values() for ending in export.endings)
-    seen: set[str] = set()
+    extensions: set[str] = set()
     named = []
     for name, export in kinds.items():
-        named += [f"{name}=FILE"] if seen & set(export.endings) else []
-        seen |= set(export.endings)
+        named += [f"{name}=FILE"] if extensions & set(export.endings) else []
+        extensions |= set(export.endings)
     also = f"; or {', '.join(named)}" if named else ""
     return f"File: {', '.join(endings)}{also}; repeatable."
 
@@ -127,28 +127,28 @@ def draw(answer: Any, path: Path) -> None:
 def _report(answer: Any, path: Path) -> None:
     from rocking.reports import report
 
-    report(answer.found, path, name=getattr(answer, "name", ""), **getattr(answer, "signed", {}))
+    report(answer.result, path, name=getattr(answer, "name", ""), **getattr(answer, "signed", {}))
 
 
 DRAWN = Export(PICTURES, draw, "matplotlib")
-# of answers whose `found` has a report, and knows what its files hold (`rocking.exported`)
+# for results with a report and exported tables (`rocking.exported`)
 REPORTED = {
     "picture": Export((".png", ".svg"), draw, "matplotlib"),
     "report": Export((".pdf", ".html"), _report, "matplotlib"),
 }
-CSV = Export((".csv",), lambda answer, path: answer.found.to_csv(path))
-NETCDF = Export((".nc",), lambda answer, path: answer.found.to_netcdf(path), "h5netcdf")
+CSV = Export((".csv",), lambda answer, path: answer.result.to_csv(path))
+NETCDF = Export((".nc",), lambda answer, path: answer.result.to_netcdf(path), "h5netcdf")
 
 
 def write_dataset(dataset: Any, path: Path) -> None:
-    """Write an `xarray.Dataset` by the ending of a file: as netCDF, or with all its values in rows as CSV."""
+    """Write an `xarray.Dataset` as netCDF, or as CSV with one row per cell, depending on the extension."""
     from rocking.quantities import QUANTITIES
     from rocking.tables import Column, Table, to_csv, to_netcdf
 
     if path.suffix.lower() == ".nc":
         to_netcdf(dataset, path)
         return
-    dataset = dataset.drop_dims("point", errors="ignore")  # points of a refined map have no row
+    dataset = dataset.drop_dims("point", errors="ignore")  # points of a refined map are not in the CSV file
     over = dataset["mode"]
     names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
@@ -163,12 +163,12 @@ def _write_dataset(answer: Any, path: Path) -> None:
     write_dataset(answer.dataset, path)
 
 
-# of answers that are a dataset
+# for results that are a dataset
 DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf": Export((".nc",), _write_dataset)}
 
 
 def write_records(path: Path, records: list[dict[str, Any]]) -> None:
-    """Write records of the same keys as CSV."""
+    """Write records with equal keys as CSV."""
     from rocking.quantities import quantity
     from rocking.tables import Column, Table, text_array, to_csv
 

@@ -1,4 +1,4 @@
-"""`rocking fragility`: how likely a body is to rock or to overturn at a level of shaking."""
+"""`rocking fragility`: probability of rocking and overturning at each intensity level."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 ANALYSES = ("stripes", "cloud", "incremental")
-COUNT, SEED = 100, 1  # what serves where nobody says otherwise
-MOST_MOTIONS = 5000  # all of them are held in memory
-MOST_IN_PICTURE = 6  # restitutions that can be told apart in a picture
+COUNT, SEED = 100, 1  # default synthetic motions
+MOST_MOTIONS = 5000  # all motions are kept in memory
+MOST_IN_PICTURE = 6  # restitution models distinguishable in a picture
 
 
 def _csv(answer: "FragilityAnswer", path: Path) -> None:
@@ -31,7 +31,7 @@ def _csv(answer: "FragilityAnswer", path: Path) -> None:
 
 
 def _of_curves(writer: str, *more: str) -> Any:
-    """Return what writes the curves of one restitution; they cannot be without a curve."""
+    """Return the function that writes the curves of one restitution model."""
 
     def write(answer: "FragilityAnswer", path: Path) -> None:
         from rocking.studies import fragility
@@ -52,7 +52,7 @@ EXPORTS = {
     "netcdf": Export((".nc",), _of_curves("to_netcdf"), "h5netcdf"),
 }
 CURVES = ("p58", "pelicun", "nrml", "excel", "mat", "netcdf")
-"""Files of the curves of one restitution."""
+"""Files that contain the curves of one restitution model."""
 
 
 @options.takes(
@@ -127,17 +127,17 @@ def fragility(
     with bar("histories", histories_in(problem, compared=True), quiet=as_json) as progress:
         answer = FragilityAnswer.of(problem, progress, threads, written=written, length=length or "m")
     answer.name, answer.crossing_curves, answer.details = name, crossing_curves, details
-    # the numbers are shown even if a file cannot be made of them
+    # the result is printed even if a file cannot be written
     deliver(answer, as_json=as_json)
     if {"p58", "pelicun", "nrml"} & exports.names:
-        answer.check_crossing()  # before the first file is written
+        answer.check_crossing()
     for path in exports.write(answer):
         if not as_json:
             print(f"wrote {path}")
 
 
 def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
-    """Return the table [fragility], and the unit that levels were written in, in which medians are printed."""
+    """Return the table [fragility], and the unit of the given levels, in which medians are printed."""
     from rocking import checks
     from rocking.motions.intensity import measure as measure_of
     from rocking.studies.fragility.subject import checked_levels, limit_states_of
@@ -148,47 +148,50 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     im = arguments.table("fragility", {"im": arguments.options["im"]}, keys={"im"})
     if not isinstance(im["im"], str):
         raise InvalidValueError(parameter="fragility.im", allowed="text", value=im["im"])
-    wanted = measure_of(im["im"])
+    intensity_measure = measure_of(im["im"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
         raise InvalidValueError(
-            "several --restitution are compared by --analysis stripes, not by {analysis}", analysis=kind
+            "--analysis {analysis} accepts one --restitution; use --analysis stripes for several", analysis=kind
         )
     own: dict[str, Any] = {**im, "limit_states": _states(states)}
     limit_states_of(tuple(own["limit_states"]))
     if scale is not None:
         if kind != "cloud":
             raise InvalidValueError(
-                "{parameter} is for --analysis cloud: {analysis} brings every motion to the levels",
+                "{parameter} is for --analysis cloud; {analysis} scales every motion to the levels",
                 parameter="--scale", analysis=kind,
             )  # fmt: skip
         own["scale"] = scale
-    written = "g" if wanted.name == "pga" else ""
+    written = "g" if intensity_measure.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:
-            raise InvalidValueError("--levels is not for --analysis cloud, which takes the motions as they are")
-    elif wanted.power == 0:
+            raise InvalidValueError("--levels is not for --analysis cloud, which does not scale the motions")
+    elif intensity_measure.power == 0:
         raise InvalidValueError(
-            "no factor on a motion changes {measure}: take it with --analysis cloud", measure=wanted.name
+            "{measure} does not change with the scale factor of a motion: use --analysis cloud",
+            measure=intensity_measure.name,
         )
     elif levels is not None:
-        unit = "1" if wanted.unit == "-" else wanted.unit
+        unit = "1" if intensity_measure.unit == "-" else intensity_measure.unit
         own["levels"], written = values_table("--levels", levels, unit)
-        checked_levels("--levels", row("--levels", levels, unit)[0], wanted.unit)
-    elif wanted.uplift is None and "levels" not in sets:
+        checked_levels("--levels", row("--levels", levels, unit)[0], intensity_measure.unit)
+    elif intensity_measure.uplift is None and "levels" not in sets:
         raise InvalidValueError(
-            "which levels of {measure}? Give --levels FIRST:LAST:COUNT in {unit}", measure=wanted.name, unit=wanted.unit
+            "No intensity levels. Give --levels FIRST:LAST:COUNT of {measure} in {unit}",
+            measure=intensity_measure.name,
+            unit=intensity_measure.unit,
         )
     return arguments.table("fragility", own), written
 
 
 def _states(text: str) -> list[float | str]:
-    """Return limit states: rotations over alpha as of every option of numbers, and names."""
+    """Return limit states: rotations / slenderness angle [-], then names."""
     from rocking.studies.fragility.subject import NAMED
 
-    words = [word.strip() for word in text.split(",")]
-    names, numbers = [word for word in words if word in NAMED], [word for word in words if word not in NAMED]
-    between = row("--limit-states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
-    return [*between, *names]
+    entries = [entry.strip() for entry in text.split(",")]
+    names, numbers = [entry for entry in entries if entry in NAMED], [entry for entry in entries if entry not in NAMED]
+    rotations = row("--limit-states", ",".join(numbers), "1")[0].tolist() if numbers or not names else []
+    return [*rotations, *names]
 
 
 def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
@@ -199,9 +202,9 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     count = motions[0].get("count")
     if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
         raise InvalidValueError(
-            parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="rocking campaign takes more"
+            parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="use rocking campaign for more"
         )
-    if kind != "cloud" and "levels" not in own:  # what lifts the body decides on them
+    if kind != "cloud" and "levels" not in own:  # defaults depend on the uplift acceleration
         bare = {key: own[key] for key in ("im", "limit_states")}
         own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
     return of_body(arguments, kind, own, restitution, motions)
@@ -210,21 +213,21 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
 def _usual_levels(problem: "StudyProblem") -> list[float]:
     from rocking.studies.fragility.question import default_levels
 
-    levels: list[float] = default_levels(problem.document.analysis(problem, problem.restitution).subject).tolist()
-    return levels
+    default: list[float] = default_levels(problem.document.analysis(problem, problem.restitution).subject).tolist()
+    return default
 
 
 def _check(problem: "StudyProblem", exports: Exports) -> None:
-    """Refuse, before anything is computed, what could not be written."""
+    """Refuse files that could not be written, before the computation."""
     several = len(problem.restitutions)
     if (curves := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
         raise InvalidValueError(
-            "{parameter} {files} holds the curves of one --restitution", parameter="--output", files=", ".join(curves),
-            hint="csv=FILE holds several",
+            "{parameter} {files} accepts the curves of one --restitution", parameter="--output",
+            files=", ".join(curves), hint="use csv=FILE for several",
         )  # fmt: skip
     if "picture" in exports.names and several > MOST_IN_PICTURE:
         raise InvalidValueError(
-            "a picture holds {limit} --restitution at most, got {count}", limit=MOST_IN_PICTURE, count=several
+            "a picture accepts at most {limit} --restitution, got {count}", limit=MOST_IN_PICTURE, count=several
         )
     if "nrml" in exports.names:
         from rocking.studies.fragility.export import intensity_type

@@ -1,4 +1,4 @@
-"""What `rocking fragility` shows and writes."""
+"""Result of `rocking fragility` on the terminal, as JSON and in files."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -31,9 +31,9 @@ class FragilityAnswer:
     """The analyses of one body, by restitution."""
 
     problem: "StudyProblem"
-    results: dict[str, Any]  # by label; the first is that of the files of curves
-    compared: Any  # with several restitutions, what differs
-    written: str  # unit that the levels were written in, empty if none; medians are printed in it
+    results: dict[str, Any]  # by label; files of curves contain the first
+    compared: Any  # comparison of several restitution models
+    written: str  # unit of the given levels and of printed medians, empty if none
     length: str  # unit of lengths
     name: str | None = None  # of the body, in files
     crossing_curves: Any = "keep-uplift"  # treatment of curves that cross
@@ -45,7 +45,7 @@ class FragilityAnswer:
         cls, problem: "StudyProblem", progress: Any, threads: int | None, *, written: str, length: str
     ) -> "FragilityAnswer":
         """Compute an analysis."""
-        analysis, others = with_models(lambda one: one.answer(progress, threads), problem)
+        analysis, others = with_models(lambda study: study.answer(progress, threads), problem)
         several = len(problem.restitutions) > 1
         results = analysis.results if several else {next(iter(problem.restitutions)): analysis}
         return cls(problem, results, analysis if several else None, written, length, others=others)
@@ -62,7 +62,7 @@ class FragilityAnswer:
 
     @property
     def unit(self) -> tuple[str, float]:
-        """Unit that the levels were written in, that of the measure if in none, and its size."""
+        """Unit of the given levels, by default that of the measure, and its size in the unit of the measure."""
         from rocking.conventions import UNITS
 
         unit = self.first.subject.measure.unit
@@ -70,7 +70,7 @@ class FragilityAnswer:
 
     @cached_property
     def curves(self) -> "FragilityModel":
-        """The curves, as files contain them and as they are shown."""
+        """The curves in files and on the terminal."""
         from rocking.studies.fragility.curves import model_of
 
         name = self.name or type(self.problem.bodies[0]).__name__.lower()
@@ -78,19 +78,19 @@ class FragilityAnswer:
 
     @cached_property
     def shown(self) -> "FragilityModel | None":
-        """The curves that are shown in place of those of each state alone; None where there are none."""
+        """The joint curves of all limit states, which replace separate curves; None without joint curves."""
         from rocking.studies.fragility.curves import shown_curves
 
         return None if self.compared is not None else shown_curves(self.first, self.crossing_curves)
 
     def check_crossing(self) -> None:
-        """Refuse curves that cross, of which FEMA P-58 and OpenQuake can make nothing."""
+        """Refuse crossing curves, which FEMA P-58 and OpenQuake do not accept."""
         from rocking.studies.fragility.curves import nested
 
         nested(self.curves)
 
     def counted(self) -> "Table":
-        """Return what was counted at each level, and the fitted probability beside it, empty without a curve."""
+        """Return the counts at each level with the fitted probability, empty without a curve."""
         from rocking.tables import Table
 
         measure, states = self.first.subject.measure, list(self.first.counts)
@@ -102,8 +102,8 @@ class FragilityAnswer:
             fitted = [fits[name].probability(result.levels) if name in fits else None for name in states]
             for k, level in enumerate(result.levels.tolist()):
                 reached = [int(result.counts[name][k]) for name in states]
-                likely = ["" if values is None else float(values[k]) for values in fitted]
-                rows.append((label, level, int(result.trials[k]), *reached, *likely))
+                probabilities = ["" if values is None else float(values[k]) for values in fitted]
+                rows.append((label, level, int(result.trials[k]), *reached, *probabilities))
         return Table.of_rows("counted", head, rows)
 
     def draw(self) -> Any:
@@ -130,7 +130,7 @@ class FragilityAnswer:
         return figure
 
     def answer(self) -> Answer:
-        """Return what was counted, and the curves."""
+        """Return the counts and the curves."""
         body, first, compared = self.problem.bodies[0], self.first, self.compared
         unit = "1" if first.subject.measure.unit == "-" else first.subject.measure.unit
         return Answer({
@@ -149,7 +149,7 @@ class FragilityAnswer:
             "crossing_curves": {
                 "method": self.crossing_curves, "adjusted": "" if self.shown is None else self.shown.adjusted
             },
-            "results": [_result_facts(one, self._adjusted()) for one in self.results.values()],
+            "results": [_result_facts(analysis, self._adjusted()) for analysis in self.results.values()],
             "comparison": None if compared is None else {
                 "choices": compared.summary(),
                 "verdict": compared.verdict,
@@ -162,7 +162,7 @@ class FragilityAnswer:
         from rocking.motions.pulse import Pulse
 
         table, motions = self.problem.document.motions[0], self.problem.motions
-        sources = [each.answer() for each in self.sources]
+        sources = [summary.answer() for summary in self.sources]
         if table.synthetic is not None:
             seed = table.seed or 0
             family = getattr(motions, "family", None)
@@ -175,7 +175,7 @@ class FragilityAnswer:
             "kind": kind,
             "count": len(names),
             "names": names,
-            "sources": [each.answer() for each in self.sources],
+            "sources": [summary.answer() for summary in self.sources],
         }
 
     @cached_property
@@ -192,7 +192,10 @@ class FragilityAnswer:
         display = Display(
             self.length, own=answer.quantities, units=dict.fromkeys(_MEASURED if self.written else (), self.written)
         )
-        first, labels = self.first, dict.fromkeys(one.subject.parameters.label for one in self.results.values())
+        first, labels = (
+            self.first,
+            dict.fromkeys(analysis.subject.parameters.label for analysis in self.results.values()),
+        )
         page.facts(subject_lines(self.problem, display))
         page.facts([
             ("motions", _motions_line(self._motions_facts())),
@@ -227,28 +230,30 @@ class FragilityAnswer:
         )
 
     def _curve_rows(self, first: str, result: Any) -> list[dict[str, Any]]:
-        """Return the curve of each state; without an interval where there are too few motions for one."""
+        """Return one row per limit state; rows with too few motions have no interval."""
         adjusted, rows = self._adjusted(), []
         for name, fit in result.fits.items():
             curve = _curve_facts(fit.summary(), adjusted.get(name))
-            known = name not in adjusted and fit.exists and not _too_few(fit)
-            rows.append({first: name, **{each: curve[each] for each in (_OF_CURVES if known else _OF_CURVES[:2])}})
+            has_interval = name not in adjusted and fit.exists and not _too_few(fit)
+            rows.append(
+                {first: name, **{column: curve[column] for column in (_OF_CURVES if has_interval else _OF_CURVES[:2])}}
+            )
         return rows
 
     def _adjusted(self) -> dict[str, "FragilityCurve"]:
-        """Return the curves that are not those of each state alone, by state."""
+        """Return the joint curves by limit state."""
         return {} if self.shown is None else self.shown.shared
 
     def _alone(self, display: Display) -> list[str]:
-        """Return why curves are not those of each state alone, and these with their intervals."""
+        """Return the reason for joint curves, and the separate curves with their intervals."""
         if self.shown is None or not self.shown.adjusted:
             return []
         lines = [str(self.shown.adjusted)]
         for name in self._adjusted() if self.details else ():
             summary, texts = self.first.fits[name].summary(), []
-            for each in _OF_CURVES[:2]:
-                ends = display.table([summary], [each])[-1]
-                texts.append(f"{each} {display.text(each, summary[each])}, {ends.heading} {ends.cells[0]}")
+            for quantity in _OF_CURVES[:2]:
+                ends = display.table([summary], [quantity])[-1]
+                texts.append(f"{quantity} {display.text(quantity, summary[quantity])}, {ends.heading} {ends.cells[0]}")
             lines.append(f"{name} alone: {'; '.join(texts)}")
         return lines
 
@@ -265,7 +270,7 @@ class FragilityAnswer:
         return lines
 
     def _warnings(self) -> list[str]:
-        """Return histories without a result, and what is said of the contact."""
+        """Return the number of histories without a result, and the note on contact."""
         lines = []
         for label, result in self.results.items():
             before = f"{label}, " if self.compared is not None else ""
@@ -276,22 +281,22 @@ class FragilityAnswer:
         return lines
 
     def _intervals(self) -> list[str]:
-        """Return what the intervals are, and why there are none."""
+        """Return the method of the intervals, and the reasons for missing intervals."""
         fits = [(name, fit) for result in self.results.values() for name, fit in result.fits.items() if fit.exists]
-        whys = {_too_few(fit): name for name, fit in fits}
+        reasons = {_too_few(fit): name for name, fit in fits}
         lines = [
-            f"No interval of {name}: each motion is used at every level, and there are too few motions ({why})."
-            for why, name in whys.items()
-            if why
+            f"No interval of {name}: each motion is used at every level, and there are too few motions ({reason})."
+            for reason, name in reasons.items()
+            if reason
         ]
-        if "" not in whys:
+        if "" not in reasons:
             return lines
-        how = (
+        method = (
             "parameter values consistent with the number of failures; one capacity per motion"
             if any(fit.counts.draws_capacities for _, fit in fits)
             else "bootstrap of whole motions"
         )
-        return [*lines, f"95 % intervals: {how}."]
+        return [*lines, f"95 % intervals: {method}."]
 
     def _transitions(self, analysis: IncrementalDynamicAnalysis, display: Display) -> list[str]:
         first = analysis.first_crossing_fit
@@ -338,7 +343,7 @@ def _result_facts(analysis: Any, adjusted: "dict[str, FragilityCurve]") -> dict[
 
 
 def _curve_facts(alone: dict[str, Any], curve: "FragilityCurve | None") -> dict[str, Any]:
-    """Return a curve; one that is not that of its state alone has no intervals, and the other beside it."""
+    """Return a curve; a joint curve has no intervals and includes the separate curve."""
     if curve is None:
         return {**alone, "alone": None}
     return {**alone, **curve.facts, "alone": alone}
@@ -354,12 +359,12 @@ def _motions_line(facts: dict[str, Any]) -> str:
 
 
 def _too_few(fit: "LognormalFit") -> str:
-    """Return why motions that serve at several levels are too few for an interval; empty if they are not."""
+    """Return the reason for a missing interval, too few motions used at several levels; else empty."""
     return fit.counts.scarcity if fit.counts.is_clustered else ""
 
 
 def _verdicts(result: Any) -> list[str]:
-    """Return what is to be known of curves that are not likeliest, the same words once."""
+    """Return notes on curves that are not maximum-likelihood fits, without duplicates."""
     where = "" if (unit := result.subject.measure.unit) == "-" else f" (levels in {unit})"
     return [f"{', '.join(names)}: {text}{where}" for text, names in result.verdicts.items()]
 
@@ -368,8 +373,9 @@ def _regression(analysis: Any) -> str:
     try:
         line = analysis.regression
     except InvalidValueError as error:
-        return f"No line of the rotation over the measure: {error}"
+        return f"No regression of the rotation: {error}"
     return (
-        f"Of {line.count} histories that rocked and stayed standing, ln(theta/alpha) grows with slope {line.slope:.3g} "
-        f"over ln({analysis.subject.measure.name}), scatter {line.scatter:.3g}, R squared {line.determination:.3g}."
+        f"Regression of ln(theta/alpha) on ln({analysis.subject.measure.name}) over {line.count} histories with "
+        f"rocking and without overturning: slope {line.slope:.3g}, scatter {line.scatter:.3g}, R squared "
+        f"{line.determination:.3g}."
     )

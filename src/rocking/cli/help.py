@@ -1,4 +1,4 @@
-"""Help of the commands in plain text, and the options that all commands have."""
+"""Help of the commands in plain text, and the common options of all commands."""
 
 import sys
 import time
@@ -33,7 +33,7 @@ _WIDTH = 20  # of the column of names
 
 
 class Output:
-    """Messages on standard error that the user has chosen, for the command that runs."""
+    """Selected messages on standard error for the running command."""
 
     quiet: ContextVar[bool] = ContextVar("no progress and no notes", default=False)
     verbose: ContextVar[bool] = ContextVar("version, time, and the traceback of an error", default=False)
@@ -48,7 +48,7 @@ class Output:
 
     @classmethod
     def finish(cls, error: BaseException | None = None) -> None:
-        """Write the version and the elapsed time, or the traceback of an error, if they are wanted."""
+        """Write version and elapsed time, or the traceback of an error, with --verbose."""
         if not cls.verbose.get():
             return
         if error is None:
@@ -91,7 +91,7 @@ COMMON = {
 
 
 def with_common(command: Callable[..., None]) -> Callable[..., None]:
-    """Return the command with the options that all commands have."""
+    """Return the command with the common options."""
     own = signature(command).parameters.values()
     if COMMON.keys() <= signature(command).parameters.keys():  # a group is used again
         return command
@@ -110,21 +110,24 @@ def with_common(command: Callable[..., None]) -> Callable[..., None]:
 
 
 class Command(TyperCommand):
-    """A command with help in plain text; messages name its options as they are typed."""
+    """A command with help in plain text; messages name its options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the arguments; refuse a second model of a command with one model."""
         _, _, order = self.make_parser(ctx).parse_args(list(args))
         remaining: list[str] = super().parse_args(ctx, args)
-        if sum(one.name == "restitution" and not one.multiple for one in order) > 1 and not ctx.resilient_parsing:
+        if (
+            sum(parameter.name == "restitution" and not parameter.multiple for parameter in order) > 1
+            and not ctx.resilient_parsing
+        ):
             run_in(ctx)
             raise InvalidValueError(
                 "{parameter} accepts one model here", parameter="restitution",
-                hint="simulate compares all models; map, fragility, histories and assess accept several",
+                hint="use simulate to compare all models; map, fragility, histories and assess accept several",
             )  # fmt: skip
         return remaining
 
-    def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # typer brings click with it
+    def invoke(self, context: typer.Context) -> Any:  # type: ignore[override]  # click comes with typer
         run_in(context)
         return super().invoke(context)
 
@@ -135,8 +138,8 @@ class Command(TyperCommand):
         with formatter.indentation():
             formatter.write_text(self.help or "")
         is_complete = "rocking.help_all" in ctx.meta
-        shown = [one for one in self.get_params(ctx) if not getattr(one, "hidden", False)]
-        rare = [one for one in shown if one.param_type_name == "option" and one.name in _RARE]
+        shown = [entry for entry in self.get_params(ctx) if not getattr(entry, "hidden", False)]
+        rare = [entry for entry in shown if entry.param_type_name == "option" and entry.name in _RARE]
         panels: dict[str, list[tuple[str, str]]] = {}
         for parameter in shown:
             if is_complete or parameter not in rare:

@@ -1,4 +1,4 @@
-"""`rocking histories`, and the command of every other study without a module here: options from its own table."""
+"""`rocking histories`, and commands of other studies without a module here; options come from their tables."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 COUNT, SEED = 20, 1  # synthetic motions by default
-_OF_FILES = {"body", "motion_provenance"}  # coordinates that files alone have
+_OF_FILES = {"body", "motion_provenance"}  # coordinates of files only
 _PLURALS = {"body": "bodies", "branch": "branches"}
 _BODY: options.Options = {"body": (options.BodyFile, None)}
 _MOTIONS: options.Options = {
@@ -36,7 +36,7 @@ _MOTIONS: options.Options = {
 
 
 def command_of(kind: str) -> Callable[..., None]:
-    """Return the command that computes a kind of study in memory."""
+    """Return the command of a kind of study."""
     question = questions()[kind]
     own = question.own_table()
     table: Any = question.model_fields[own].annotation
@@ -74,14 +74,14 @@ def command_of(kind: str) -> Callable[..., None]:
             else:
                 problem = problem_of(kind, arguments, motions, restitution=models_table(restitution), **{own: stated})
         with bar("histories", histories_in(problem, compared=True), quiet=as_json) as progress:
-            dataset, others = with_models(lambda one: one.answer(progress, threads), problem)
+            dataset, others = with_models(lambda study: study.answer(progress, threads), problem)
         deliver(HistoriesAnswer(problem, dataset, length or "m", others), files, as_json=as_json)
 
     return command
 
 
 def _is_option(kinds: list[Any]) -> bool:
-    """Return whether an option can state a key: it is no table, but for a row of numbers."""
+    """Return True if an option can represent a key: any type except tables; `Values` is allowed."""
     return not any(isinstance(kind, type) and issubclass(kind, BaseModel) and kind is not Values for kind in kinds)
 
 
@@ -103,7 +103,7 @@ class HistoriesAnswer:
         return self.problem.document.plot(_Finished(self.problem, self.dataset), None)
 
     def answer(self) -> Answer:
-        """Return every history, and the share of each mode."""
+        """Return every history, and the fraction of each mode."""
         from rocking.motions.summary import summaries_of
 
         dataset, problem = self.dataset, self.problem
@@ -157,7 +157,7 @@ def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class _Finished:
-    """Histories as the picture of a study takes them."""
+    """Histories in the form that the picture of a study needs."""
 
     problem: "StudyProblem"
     histories: "xr.Dataset"
@@ -166,5 +166,7 @@ class _Finished:
         """Return the histories with one restitution, the first by default."""
         labels = list(self.problem.restitutions)
         label = restitution or labels[0]
-        one = self.histories.isel(restitution=labels.index(label), drop=True) if len(labels) > 1 else self.histories
-        return one.assign_attrs(restitution=label)
+        selected = (
+            self.histories.isel(restitution=labels.index(label), drop=True) if len(labels) > 1 else self.histories
+        )
+        return selected.assign_attrs(restitution=label)

@@ -1,4 +1,4 @@
-"""`rocking inventory`: which objects of a list stay standing, the worst first."""
+"""`rocking inventory`: assessment of a list of objects, in order of decreasing risk."""
 
 import sys
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MOST_PLANNED = 5
 _MOST_REASONS = 5
 NOTHING_ASSESSED = 1
-"""Exit status where the list is read and no object of it has a verdict."""
+"""Exit code if no object of the list could be assessed."""
 
 _STYLES = {"GREEN": "bold green", "AMBER": "bold yellow", "RED": "bold red"}
 
@@ -87,11 +87,11 @@ def inventory(
 
 
 def nothing_assessed(assessment: "Assessment") -> str:
-    """Return why no object of a list was assessed: the rows and reasons, and what the header was taken for."""
+    """Return a message with the rows that were not assessed and their reasons."""
     rows = assessment.not_assessed
     reasons = "; ".join(f"line {row.row}: {row.reason}" for row in rows[:_MOST_REASONS])
     more = f"; and {len(rows) - _MOST_REASONS} more lines" if len(rows) > _MOST_REASONS else ""
-    return f"{assessment.source}: no object could be assessed, no report is written; {reasons}{more}"
+    return f"{assessment.source}: no object could be assessed, no report was written; {reasons}{more}"
 
 
 def _check(targets: list[Path]) -> None:
@@ -102,12 +102,14 @@ def _check(targets: list[Path]) -> None:
             check_form(target)
             if not target.parent.is_dir():
                 raise InvalidValueError(
-                    "no folder {folder!r} to write {file!r} into", folder=str(target.parent), file=target.name
+                    "cannot write {file!r}: folder {folder!r} does not exist",
+                    folder=str(target.parent),
+                    file=target.name,
                 )
 
 
 def _write(assessment: "Assessment", targets: list[Path]) -> tuple[list[Path], list[str]]:
-    """Write the report; return the files, and what was left out for want of a library."""
+    """Write the report; return the files, and messages on files not written because a library is missing."""
     from rocking.reports.inventory_folder import write_inventory, write_inventory_file
 
     written: list[Path] = []
@@ -130,15 +132,15 @@ def _problem(context: typer.Context) -> "StudyProblem":
     options, named = arguments.options, arguments.options["motion"] or ()
     objects, values = str(options["objects"]), arguments.values(InventoryTable)
     if {"pga", "pgv"} <= values.keys():
-        raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
+        raise InvalidValueError("Give --pga or --pgv, not both; motions are scaled to one of them.")
     table = arguments.table("inventory", {**values, "objects": objects}, {"objects": objects})
     synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
     if synthetic is not None and not {"pga", "pgv"} & set(table):
-        raise InvalidValueError("how strong is the shaking? Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
+        raise InvalidValueError("No intensity level. Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
     motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
     if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
         raise InvalidValueError(
-            "{parameter} takes record files here, got the pulse {pulse!r}", parameter="--motion", pulse=pulse[:80]
+            "{parameter} accepts record files only, got the pulse {pulse!r}", parameter="--motion", pulse=pulse[:80]
         )
     tables: dict[str, Any] = {"inventory": table}
     if options["restitution"] is not None:
@@ -153,7 +155,7 @@ class InventoryAnswer:
     assessment: "Assessment"
 
     def answer(self) -> Answer:
-        """Return the ranked list, the plan of measures, and what the list rests on."""
+        """Return the ranked list, the plan of measures, and the basis of the assessment."""
         from rocking.studies.inventory.table import answer_of
 
         return answer_of(self.assessment)
@@ -188,13 +190,13 @@ class InventoryAnswer:
             page.line(f"\n{say('What to do first, any one of:')}")
             for k, entry in enumerate(plan[:_MOST_PLANNED], start=1):
                 page.line(f"{k:3}  {table.plan_words(entry, say)}")
-            if (left := len(plan) - _MOST_PLANNED) > 0:
-                page.line(f"     {say('and {count} object more', 'and {count} objects more', count=left)}")
+            if (remaining := len(plan) - _MOST_PLANNED) > 0:
+                page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
         lights = assessment.thresholds.sentences(say.code).items()
         page.line("\n" + "\n".join(f"{say(LIGHT_NAMES[light]).upper()}: {text}" for light, text in lights))
         page.line(assessment.thresholds.conventions(say.code)[0])
         if others := table.passed_over(assessment):
-            lines = "; ".join(f"{', '.join(map(str, rows))} ({why})" for why, rows in others)
+            lines = "; ".join(f"{', '.join(map(str, rows))} ({cause})" for cause, rows in others)
             page.line(say("Lines that are not objects: {lines}", lines=lines))
         if words := table.stated(assessment):
             page.line(words)

@@ -1,4 +1,4 @@
-"""`rocking map`: how a body ends over two parameters of it and its motion."""
+"""`rocking map`: outcome of a body over two parameters of the body and its motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
 
-_LINE = 1e-4  # how closely the boundary of a picture is bisected: finer than a pixel
+_LINE = 1e-4  # tolerance of the boundary in a picture, finer than a pixel
 _RESTITUTIONS = {
     "first": Quantity("first", "", "restitution", label="restitution"),
     "second": Quantity("second", "", "restitution that is compared with it", label="against"),
@@ -36,7 +36,7 @@ _CHANGES = {
     "only_first": Quantity("only_first", "1", "overturning with the first alone", label="only with the first"),
 }
 _FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
-_LAST = 3  # overturning after more impacts than that is printed together; JSON parts it
+_LAST = 3  # overturning after more impacts is one row; JSON has one entry per number
 
 _AXIS = ": NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as pga=0.1g:1g:50"
 
@@ -66,52 +66,52 @@ def map(
     from rocking.cli.study import TABLES, body_and_motion, problem_in
 
     exports = Exports.of(output, DATASET)
-    written: dict[str, str] = {}
+    typed_units: dict[str, str] = {}
     length = None
     if (problem := problem_in(context, body, "map")) is None:
         arguments = Arguments(context, *TABLES, "map")
         length = arguments.length
-        table, written = _table(arguments)
+        table, typed_units = _table(arguments)
         problem = body_and_motion(arguments, "overturning-map", table, restitution)
     with bar("histories", quiet=as_json) as progress:
         picture = "picture" in exports.names
-        maps, others = with_models(lambda one: _computed(one, progress, threads, picture=picture), problem)
+        maps, others = with_models(lambda study: _computed(study, progress, threads, picture=picture), problem)
     arrays, compared = maps
-    deliver(MapAnswer(problem, arrays, compared, written, length or "m", others), exports, as_json=as_json)
+    deliver(MapAnswer(problem, arrays, compared, typed_units, length or "m", others), exports, as_json=as_json)
 
 
 def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":
-    """Return the map with the first restitution, and, where there are several, what differs."""
+    """Return the map with the first restitution model, and the comparison of several models or None."""
     from rocking.errors import InvalidValueError
     from rocking.studies._overturning_map import MapArrays
 
     axes = problem.document.axes
     if picture and min(axis.values.size for axis in axes) < 2:
-        raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
+        raise InvalidValueError("a picture needs at least two values of --x and of --y, got one")
     result = problem.answer(progress, threads)
     if len(problem.restitutions) == 1:
         return result, None
     first = next(iter(result.datasets.values()))
-    variables = {str(name): each.to_numpy() for name, each in first.data_vars.items()}
+    variables = {str(name): values.to_numpy() for name, values in first.data_vars.items()}
     return MapArrays(axes, variables, first.attrs), result
 
 
 def _table(arguments: "Arguments") -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the table [map], and the units that axes were written in, by their name."""
+    """Return the table [map], and the given units by name of the axis."""
     from rocking.errors import InvalidValueError
 
-    axes, written = {}, {}
+    axes, typed_units = {}, {}
     for option in ("x", "y"):
         axes[option], unit = _axis(f"--{option}", arguments.options[option])
         if unit:
-            written[axes[option]["axis"]] = unit
+            typed_units[axes[option]["axis"]] = unit
     if arguments.options["restitution"] and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
-        raise InvalidValueError("--restitution is an axis of this map: leave the option out")
-    return arguments.table("map", {**arguments.values(MapTable), **axes}), written
+        raise InvalidValueError("restitution is an axis of this map: remove --restitution")
+    return arguments.table("map", {**arguments.values(MapTable), **axes}), typed_units
 
 
 def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
-    """Return an axis as its table, and the unit that its values were written in.
+    """Return the table of an axis, and the unit of the given values.
 
     >>> _axis("--x", "semi_diagonal=40cm,80cm")
     ({'axis': 'semi_diagonal', 'values': [0.4, 0.8]}, 'cm')
@@ -122,30 +122,30 @@ def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
     from rocking.studies.axis import axes
 
     name, equals, values = text.partition("=")
-    known = axes()
-    name = checks.spelling(name.strip(), known)
-    if name not in known:
-        near = checks.nearest(name, known)
+    available = axes()
+    name = checks.spelling(name.strip(), available)
+    if name not in available:
+        hint = checks.nearest(name, available)
         raise InvalidValueError(
-            "{parameter}: no axis named {axis!r:.60}; there are {names}", parameter=option, axis=name,
-            names=", ".join(sorted(known)), hint=near,
+            "{parameter}: unknown axis {axis!r:.60}; axes: {names}", parameter=option, axis=name,
+            names=", ".join(sorted(available)), hint=hint,
         )  # fmt: skip
     if not equals or not values.strip():
         raise InvalidValueError(
             "{parameter} must be {axis}=FIRST:LAST:COUNT or {axis}=A,B,C, got no values", parameter=option, axis=name
         )
-    table, written = values_table(name, values, known[name].unit)
-    return {"axis": name, **table}, written
+    table, unit = values_table(name, values, available[name].unit)
+    return {"axis": name, **table}, unit
 
 
 @dataclass(frozen=True, eq=False)
 class MapAnswer:
-    """A map with the first restitution, its safe islands, and how the restitution changes it."""
+    """A map with the first restitution model, its safe islands, and its change with the model."""
 
     problem: "StudyProblem"
-    arrays: "MapArrays"  # with the first restitution
-    compared: Any  # maps with all restitutions, where there are several
-    written: dict[str, str]  # units that axes were written in, by their name
+    arrays: "MapArrays"  # with the first restitution model
+    compared: Any  # maps with several restitution models, else None
+    written: dict[str, str]  # given units by name of the axis
     length: str  # unit of lengths
     others: dict[str, Any]  # maps of the compared models
 
@@ -161,7 +161,7 @@ class MapAnswer:
 
     @property
     def dataset(self) -> "xr.Dataset":
-        """Everything as one dataset, over ``restitution`` too where there are several."""
+        """The map as a dataset, with dimension ``restitution`` for several models."""
         if self.compared is None:
             return self.arrays.to_xarray()
         from rocking.errors import extra
@@ -169,11 +169,11 @@ class MapAnswer:
         xarray = extra("xarray", "a file of several maps")
         maps = self.compared.datasets
         over = xarray.DataArray(list(maps), dims="restitution", name="restitution")
-        whole: xr.Dataset = xarray.concat(list(maps.values()), over, combine_attrs="drop_conflicts")
-        return whole
+        combined: xr.Dataset = xarray.concat(list(maps.values()), over, combine_attrs="drop_conflicts")
+        return combined
 
     def unit(self, axis: "Axis") -> tuple[str, float]:
-        """Return the unit that an axis was written in, its own if in none, and its size."""
+        """Return the given unit of an axis, by default its own, and the size of this unit."""
         from rocking.conventions import UNITS
 
         unit = self.written.get(axis.name, "")
@@ -196,7 +196,7 @@ class MapAnswer:
         return figure
 
     def answer(self) -> Answer:
-        """Return every cell, the islands, and where overturning begins."""
+        """Return every cell, the islands, and the lowest values with overturning."""
         from rocking.cli.study import subject_values
 
         arrays, problem, islands = self.arrays, self.problem, self.islands
@@ -245,7 +245,7 @@ class MapAnswer:
         return [(a, b, self.compared.flips_between(a, b)) for a, b in combinations(self.compared.labels, 2)]
 
     def extent(self) -> dict[str, Any] | None:
-        """Return least and greatest x and y at which anything overturns, and the lowest point along y; or None."""
+        """Return the ranges of x and y with overturning, and the point of lowest y; None without overturning."""
         import numpy as np
 
         if self.arrays.points is not None:
@@ -295,10 +295,10 @@ class MapAnswer:
 
 
 def _grouped(shares: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return a row for each way to end; under long records the many late ones are one row."""
-    late, rows = [one for one in shares if one["mode"] > _LAST], [one for one in shares if one["mode"] <= _LAST]
+    """Return one row per outcome; overturning after many impacts is one row."""
+    late, rows = [row for row in shares if row["mode"] > _LAST], [row for row in shares if row["mode"] <= _LAST]
     if len(late) > 1:
-        total = {name: sum(one[name] for one in late) for name in ("count", "share")}
+        total = {name: sum(row[name] for row in late) for name in ("count", "share")}
         late = [{"mode": f"overturns after {_LAST + 1} or more impacts", **total}]
     return [*rows, *late]
 

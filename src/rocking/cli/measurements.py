@@ -70,14 +70,14 @@ class AddedAnswer:
     new: bool
 
     def answer(self) -> "Answer":
-        """Return where the measurements are."""
+        """Return the file with the measurements, and their number."""
         from rocking.answers import Answer
 
         return Answer({"file": str(self.path), "measurements": len(self.data), "new": self.new})
 
     def show(self, page: Page) -> None:
-        words = "added to your evidence" if self.new else "are in your evidence already"
-        page.line(f"{self.data!r}: {words}", "bold")
+        status = "added to the own measurements" if self.new else "already in the own measurements"
+        page.line(f"{self.data!r}: {status}", "bold")
         page.facts([("file", str(self.path)), ("next", "rocking measurements calibrate")])
 
 
@@ -106,9 +106,9 @@ class ListAnswer:
 
         sets = self.answer()["sets"]
         ranged = ("slenderness_ratio", "coefficient")
-        rows = [{**each, "set": Path(each["name"]).name, "laboratories": ", ".join(each["laboratories"]),
-                 **{name: " - ".join(Display().cell(name, end) for end in each[name]) for name in ranged}}
-                for each in sets]  # fmt: skip
+        rows = [{**entry, "set": Path(entry["name"]).name, "laboratories": ", ".join(entry["laboratories"]),
+                 **{name: " - ".join(Display().cell(name, end) for end in entry[name]) for name in ranged}}
+                for entry in sets]  # fmt: skip
         page.rows(rows, ("set", "measurements", *ranged, "laboratories"), most=len(rows))
         page.line()
         page.facts(dict.fromkeys(("source", data.source) for _, data in self.sets))
@@ -117,7 +117,7 @@ class ListAnswer:
 
 @dataclass(frozen=True)
 class CalibrationAnswer:
-    """What measurements say."""
+    """Calibration of the models with measurements."""
 
     data: "DataSet"
     league: "tuple[LeagueRow, ...]"
@@ -143,19 +143,19 @@ class CalibrationAnswer:
         page.table(head, rows, ("",))
         page.line(sentence_of(self.calibration, self.left_out))
         names = ("name", "measurements", "inside", "interval_width", "within")
-        page.rows((each.answer().values for each in self.left_out), names, most=len(self.left_out))
+        page.rows((group.answer().values for group in self.left_out), names, most=len(self.left_out))
         show_league(page, self.league, len(self.data))
         page.line()
         for sentence in verdict(self.league, self.data):
             page.line(sentence)
 
 
-def _different(words: tuple[str, ...]) -> list[str]:
-    return [word for word in dict.fromkeys(words) if word]
+def _different(names: tuple[str, ...]) -> list[str]:
+    return [name for name in dict.fromkeys(names) if name]
 
 
 def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
-    """Print how all models fare."""
+    """Print the errors of all models."""
     from rocking.answers import Display
     from rocking.quantities import QUANTITIES
 

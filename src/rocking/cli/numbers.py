@@ -1,4 +1,4 @@
-"""Numbers with units, as they are typed, and as they are printed."""
+"""Input and output of numbers with units."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from rocking.answers import Answer, Display
 
 SIDE = ("slenderness_angle", "semi_diagonal", "frequency_parameter")
-"""Quantities of a body at the head of a page."""
+"""Quantities of a body in its description."""
 
-MOST_VALUES = 100_000  # no row of values has more
+MOST_VALUES = 100_000  # of a row
 
 
 def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[dict[str, Any], str]:
-    """Return a row of values as the table of a document, and the unit in which all were written, empty if none.
+    """Return a row of values as a table of an input file, and their given unit, empty if none.
 
-    text: numbers with commas between, or FIRST:LAST:COUNT, or that with :log or :linear.
+    text: numbers separated by commas, FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or FIRST:LAST:COUNT:linear.
 
     >>> values_table("pga", "1:3:3", "m/s2")
     ({'from': 1.0, 'to': 3.0, 'count': 3, 'spacing': 'linear'}, '')
@@ -38,7 +38,7 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
         values, written = _quantities(name, text.split(","), unit)
         return {"values": values}, written
     if len(pieces) not in {3, 4} or (len(pieces) == 4 and pieces[3].strip() not in {"linear", "log"}):
-        raise InvalidValueError(parameter=name, allowed="FIRST:LAST:COUNT, or that with :log, or A,B,C", value=text)
+        raise InvalidValueError(parameter=name, allowed="FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C", value=text)
     (first, last), written = _quantities(name, pieces[:2], unit)
     if not re.fullmatch(r"\s*[0-9]{1,9}\s*", pieces[2]) or not 2 <= int(pieces[2]) <= MOST_VALUES:
         raise InvalidValueError(
@@ -47,36 +47,36 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
         )  # fmt: skip
     spacing = pieces[3].strip() if len(pieces) == 4 else spacing
     if spacing == "log" and min(first, last) <= 0.0:
-        raise InvalidValueError(parameter=name, allowed="above 0 to be spaced by equal ratios", value=text)
+        raise InvalidValueError(parameter=name, allowed="above 0 for logarithmic spacing", value=text)
     return {"from": first, "to": last, "count": int(pieces[2]), "spacing": spacing}, written
 
 
 def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
-    """Return a row of values [unit], and the unit in which all were written, empty if none."""
+    """Return a row of values [unit], and their given unit, empty if none."""
     table, written = values_table(name, text, unit, spacing)
     return Values.model_validate(table).numbers(), written
 
 
 def numbers_in(name: str, text: str) -> list[float]:
-    """Return numbers with commas between; name: the option, for the refusal."""
+    """Return numbers separated by commas; name: the option, for the error message."""
     try:
         return [float(word) for word in text.split(",")]
     except ValueError as error:
         raise InvalidValueError(
-            parameter=name, allowed="numbers with commas between, such as 0.42,0.7", value=text
+            parameter=name, allowed="numbers separated by commas, such as 0.42,0.7", value=text
         ) from error
 
 
-def value_of(field: "FieldInfo", option: str, typed: Any) -> Any:
-    """Return the value of a key of a table from what was typed for its option."""
-    if not isinstance(typed, str):
-        return typed
+def value_of(field: "FieldInfo", option: str, value: Any) -> Any:
+    """Return the value of an input-file key from the text of its option."""
+    if not isinstance(value, str):
+        return value
     kind, (_, unit) = kinds_of(field)[0], meaning_and_unit(field.description or "")
     if kind is float:
-        return checks.quantity(option, typed, unit)[0]
+        return checks.quantity(option, value, unit)[0]
     if kind is Values:
-        return values_table(option, typed, unit if unit in UNITS else "1")[0]
-    return numbers_in(option, typed) if kind == list[float] else typed
+        return values_table(option, value, unit if unit in UNITS else "1")[0]
+    return numbers_in(option, value) if kind == list[float] else value
 
 
 def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:
@@ -86,76 +86,76 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
             count=len(texts),
         )  # fmt: skip
     pairs = [checks.quantity(name, text, unit) for text in texts]
-    written = [one for _, one in pairs]
+    written = [suffix for _, suffix in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
-        why = checks.number_hint(",".join(texts))
+        hint = checks.number_hint(",".join(texts))
         raise InvalidValueError(
-            "{parameter} must have a unit at every number or at none, got {value}", parameter=name,
-            value=":".join(texts), hint=why,
+            "{parameter} must have a unit at every number or no unit, got {value}", parameter=name,
+            value=":".join(texts), hint=hint,
         )  # fmt: skip
     return [value for value, _ in pairs], written[0]
 
 
 def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
-    """Return the unit of every kind in a text such as ``mm,g``, None where none was given.
+    """Return the unit of each kind in a text such as ``mm,g``; None for a kind without a unit.
 
     >>> from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
     >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
     (('mm', 'g'), (None,))
     """
     units: list[str | None] = [None] * len(kinds)
-    for part in [] if text is None else text.split(","):
-        name = checks.one_of("--units", part.strip(), [each for kind in kinds for each in kind])
-        place = next(k for k, kind in enumerate(kinds) if name in kind)
-        if units[place] is not None:
+    for entry in [] if text is None else text.split(","):
+        name = checks.one_of("--units", entry.strip(), [unit for kind in kinds for unit in kind])
+        index = next(k for k, kind in enumerate(kinds) if name in kind)
+        if units[index] is not None:
             raise InvalidValueError(
-                "{parameter} must have one unit of a kind, got {first} and {second}", parameter="--units",
-                first=units[place], second=name,
+                "{parameter} must have one unit per quantity, got {first} and {second}", parameter="--units",
+                first=units[index], second=name,
             )  # fmt: skip
-        units[place] = name
+        units[index] = name
     return tuple(units)
 
 
 def beside_g(unit: str) -> str:
-    """Return the unit in which an acceleration is written where it stands in g too: m/s2 in place of g."""
+    """Return the unit of an acceleration that is also printed in g: m/s2 instead of g."""
     return "m/s2" if unit == "g" else unit
 
 
 def number_or_name(text: str | None) -> float | str | None:
-    """Return a coefficient where a number was typed, else the name of a model, or none."""
+    """Return a coefficient, or the name of a model, or None."""
     with suppress(TypeError, ValueError):
         return float(text or "")
     return text
 
 
-def recommendation_values(found: Any) -> dict[str, Any]:
-    """Return a recommendation for an answer; nothing where none was asked for."""
-    return {} if found is None else {"recommendation": found.answer()}
+def recommendation_values(recommendation: Any) -> dict[str, Any]:
+    """Return the values of a recommendation; empty for None."""
+    return {} if recommendation is None else {"recommendation": recommendation.answer()}
 
 
-def show_recommendation(page: Page, found: Any) -> None:
-    """Write a recommendation on a page, if there is one."""
-    if found is None:
+def show_recommendation(page: Page, recommendation: Any) -> None:
+    """Write a recommendation on a page; nothing for None."""
+    if recommendation is None:
         return
     from rocking.evidence.recommendation import LEGEND
 
-    page.line("\nWhich model to use", "bold")
-    head, rows = found.table
-    if found.judgement is not None:
-        # coefficients and intervals stand above
+    page.line("\nRecommended model", "bold")
+    head, rows = recommendation.table
+    if recommendation.judgement is not None:
+        # coefficients and intervals are in the table above
         shown = [k for k, name in enumerate(head) if name.split()[0] != "r"]
-        chosen = {k for k, row in enumerate(rows) if row[0] == found.prediction}
-        words = [[row[k] for k in shown] for row in rows]
-        page.table([head[k] for k in shown], words, ("model", "standing"), bold=chosen)
+        chosen = {k for k, row in enumerate(rows) if row[0] == recommendation.prediction}
+        cells = [[row[k] for k in shown] for row in rows]
+        page.table([head[k] for k in shown], cells, ("model", "standing"), bold=chosen)
         page.line(LEGEND, "dim")
-    for sentence in found.evidence:
+    for sentence in recommendation.evidence:
         page.line(sentence)
-    for sentence in found.advice:
+    for sentence in recommendation.advice:
         page.line(sentence, "bold")
 
 
 def body_line(body: Any, answer: "Answer", display: "Display", names: Sequence[str] = SIDE[:1]) -> str:
-    """Return size, mass and some quantities of a body in one line."""
+    """Return size, mass and the named quantities of a body in one line."""
     line = answer["name"] or "Solid" if "name" in answer else answer["kind"]
     if isinstance(body, Block):
         line += f" {display.cell('size', body.width)} x {display.text('size', body.height)}"

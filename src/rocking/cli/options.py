@@ -1,4 +1,4 @@
-"""Options of the commands; what they mean is said once, by the tables of `rocking.spec`."""
+"""Options of the commands; help texts come from the tables of `rocking.spec`."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps
@@ -42,26 +42,26 @@ def keys(
     defaults: Mapping[str, Any] = NONE,
     **more: str,
 ) -> Options:
-    """Return options of keys of a table, by their names: type, default and help are those of the fields.
+    """Return the options of keys of a table by name, with type, default and help of the fields.
 
-    kind: the type of all of them, if not that of the field; defaults: those of keys that a file must state; more: keys
-    whose help goes on after the description.
+    kind: type of all options, by default that of the field. defaults: defaults of keys without one in files.
+    more: texts appended to the help, by key.
     """
-    made = {}
+    options = {}
     for name in dict.fromkeys((*names, *more)):
         field = table.model_fields[name]
         usual = defaults.get(name) if field.default is PydanticUndefined else field.default
         usual = ",".join(map(str, usual)) if isinstance(usual, list) else usual
         option = key(table, name, more.get(name, ROW if Values in kinds_of(field) else ""), rich_help_panel=panel)
-        of_one = kind or _type_of(field)
-        made[name] = Annotated[of_one if usual is not None else of_one | None, option], usual
-    return made
+        option_type = kind or _type_of(field)
+        options[name] = Annotated[option_type if usual is not None else option_type | None, option], usual
+    return options
 
 
 def takes(*groups: Options, before: str = "sets") -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command options in front of one of its own, of which it has none yet; `Arguments` reads them."""
+    """Add options to a command in front of one of its own; `Arguments` reads the added options."""
 
-    def whole(command: Callable[..., None]) -> Callable[..., None]:
+    def with_options(command: Callable[..., None]) -> Callable[..., None]:
         own = dict(signature(command).parameters)
         added = {name: option for group in groups for name, option in group.items() if name not in own}
 
@@ -69,18 +69,21 @@ def takes(*groups: Options, before: str = "sets") -> Callable[[Callable[..., Non
         def taking(**values: Any) -> None:
             command(**{name: value for name, value in values.items() if name in own})
 
-        every = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own.values()]
-        at = list(own).index(before)
-        every[at:at] = [Parameter(n, Parameter.KEYWORD_ONLY, default=d, annotation=a) for n, (a, d) in added.items()]
-        taking.__signature__ = Signature(every)  # type: ignore[attr-defined]
+        parameters = [parameter.replace(kind=Parameter.KEYWORD_ONLY) for parameter in own.values()]
+        k = list(own).index(before)
+        parameters[k:k] = [
+            Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+            for name, (annotation, default) in added.items()
+        ]
+        taking.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
         taking.__annotations__ = {**command.__annotations__, **{n: annotation for n, (annotation, _) in added.items()}}
         return taking
 
-    return whole
+    return with_options
 
 
 def _type_of(field: "FieldInfo") -> Any:
-    """Return the type of the option of a key; text where its value has a unit, or is no single number."""
+    """Return the type of the option of a key: that of the field for a number without unit or a flag, else text."""
     kinds, (_, unit) = kinds_of(field), meaning_and_unit(field.description or "")
     return kinds[0] if len(kinds) == 1 and kinds[0] in {int, float, bool} and not UNITS.get(unit) else str
 
@@ -91,7 +94,7 @@ Units = Annotated[
     typer.Option(help="Length unit, record unit or both: mm; gal; mm,g."),
 ]
 SIZES = {**keys(BlockTable, *BLOCK_KEYS, panel=SIZE), "density": (Density, None), "units": (Units, None)}
-"""The sizes of a block, in place of a body file."""
+"""Options of the size of a block, instead of a body file."""
 SEVERAL_SIZES = keys(BlockTable, panel=SIZE, kind=str, width=": A,B,C", height=": A,B,C")
 
 
@@ -176,12 +179,12 @@ ScaledToPeak = Annotated[str | None, key(PredictTable, "pga", rich_help_panel=SH
 
 
 def count(usual: int, panel: str = SHAKING) -> Any:
-    """Return the option of how many synthetic motions there are."""
+    """Return the option of the number of synthetic motions."""
     return typer.Option(help=f"Number of synthetic motions. [default: {usual}]", rich_help_panel=panel)
 
 
 def output(kinds: dict[str, Any] | str) -> Any:
-    """Return the option `--output` of a command that writes files of some kinds, or its help in full."""
+    """Return the option `--output` of a command; kinds: kinds of its files, or the help text."""
     from rocking.cli.exports import described
 
     text = kinds if isinstance(kinds, str) else described(kinds)
@@ -189,11 +192,11 @@ def output(kinds: dict[str, Any] | str) -> Any:
 
 
 def key_of(option: str) -> str:
-    """Return how `--set` states what is no option, but a key of a motion or of the settings; empty for others.
+    """Return `--set` with the key of the motion or the settings that has the name of an option; empty without a key.
 
     >>> key_of("--gravity"), key_of("--time-step"), key_of("--colour")
     ('--set settings.gravity=VALUE', '--set motion.time_step=VALUE', '')
     """
     key = option.removeprefix("--").replace("-", "_")
     keys = {"motion": ComponentsTable.model_fields, "settings": StudySettingsTable.model_fields}
-    return next((f"--set {name}.{key}=VALUE" for name, known in keys.items() if key in known), "")
+    return next((f"--set {name}.{key}=VALUE" for name, fields in keys.items() if key in fields), "")

@@ -1,4 +1,4 @@
-"""`rocking overturning-pga`: every acceleration at which a body begins or ceases to overturn under a motion."""
+"""`rocking overturning-pga`: all intervals of PGA in which a body overturns under a motion."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.minimum_acceleration import Transitions
 
-_SPOKEN = 4  # stretches of overturning that a sentence names
+_SPOKEN = 4  # intervals of overturning in a sentence
 _SHOWN = ("peak_ground_acceleration", "uplift_ratio", "mode_below", "mode_above")
 _CLOSELY = closely(peak_ground_acceleration=".6f", uplift_acceleration=".6g")
 
 
 def _crossings(transitions: "Transitions") -> AnswerRows:
-    """Return every acceleration at which the outcome changes, and the modes below and above."""
+    """Return the accelerations at which the outcome changes, and the modes below and above."""
     below, above = (modes.tolist() for modes in transitions.modes.T)
     columns = {
         "peak_ground_acceleration": transitions.acceleration, "uplift_ratio": transitions.ratio,
@@ -78,14 +78,14 @@ def overturning_pga(
         table = arguments.table("minimum", arguments.values(MinimumTable))
         problem = body_and_motion(arguments, "minimum-acceleration", table, restitution and [restitution])
     with bar("histories", quiet=as_json) as progress:
-        transitions, others = with_models(lambda one: one.answer(progress, threads), problem)
+        transitions, others = with_models(lambda study: study.answer(progress, threads), problem)
     answer = MinimumAnswer(problem, transitions, length or "m", acceleration or "m/s2", others)
     deliver(answer, exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
 class MinimumAnswer:
-    """All accelerations at which the verdict on a body changes under a motion."""
+    """All accelerations at which the outcome of a body changes under a motion."""
 
     problem: "StudyProblem"
     transitions: "Transitions"
@@ -102,8 +102,8 @@ class MinimumAnswer:
 
     @property
     def label(self) -> str:
-        asked = self.problem.restitution
-        return COMPLEMENTARITY if asked is None else str(getattr(asked, "label", asked))
+        model = self.problem.restitution
+        return COMPLEMENTARITY if model is None else str(getattr(model, "label", model))
 
     def answer(self) -> Answer:
         """Return every crossing, and the intervals between them."""

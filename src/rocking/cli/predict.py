@@ -1,4 +1,4 @@
-"""`rocking predict` and `rocking assess`: how likely a body is to overturn, how far it is from that, what to do."""
+"""`rocking predict` and `rocking assess`: probability of overturning, margin, and retrofit measures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 D = TypeVar("D", bound="PredictionDocument")
 TABLES = ("body", "motion", "settings", "predict")
 COUNT, SEED = 20, 1
-"""Synthetic motions, where nobody says otherwise."""
+"""Default number and seed of synthetic motions."""
 
 
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 _R = Display(own=closely(coefficient=".3f"))
-_NAMED = ("calibrated", "housner", "ked")  # cases with their own row
+_NAMED = ("calibrated", "housner", "ked")  # cases with a row
 
 
 @options.takes(options.SIZES)
@@ -64,33 +64,33 @@ def predict(
     if file := document_file(context, body, ("predict",)):
         document, inputs = in_file(file, sets, PredictionDocument)
     else:
-        told = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
-        document, inputs = typed(context, PredictionDocument, told)
+        values = {"restitution": number_or_name(restitution), "friction": friction, "pga": pga}
+        document, inputs = typed(context, PredictionDocument, values)
     with bar("reading body and motions", quiet=as_json):
         problem = PredictionProblem.of(document, inputs)
     with bar("motions", len(problem.motions), quiet=as_json) as progress:
-        found = problem.answer(lambda done: progress(1), threads)
-    deliver(PredictionAnswer(found, Path(body or "").stem, details), exports, as_json=as_json)
+        result = problem.answer(lambda done: progress(1), threads)
+    deliver(PredictionAnswer(result, Path(body or "").stem, details), exports, as_json=as_json)
 
 
 def in_file(
     file: Path, sets: list[str] | None, kind: type[D], tables: Sequence[str] = TABLES
 ) -> "tuple[D, InputFiles]":
-    """Return the document in a file, with what was set; kind: of its class, tables: those that may be set."""
+    """Return the document of a file with the keys of `--set`; kind: its class; tables: those that `--set` accepts."""
     from rocking.cli.arguments import parsed_sets, with_sets
     from rocking.spec.reading import InputFiles, checked, tables_in
 
     with located(str(file), "file"):
-        found = dict(tables_in(file) or {})
-        lists = "motion" not in found
-        document = checked(kind, with_sets(found, parsed_sets(sets, tables), lists=lists))
+        stated = dict(tables_in(file) or {})
+        lists = "motion" not in stated
+        document = checked(kind, with_sets(stated, parsed_sets(sets, tables), lists=lists))
     return document, InputFiles(file.parent)
 
 
 def typed(
-    context: typer.Context, kind: type[D], told: dict[str, Any], own: dict[str, dict[str, Any]] | None = None
+    context: typer.Context, kind: type[D], values: dict[str, Any], own: dict[str, dict[str, Any]] | None = None
 ) -> "tuple[D, InputFiles]":
-    """Return the document that was typed; told: its [predict], own: tables that predict does not have."""
+    """Return the document of the options; values: of its table [predict]; own: tables of other commands."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import motions_of
     from rocking.spec.reading import CommandFiles, checked
@@ -99,7 +99,7 @@ def typed(
     with arguments.hinted():
         document: dict[str, Any] = {
             "body": arguments.body_table(arguments.body_and_motions()[0]),
-            "predict": arguments.table("predict", told),
+            "predict": arguments.table("predict", values),
             "settings": arguments.table("settings", {}),
             **{name: arguments.table(name, keys) for name, keys in (own or {}).items()},
         }
@@ -109,64 +109,64 @@ def typed(
 
 @dataclass(frozen=True)
 class PredictionAnswer:
-    """What is foreseen of a body."""
+    """Prediction of a body."""
 
-    found: "Prediction"
+    result: "Prediction"
     name: str = ""  # of the body
     details: bool = False
 
     def answer(self) -> Answer:
-        """Return what is predicted."""
-        return self.found.answer()
+        """Return the prediction."""
+        return self.result.answer()
 
     def draw(self) -> Any:
         from rocking.plots import prediction_picture
 
-        return prediction_picture(self.found)
+        return prediction_picture(self.result)
 
     def show(self, page: Page) -> None:
         from rocking.reports.motion_sources import motion_table
 
-        found = self.found
-        page.line(found.verdict, style="bold")
-        for line in found.sentences[1:]:
+        result = self.result
+        page.line(result.verdict, style="bold")
+        for line in result.sentences[1:]:
             page.line(line)
         page.line()
-        if self.details or 1 < len(found.motions) <= MOST_ROWS:
-            page.reported(motion_table(found))
+        if self.details or 1 < len(result.motions) <= MOST_ROWS:
+            page.reported(motion_table(result))
             page.line()
-        if found.decides:
-            page.line(found.decides)
+        if result.decides:
+            page.line(result.decides)
             page.line()
         else:
-            page.rows(found.ranked_contributions)
+            page.rows(result.ranked_contributions)
             page.line("Contributions to the variance of overturning (Sobol indices).")
             page.line()
         if not self.details:
-            _show_assumed(page, found)
+            _show_assumed(page, result)
             page.line("Reasons, sources and likelihood terms: --details    Files: -o report.pdf, -o table.csv")
             return
-        told = found.assumptions.keys() | found.fixed.keys()
-        page.facts([(name, words) for name, words in found.inputs.items() if name not in told])
-        page.facts([("assumed", each) for each in found.assumed])
-        page.facts([("not sampled", each) for each in found.not_sampled])
-        page.facts(source_lines(found.motions))
+        listed = result.assumptions.keys() | result.fixed.keys()
+        page.facts([(name, text) for name, text in result.inputs.items() if name not in listed])
+        page.facts([("assumed", reason) for reason in result.assumed])
+        page.facts([("not sampled", reason) for reason in result.not_sampled])
+        page.facts(source_lines(result.motions))
         page.line(scale_words())
-        page.warn(found.repairs)
+        page.warn(result.repairs)
 
 
 def _model_cells(rows: list[dict[str, Any]]) -> tuple[str, ...]:
-    """Return the name, coefficients, number of overturning motions and margin of restitution cases in one group."""
+    """Return name, coefficients, number of motions with overturning and margin of a group of restitution cases."""
     label = rows[0]["restitution"] if len(rows) == 1 else f"{len(rows)} other models"
     r = by_foot(_R, *([row[f"coefficient_{foot}"] for row in rows] for foot in ("left", "right")))
     return label, r, rows[0]["overturned"], spanned(_R, "min_factor", [row["min_factor"] for row in rows])
 
 
-def _show_assumed(page: Page, found: "Prediction") -> None:
+def _show_assumed(page: Page, result: "Prediction") -> None:
     """Write the assumed inputs with their values in one line, and the repairs of a mesh."""
-    assumed = (f"{name} {found.inputs[name]}" for name in found.assumptions if name in found.inputs)
+    assumed = (f"{name} {result.inputs[name]}" for name in result.assumptions if name in result.inputs)
     page.line(f"Assumed: {'; '.join(assumed)} (all inputs: --details)")
-    page.warn(found.repairs)
+    page.warn(result.repairs)
 
 
 @options.takes(options.SIZES)
@@ -203,77 +203,77 @@ def assess(
     with bar("reading body and motions", quiet=as_json):
         problem = PredictionProblem.of(document, inputs)
     with bar("histories", quiet=as_json) as progress:
-        found = problem.assessed(document.assess, inputs, progress, threads)
+        result = problem.assessed(document.assess, inputs, progress, threads)
     name = Path(body).stem if body and is_body(body) else ""
-    deliver(AssessmentAnswer(found, document.assess, name, details), exports, as_json=as_json)
+    deliver(AssessmentAnswer(result, document.assess, name, details), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
 class AssessmentAnswer:
-    """What is found of a body."""
+    """Assessment of a body."""
 
-    found: "BodyAssessment"
-    told: "AssessTable"
+    result: "BodyAssessment"
+    table: "AssessTable"
     name: str = ""  # of the body
     details: bool = False
 
     @property
     def signed(self) -> dict[str, str]:
-        """What stands at the head of the report and beside the signature."""
-        told = self.told
-        date = told.date or f"{datetime.now(UTC):%d %B %Y}"
-        return {"project": told.project or "", "author": told.author or "", "date": date}
+        """Project, author and date of the report."""
+        table = self.table
+        date = table.date or f"{datetime.now(UTC):%d %B %Y}"
+        return {"project": table.project or "", "author": table.author or "", "date": date}
 
     def answer(self) -> Answer:
-        """Return the assessment, and what stands beside the signature."""
-        return self.found.answer() | {name: getattr(self.told, name) for name in ("project", "author", "date")}
+        """Return the assessment with project, author and date."""
+        return self.result.answer() | {name: getattr(self.table, name) for name in ("project", "author", "date")}
 
     def draw(self) -> Any:
         from rocking.plots import assessment_picture
 
-        return assessment_picture(self.found)
+        return assessment_picture(self.result)
 
     def show(self, page: Page) -> None:
-        found = self.found
-        for text, style in zip(found.sentences[:3], ("bold", "bold", None), strict=True):
+        result = self.result
+        for text, style in zip(result.sentences[:3], ("bold", "bold", None), strict=True):
             page.line(text, style=style)
         page.line()
         if self.details:
             self._show_details(page)
             return
-        rows = {row["restitution"]: row for row in found.model_rows[: len(found.models)]}
+        rows = {row["restitution"]: row for row in result.model_rows[: len(result.models)]}
         shown = {name for name in rows if len(rows) <= MOST_MODELS or name.partition(",")[0] in _NAMED}
         groups = grouped({name: row["overturned"] for name, row in rows.items()}, shown)
         head = ("restitution model", "r", "overturned", "margin")
         page.table(head, [_model_cells([rows[name] for name in group]) for group in groups], head[:1])
-        page.warn(f"{name}: {why}" for name, why in found.refused.items())
+        page.warn(f"{name}: {reason}" for name, reason in result.refused.items())
         page.line()
-        page.line(found.governing_factors[-1])
-        for text in found.measures:
+        page.line(result.governing_factors[-1])
+        for text in result.measures:
             page.line(text)
         page.line()
-        _show_assumed(page, found.prediction)
+        _show_assumed(page, result.prediction)
         page.line("Causes, code methods, sliding and sources: --details    Report: -o report.pdf")
 
     def _show_details(self, page: Page) -> None:
         from rocking.studies.code_methods import CODE_METHODS
 
-        found = self.found
-        page.rows(found.model_rows, (), _R, most=len(found.models) + 1, dense=False)
-        page.warn(f"{name}: {why}" for name, why in found.refused.items())
+        result = self.result
+        page.rows(result.model_rows, (), _R, most=len(result.models) + 1, dense=False)
+        page.warn(f"{name}: {reason}" for name, reason in result.refused.items())
         page.line()
-        if found.standing is not None:
+        if result.standing is not None:
             page.line("Code methods: plane body")
-        page.rows(found.code_rows, (), most=len(found.capacities), dense=False)
-        show_limits(page, (CODE_METHODS[name] for name in found.capacities), found)
-        for title, sentences in (("Causes", found.governing_factors), ("Retrofit measures", found.measures)):
+        page.rows(result.code_rows, (), most=len(result.capacities), dense=False)
+        show_limits(page, (CODE_METHODS[name] for name in result.capacities), result)
+        for title, sentences in (("Causes", result.governing_factors), ("Retrofit measures", result.measures)):
             page.line()
             page.line(title, "bold")
             for text in sentences:
                 page.line(text)
         page.line()
-        page.facts(source_lines(found.prediction.motions))
+        page.facts(source_lines(result.prediction.motions))
         page.line(scale_words())
-        assumed = "; ".join(found.prediction.assumed_values)
+        assumed = "; ".join(result.prediction.assumed_values)
         page.line(f"Assumed: {assumed}. Reasons and all references: -o report.pdf, or --json.")
-        page.warn(found.prediction.repairs)
+        page.warn(result.prediction.repairs)

@@ -1,4 +1,4 @@
-"""`rocking record batch`: a folder of records in one table, and which of them come close to a target spectrum."""
+"""`rocking record batch`: measures of the records of a folder, and selection by a target spectrum."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rocking.motions.flatfiles import Flatfile
     from rocking.motions.selection import Selection
 
-_MOST_PROCESSES = 8  # that are started where nobody says how many
+_MOST_PROCESSES = 8  # by default
 _SHOWN = ("pga", "pgv", "arias", "d5_95")
 
 
@@ -33,9 +33,7 @@ def _csv(answer: "SetAnswer", path: Path) -> None:
 def _excel(answer: "SetAnswer", path: Path) -> None:
     from rocking.tables import Table, to_excel
 
-    left_out = Table.of_rows(
-        "file", ("file", "why it was left out"), [(name, str(why)) for name, why in answer.left_out]
-    )
+    left_out = Table.of_rows("file", ("file", "reason"), [(name, str(reason)) for name, reason in answer.left_out])
     to_excel([("records", answer.flatfile.flat()), ("left out", left_out)], path)
 
 
@@ -84,13 +82,13 @@ def record_batch(
 
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "motion")
-    beside = ("record", "damping", "periods", "workers")
-    file = document_file(context, record[0], ("motions",), beside) if len(record) == 1 else None
+    allowed_options = ("record", "damping", "periods", "workers")
+    file = document_file(context, record[0], ("motions",), allowed_options) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
         raise InvalidValueError("{file:.200}: no such file or folder", file=missing[0])
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
-    wanted = PERIODS if periods is None else parsed_periods(periods)
+    spectrum_periods = PERIODS if periods is None else parsed_periods(periods)
     count = min(processors(), _MOST_PROCESSES) if workers is None else checks.whole("--workers", workers, 1, 256)
     if file is None:
         values = {"records": list(record), "units": arguments.acceleration}
@@ -99,16 +97,16 @@ def record_batch(
         tables = with_sets(tables_in(file) or {}, arguments.sets, lists=True)
         (table,) = checked(RecordSetDocument, tables).motions
     with bar("files", quiet=as_json) as progress:
-        found, chosen = record_set(table, files, count, progress)
-    with bar("records", len(found), quiet=as_json) as progress:
-        measured = flatfile(found, wanted, damping, workers=count, progress=progress)
-    left_out = (*found.left_out, *measured.left_out)
+        records, chosen = record_set(table, files, count, progress)
+    with bar("records", len(records), quiet=as_json) as progress:
+        measured = flatfile(records, spectrum_periods, damping, workers=count, progress=progress)
+    left_out = (*records.left_out, *measured.left_out)
     deliver(SetAnswer(measured, chosen, left_out, arguments.acceleration or "m/s2"), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
 class SetAnswer:
-    """Records, their measures, and how they were chosen."""
+    """Records, their measures and their selection."""
 
     flatfile: "Flatfile"
     chosen: "Selection | None"
@@ -121,21 +119,23 @@ class SetAnswer:
         return spectra_picture(self.flatfile) if self.chosen is None else selection_picture(self.chosen)
 
     def answer(self) -> Answer:
-        """Return the measures of each record, and how they were chosen."""
+        """Return the measures of each record, and the selection."""
         table, spectra = self.flatfile.table, self.flatfile.spectra
         rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
         for k, row in enumerate(rows):
             row["spectra"] = {name: values[k] for name, values in spectra.items()}
         facts: dict[str, Any] = {"damping_ratio": self.flatfile.damping, "period": self.flatfile.periods}
         if (chosen := self.chosen) is not None:
-            told = {"scale": chosen.factors, "misfit": chosen.misfits, "period": chosen.periods}
-            told |= {"mean": chosen.mean, "target_spectrum": chosen.target(chosen.periods)}
+            selection = {"scale": chosen.factors, "misfit": chosen.misfits, "period": chosen.periods}
+            selection |= {"mean": chosen.mean, "target_spectrum": chosen.target(chosen.periods)}
             facts["selection"] = {
-                "target": chosen.target.name, **told, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,
+                "target": chosen.target.name, **selection, "misfit_of_mean": chosen.misfit, "least_ratio": chosen.least,
                 "sentence": chosen.sentence,
             }  # fmt: skip
-        left_out = [{"file": name, **_reason(why)} for name, why in self.left_out]
-        measured = {name: Quantity(name, one.unit, one.meaning) for name, one in table.columns.items() if one.unit}
+        left_out = [{"file": name, **_reason(reason)} for name, reason in self.left_out]
+        measured = {
+            name: Quantity(name, column.unit, column.meaning) for name, column in table.columns.items() if column.unit
+        }
         accelerations = ("spectra", "mean", "target_spectrum")
         measured |= {name: Quantity(name, "m/s2", "spectral pseudo-acceleration") for name in accelerations}
         return Answer({**facts, "records": rows, "left_out": left_out}, measured)
@@ -143,10 +143,10 @@ class SetAnswer:
     def show(self, page: Page) -> None:
         columns, answer, rows = self.flatfile.table.columns, self.answer(), []
         for k, row in enumerate(answer["records"]):
-            seen = [axis for axis in "xyz" if row[f"pga_{axis}"] == row[f"pga_{axis}"]]
-            lead = max(seen, key=lambda axis: (axis != "z", row[f"pga_{axis}"]))
-            shown = {"record": row["record"], "components": " ".join(seen)}
-            shown |= {name: row[f"{name}_{lead}"] for name in _SHOWN}
+            axes = [axis for axis in "xyz" if row[f"pga_{axis}"] == row[f"pga_{axis}"]]
+            axis_of_largest_peak = max(axes, key=lambda axis: (axis != "z", row[f"pga_{axis}"]))
+            shown = {"record": row["record"], "components": " ".join(axes)}
+            shown |= {name: row[f"{name}_{axis_of_largest_peak}"] for name in _SHOWN}
             if self.chosen is not None and len(self.chosen.factors) == len(self.flatfile.table):
                 shown |= {"scale": self.chosen.factors[k], "misfit": self.chosen.misfits[k]}
             rows.append(shown)
@@ -159,15 +159,19 @@ class SetAnswer:
         }
         page.rows(rows, (), Display(acceleration=beside_g(self.acceleration), own=own), most=len(rows))
         page.line()
-        page.line(f"{len(rows)} records; the component with the largest peak is shown, files have all of them.")
+        page.line(f"{len(rows)} records; values of the component with the largest peak, files contain all components.")
         if self.chosen is not None:
             page.line(self.chosen.sentence)
-        page.warn(f"left out: {name}: {why}" for name, why in self.left_out)
+        page.warn(f"left out: {name}: {reason}" for name, reason in self.left_out)
 
 
-def _reason(why: str | RockingError) -> dict[str, str]:
-    """Return why a file was left out, and what to do about it where that is known."""
-    if isinstance(why, str):
-        return {"why": why}
-    option = why.hint.facts.get("option") if isinstance(why.hint, Message) else None
-    return {"why": why.cause, "hint": str(why.hint), "to_state": option.path if isinstance(option, Option) else ""}
+def _reason(reason: str | RockingError) -> dict[str, str]:
+    """Return the reason for the exclusion of a file, with a hint if the error has one."""
+    if isinstance(reason, str):
+        return {"why": reason}
+    option = reason.hint.facts.get("option") if isinstance(reason.hint, Message) else None
+    return {
+        "why": reason.cause,
+        "hint": str(reason.hint),
+        "to_state": option.path if isinstance(option, Option) else "",
+    }

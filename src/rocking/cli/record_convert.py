@@ -1,4 +1,4 @@
-"""`rocking record convert`: a record, put through its steps where there are any, in another format."""
+"""`rocking record convert`: processing steps of a record, and its conversion to another format."""
 
 import json
 from dataclasses import dataclass
@@ -33,10 +33,15 @@ def _as(form: str) -> Any:
         if len(answer.pairs) == 1:
             write_motion(answer.leading[1], path, form, answer.units)
             return
-        factor, after = ACCELERATION_UNITS[answer.units], {axis: each for axis, (_, each) in answer.pairs.items()}
+        factor, after = (
+            ACCELERATION_UNITS[answer.units],
+            {axis: processed for axis, (_, processed) in answer.pairs.items()},
+        )
         parts = tuple(
-            Component(one.metadata.get("component", axis), one.acceleration / factor, answer.units, one.time_step)
-            for axis, one in after.items()
+            Component(
+                motion.metadata.get("component", axis), motion.acceleration / factor, answer.units, motion.time_step
+            )
+            for axis, motion in after.items()
         )
         write_record(Record(form, parts, metadata={"event": answer.name, **answer.leading[0].metadata}), path, form)
 
@@ -48,12 +53,12 @@ def _provenance(answer: "Conversion", path: Path) -> None:
 
 
 def _kinds() -> dict[str, Export]:
-    """Return the kinds of files that are written: every format, a picture, and what was done."""
+    """Return the kinds of output files: every record format, a picture, and the provenance."""
     from rocking.motions.formats import formats
 
-    known = {name: Export(form.suffixes, _as(name)) for name, form in formats().items()}
+    exports = {name: Export(form.suffixes, _as(name)) for name, form in formats().items()}
     others = {"picture": DRAWN, "provenance": Export((".json",), _provenance)}
-    return {"columns": known["columns"], **known, **others}
+    return {"columns": exports["columns"], **exports, **others}
 
 
 def record_convert(
@@ -85,8 +90,8 @@ def record_convert(
     arguments = Arguments(context, "motion")
     file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
-    upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
-    with hinted(None, record[0].removeprefix("x="), upright):
+    vertical_component = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
+    with hinted(None, record[0].removeprefix("x="), vertical_component):
         if file is None:
             scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
             level = any(word.startswith("y=") for word in record)
@@ -94,28 +99,28 @@ def record_convert(
             table = checked(ComponentsTable, {**own, **scaled})
         else:
             table = checked(RecordDocument, with_sets(tables_in(file) or {}, arguments.sets)).motion
-        named = [one.record for one in (table, *table.components.values()) if one.record]
+        named = [entry.record for entry in (table, *table.components.values()) if entry.record]
         exports.spare(*(word.removeprefix(f"{word[:1]}=") for word in record), *named)
         pairs = _pairs(table, files)
-    if not all(isinstance(each, GroundMotion) for pair in pairs.values() for each in pair):
-        raise InvalidValueError("a record file is converted, got the pulse {pulse!r:.80}", pulse=record[0])
-    # a format without a unit of its own keeps that of the file
+    if not all(isinstance(motion, GroundMotion) for pair in pairs.values() for motion in pair):
+        raise InvalidValueError("Give a record file, got the pulse {pulse!r:.80}", pulse=record[0])
+    # formats that state no unit keep the unit of the file
     unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)
     deliver(Conversion(pairs, unit, written), exports, as_json=as_json)
 
 
 def _pairs(table: "ComponentsTable", files: "InputFiles") -> dict[str, Any]:
-    """Return each component before and after its steps, by its axis; one alone has none."""
+    """Return each component before and after its steps by axis; the axis of a single component is empty."""
     from rocking.spec.construction import components_of, motion_of
 
     tables = table.components or {"": table}
-    before = {axis: motion_of(one, files, raw=True) for axis, one in tables.items()}
+    before = {axis: motion_of(motion, files, raw=True) for axis, motion in tables.items()}
     if table.components:
         after = components_of(table, files, table.scale)
     else:
-        one = motion_of(table, files)
-        after = {"": one if table.scale == 1.0 else one.scaled(table.scale)}
+        motion = motion_of(table, files)
+        after = {"": motion if table.scale == 1.0 else motion.scaled(table.scale)}
     return {axis: (before[axis], after[axis]) for axis in tables}
 
 
@@ -123,8 +128,8 @@ def _pairs(table: "ComponentsTable", files: "InputFiles") -> dict[str, Any]:
 class Conversion:
     """A record before and after its steps."""
 
-    pairs: dict[str, "tuple[GroundMotion, GroundMotion]"]  # each component by its axis; one alone has none
-    units: str  # of formats that state none
+    pairs: dict[str, "tuple[GroundMotion, GroundMotion]"]  # components by axis; empty axis for a single component
+    units: str  # of formats that state no unit
     files: tuple[str, ...]
 
     @property
@@ -142,10 +147,10 @@ class Conversion:
         return processing_picture(*self.leading)
 
     def answer(self) -> Answer:
-        """Return what the record is before and after its steps."""
-        each = {axis: _told(*pair) for axis, pair in self.pairs.items()}
-        told = each[""] if len(each) == 1 else {"components": each}
-        return Answer({"name": self.name, **told, "files": self.files})
+        """Return the record before and after its steps."""
+        by_axis = {axis: _told(*pair) for axis, pair in self.pairs.items()}
+        facts = by_axis[""] if len(by_axis) == 1 else {"components": by_axis}
+        return Answer({"name": self.name, **facts, "files": self.files})
 
     def show(self, page: Page) -> None:
         rows = []
@@ -158,19 +163,19 @@ class Conversion:
         page.line()
         page.rows(rows, (), Display(own=_CLOSELY), most=len(rows))
         if not self.files:
-            page.line("Nothing was written: --output FILE.at2 writes it, --output FILE.png draws it before and after.")
+            page.line("No file written. Files: -o FILE.at2; picture before and after: -o FILE.png")
 
 
 def _told(before: "GroundMotion", after: "GroundMotion") -> dict[str, Any]:
-    told: dict[str, dict[str, Any]] = {
+    facts: dict[str, dict[str, Any]] = {
         name: {**_facts(motion), "warnings": _doubts(motion)} for name, motion in (("before", before), ("after", after))
     }
-    told["before"]["warnings"] += filter(None, [before.metadata.get("doubts")])
-    return {**told, "metadata": dict(before.metadata), "provenance": list(after.provenance)}
+    facts["before"]["warnings"] += filter(None, [before.metadata.get("doubts")])
+    return {**facts, "metadata": dict(before.metadata), "provenance": list(after.provenance)}
 
 
 def _doubts(motion: "GroundMotion") -> list[str]:
-    """Return what is hardly meant, of the samples and of what they integrate to."""
+    """Return implausible values of the samples and of their integrals."""
     end, velocity, displacement = (
         _facts(motion)[key] for key in ("end_velocity", "peak_ground_velocity", "peak_ground_displacement")
     )

@@ -1,4 +1,4 @@
-"""`rocking record show`: what a record or a pulse is, and how strong."""
+"""`rocking record show`: properties, intensity measures and spectrum of a record or a pulse."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +30,7 @@ _SPECTRUM = ("period", "pseudo_acceleration", "pseudo_velocity", "spectral_displ
 
 
 def _write_csv(answer: "MotionPage", path: Path) -> None:
-    """Write time, acceleration, velocity and displacement at the samples; of a pulse as its formulas give them."""
+    """Write time, acceleration, velocity and displacement at the samples; values of a pulse are exact."""
     import numpy as np
 
     from rocking.motions.integrals import ground_displacement, ground_velocity
@@ -82,8 +82,8 @@ def record_show(
     arguments = Arguments(context, "motion")
     if scale is not None:
         checks.number("scale", scale)
-    upright = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
-    with hinted(None, record[0].removeprefix("x="), upright):
+    vertical_component = next((word.rpartition("#")[2] for word in record if word.startswith("z=")), "")
+    with hinted(None, record[0].removeprefix("x="), vertical_component):
         scaled = arguments.table("motion", {"scale": scale}, keys={"scale"})
         table = checked(OneMotionTable, {**arguments.one_motion(record), **scaled})
         subject = motion_of(table, CommandFiles(Path()))
@@ -101,13 +101,13 @@ def parsed_periods(text: str) -> list[float]:
     >>> parsed_periods("0.1, 0.5,1")
     [0.1, 0.5, 1.0]
     """
-    texts = [part.strip() for part in text.split(",") if part.strip()]
+    texts = [entry.strip() for entry in text.split(",") if entry.strip()]
     if not 1 <= len(texts) <= _MOST_PERIODS:
         raise InvalidValueError(
             parameter="periods", allowed=f"1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1", value=text[:60]
         )
     try:
-        numbers = [float(part) for part in texts]
+        numbers = [float(entry) for entry in texts]
     except ValueError as error:
         raise InvalidValueError(
             parameter="periods", allowed="numbers such as 0.1,0.5,1 [s]", value=text[:60]
@@ -118,13 +118,13 @@ def parsed_periods(text: str) -> list[float]:
 
 @dataclass(frozen=True)
 class MotionPage:
-    """A motion, what was measured on it, and the unit in which accelerations are printed."""
+    """A motion with its intensity measures and spectrum."""
 
     motion: "Motion"
-    samples: "GroundMotion"  # itself, or the pulse cut finely
+    samples: "GroundMotion"  # the motion, or a fine sampling of the pulse
     measures: "dict[str, Measure]"  # intensity measures by short name
-    spectrum: "ResponseSpectrum"  # response at the periods asked for
-    acceleration: str
+    spectrum: "ResponseSpectrum"  # at the requested periods
+    acceleration: str  # unit of printed accelerations
 
     def draw(self) -> Any:
         from rocking.plots import ground_motion_picture

@@ -1,4 +1,4 @@
-"""`rocking reproduce`: Mao et al. 2024 or Gaibor and Lopez 2026, recomputed, with a verdict on each claim."""
+"""`rocking reproduce`: results of Mao et al. (2024) or of Gaibor and Lopez (2026), recomputed."""
 
 import sys
 from collections.abc import Sequence

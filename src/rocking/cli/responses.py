@@ -1,4 +1,4 @@
-"""What `rocking simulate` shows of a response: body and motion, outcome, peaks, and the same with other models."""
+"""Output of `rocking simulate`: body and motion, outcome, peaks, and the outcome with other models."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -52,16 +52,16 @@ def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, detai
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError("there is no response: {reason}", reason=response.status.value)
-    rivals = dict(list(problem.restitutions.items())[1:])
+    models = dict(list(problem.restitutions.items())[1:])
     if not problem.mechanics.is_compared:
         is_default = next(iter(problem.restitutions)) == DEFAULT_RESTITUTION
-        rivals = {name: name for name in COMPARED_RESTITUTIONS if is_default}
+        models = {name: name for name in COMPARED_RESTITUTIONS if is_default}
     elif not listed:
         from rocking.evidence._coefficient_table import default_models
 
-        rivals = {model.label: model for model in default_models() if model.label != response.parameters.label}
+        models = {model.label: model for model in default_models() if model.label != response.parameters.label}
     others: dict[str, Any] = {}
-    for name, law in rivals.items():
+    for name, law in models.items():
         try:
             others[name] = problem.answer(law)
         except RockingError as error:
@@ -76,8 +76,8 @@ class ResponseAnswer:
     problem: ResponseProblem
     response: Any
     display: Display
-    others: dict[str, Any] = field(default_factory=dict)  # by model: the response, or why the model has none
-    details: bool = False  # whether the terminal shows every impact and model
+    others: dict[str, Any] = field(default_factory=dict)  # by model: the response, or the reason for none
+    details: bool = False  # show every impact and model
 
     @property
     def _friction(self) -> dict[str, float]:
@@ -87,7 +87,7 @@ class ResponseAnswer:
         return self.response.plot(**self._friction)
 
     def answer(self) -> Answer:
-        """Return the response, with the body as it was given and how it started."""
+        """Return the response, with the body and the initial conditions."""
         problem, start = self.problem, self.problem.start
         more: dict[str, Any] = {}
         if not isinstance(problem.body, Body):
@@ -115,12 +115,12 @@ class ResponseAnswer:
             page.line(f"Contact: {', '.join(self._contact(answer))}")
         page.line()
         page.line(sentence(answer["summary"]), "bold")
-        fell = answer["outcome"] == "overturned"
-        peaks = [name for name in _PEAKS if not (fell and name in _OF_STANDING)]
+        overturned = answer["outcome"] == "overturned"
+        peaks = [name for name in _PEAKS if not (overturned and name in _OF_STANDING)]
         lines = list(display.lines(answer.values, peaks))
         if "friction_demand" in answer:
-            demand, given = display.cell("friction_demand", answer["friction_demand"]), answer["friction"]
-            lines.append(("friction demand", f"{demand} ({given_or_assumed(given)} {given:g})"))
+            demand, friction = display.cell("friction_demand", answer["friction_demand"]), answer["friction"]
+            lines.append(("friction demand", f"{demand} ({given_or_assumed(friction)} {friction:g})"))
         page.values([*lines, *(display.lines(answer.values, _DETAILS) if self.details else ())])
         page.warn(doubt.replace(_IN_PYTHON, "--friction") for doubt in answer.values.get("warnings", ()))
         if self.problem.mechanics.is_compared and self.others:
@@ -151,12 +151,12 @@ class ResponseAnswer:
             angle, name = self.problem.rotation, "initial_rotation"
             balance = self.display.text("slenderness_angle", self.problem.balance_angle)
             return f"released at {self.display.text(name, angle)}, {self.problem.initial_rotation:g} of {balance}"
-        words = ", ".join(parts) or "ground at rest"
+        text = ", ".join(parts) or "ground at rest"
         if self.problem.start_height:
-            words += f", released {self.display.text('start_height', self.problem.start_height)} above the ground"
+            text += f", released {self.display.text('start_height', self.problem.start_height)} above the ground"
         if any(self.problem.start_velocity):
-            words += f", initial velocity ({', '.join(f'{each:g}' for each in self.problem.start_velocity)}) m/s"
-        return words
+            text += f", initial velocity ({', '.join(f'{velocity:g}' for velocity in self.problem.start_velocity)}) m/s"
+        return text
 
     @property
     def _components(self) -> dict[str, Any]:
@@ -213,15 +213,15 @@ class ResponseAnswer:
 
     def _compare_outcomes(self, page: Page, answer: Answer) -> None:
         """Write the outcome with each model."""
-        given = answer["other_models"]
-        computed = {name: row for name, row in given.items() if "error" not in row}
+        models = answer["other_models"]
+        computed = {name: row for name, row in models.items() if "error" not in row}
         if computed:
             rows = {answer["restitution"]: _facts(self.response), **computed}
             page.line("\nCompare restitution models", "bold")
             page.rows([{"model": name, **row.values} for name, row in rows.items()], (), self.display)
             differ = len({row["outcome"] for row in rows.values()}) > 1
             page.line(Message(_DIFFER if differ else _AGREE))
-        page.warn(f"{name}: {row['error']}" for name, row in given.items() if "error" in row)
+        page.warn(f"{name}: {row['error']}" for name, row in models.items() if "error" in row)
 
     def _compared(self, labels: list[str], outcome: str, responses: list[Any]) -> tuple[str, ...]:
         """Return the row of models with one outcome, with the ranges of their values."""
@@ -229,14 +229,14 @@ class ResponseAnswer:
         answers = [response.outcome_answer() for response in responses if not isinstance(response, str)]
         if not answers:
             return label, "-", outcome, "-", "-"
-        fell = answers[0]["outcome"] == "overturned"
+        overturned = answers[0]["outcome"] == "overturned"
         r = by_foot(self.display, *([row["coefficient"][foot] for row in answers] for foot in ("left", "right")))
         ratio, impacts = (spanned(self.display, name, [row[name] for row in answers]) for name in _COMPARED[-2:])
-        return label, r, outcome, "-" if fell else ratio, impacts
+        return label, r, outcome, "-" if overturned else ratio, impacts
 
 
 def _outcome(response: Any) -> str:
-    """Return the outcome of a response, where it is compared with others, in words."""
+    """Return the outcome of a response for the comparison of models, as text."""
     if isinstance(response, str):
         return "not for this body"
     answer = response.outcome_answer()
@@ -246,7 +246,7 @@ def _outcome(response: Any) -> str:
 
 
 def _facts(response: Any) -> Answer:
-    """Return the outcome of a response, where it is compared with others."""
+    """Return the outcome of a response for the comparison of models."""
     if hasattr(response, "outcome_answer"):
         answer: Answer = response.outcome_answer()
         return answer
@@ -267,4 +267,4 @@ def _sources(motions: Iterable[Any]) -> list[tuple[str, str]]:
     """Return the printed lines of source and processing of record files."""
     from rocking.cli.study import source_lines
 
-    return source_lines([MotionSummary.of(each) for each in motions if isinstance(each, GroundMotion)])
+    return source_lines([MotionSummary.of(motion) for motion in motions if isinstance(motion, GroundMotion)])

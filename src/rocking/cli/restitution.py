@@ -1,4 +1,4 @@
-"""`rocking restitution`: the coefficient of restitution of a body under every model."""
+"""`rocking restitution`: coefficients of restitution of a body with all models."""
 
 import sys
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ _SHOWN = ("model", "coefficient", "energy_loss", "friction_demand")
 
 
 class BodyDocument(JobTable):
-    """The tables of a response's file of which only the body and the settings are looked at."""
+    """The tables of a file of a response; only body and settings are used."""
 
     body: dict[str, Any]
     settings: SettingsTable = SettingsTable()
@@ -79,7 +79,9 @@ def restitution(
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
         raise InvalidValueError(
-            "{parameter} {key}: an impact takes gravity only", parameter="--set", key=f"settings.{odd[0]}"
+            "{parameter} {key}: rocking restitution accepts settings.gravity only",
+            parameter="--set",
+            key=f"settings.{odd[0]}",
         )
     subject, gravity = named_body(arguments, quiet=as_json, in_space="space" in exports.names)
     length = arguments.length or "m"
@@ -94,13 +96,12 @@ def restitution(
 
         plane = {"--foot": foot != "both", "--check-identities": check_identities}
         plane["--output stages=FILE"] = "stages" in exports.names
-        if stated := [name for name, there in plane.items() if there]:
+        if stated := [name for name, is_stated in plane.items() if is_stated]:
             raise InvalidValueError(
-                "a body in space rocks about every edge of its base, so it takes no {options}",
-                options=", ".join(stated),
+                "{options} is for 2D bodies; a 3D body rocks about every edge of its base", options=", ".join(stated),
             )  # fmt: skip
-        found = _recommended(subject, restitution) if recommend else None
-        answer = SolidAnswer.of(subject, restitution, gravity, length, found)
+        recommendation = _recommended(subject, restitution) if recommend else None
+        answer = SolidAnswer.of(subject, restitution, gravity, length, recommendation)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -118,24 +119,24 @@ def _model(text: str) -> Any:
 
 
 def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> tuple[Any, float]:
-    """Return the body and the gravity [m/s2], of a file of a response too; JSON stays alone on its stream.
+    """Return the body and the gravity [m/s2], also from a file of a response; notes do not mix with JSON.
 
-    In space: a plane body of known depth is one in space.
+    in_space: return a 2D body with depth as a 3D body.
     """
     word, sets = arguments.options["body"], arguments.sets
-    beside = ("foot", "restitution", "check_identities", "min_barrier")
-    if file := document_file(arguments.context, word, ("response",), beside, "has a table [body] and "):
+    allowed_options = ("foot", "restitution", "check_identities", "min_barrier")
+    if file := document_file(arguments.context, word, ("response",), allowed_options, "has a table [body] and "):
         with located(word, "file"):
-            made = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)
-        note = "body and gravity are taken from it; everything else it says is for `rocking simulate`."
+            body_and_gravity = _made(with_sets(tables_in(file) or {}, sets), InputFiles(file.parent), in_space)
+        note = "only body and gravity are used; `rocking simulate` uses the other tables."
         print(f"{file.name}: {note}", file=sys.stderr if quiet else sys.stdout)
-        return made
+        return body_and_gravity
     with hinted(word, None):
         return body_of(arguments, word, in_space)
 
 
 def body_of(arguments: Arguments, word: str | None, in_space: bool = False) -> tuple[Any, float]:
-    """Return the body of a file or of sizes, and the gravity that is set [m/s2]."""
+    """Return the body of a file or of dimensions, and the gravity [m/s2]."""
     tables = {"body": arguments.body_table(word), "settings": arguments.sets.get("settings", {})}
     return _made(tables, CommandFiles(Path()), in_space)
 
@@ -148,15 +149,15 @@ def _made(tables: dict[str, Any], files: InputFiles, in_space: bool) -> tuple[An
 
 @dataclass(frozen=True)
 class PlaneAnswer:
-    """Every model's coefficient of a plane body."""
+    """Coefficients of restitution of a 2D body with all models."""
 
     impact: "ImpactAnswer"
     length: str  # unit of lengths
-    recommendation: Any = None  # which model to use, where that was asked
+    recommendation: Any = None  # recommended model, with --recommend
     details: bool = False
 
     def answer(self) -> Answer:
-        """Return the body and every model's coefficient."""
+        """Return the body and the coefficient of each model."""
         return self.impact.answer() | recommendation_values(self.recommendation)
 
     def draw(self) -> Any:
@@ -196,9 +197,9 @@ class PlaneAnswer:
         page.line("95 %: interval for one measured body (39 published measurements)")
         if self.details:
             page.line("k: impulse position / half base; friction demand: at the impact")
-            for foot, shares in answer["ked_energy_shares"].items():
-                kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
-                page.line(f"KED, kinetic energy at the {foot} foot: {kept}.")
+            for foot, fractions in answer["ked_energy_shares"].items():
+                remaining = ", ".join(f"{100.0 * fraction:.1f} % {stage}" for stage, fraction in fractions.items())
+                page.line(f"KED, kinetic energy at the {foot} foot: {remaining}.")
         for name, report in self.impact.identities.items():
             broken = [check for check in report if not check.holds]
             page.line(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", "bold")

@@ -54,7 +54,7 @@ def _serve(settings: "ServerSettings", port: int | None, *, quiet: bool, as_json
             raise
     else:
         if not as_json:
-            print("stopped; what was computed is kept")
+            print("stopped; results are kept")
 
 
 def _show(server: "Started", *, as_json: bool) -> None:
@@ -75,7 +75,7 @@ def _open(link: str) -> None:
 
 
 def _join(settings: "ServerSettings", *, quiet: bool) -> bool:
-    """Open the server that has the data folder already, if it answers."""
+    """Open the running server of the data folder; return False without a response."""
     import json
     from urllib.request import Request, urlopen
 
@@ -91,7 +91,7 @@ def _join(settings: "ServerSettings", *, quiet: bool) -> bool:
             link = json.load(answer)["url"]
     except (OSError, ValueError, KeyError):
         return False
-    print(f"{link}   (a server runs already; this link works once)", flush=True)
+    print(f"{link}   (server is already running; link works once)", flush=True)
     if not quiet:
         _open(link)
     return True

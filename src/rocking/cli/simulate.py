@@ -1,4 +1,4 @@
-"""`rocking simulate`: how a body rocks under a record or a pulse, or when let go."""
+"""`rocking simulate`: response of a body to records and pulses, or after release."""
 
 import math
 import sys
@@ -110,13 +110,13 @@ def simulate(
     else:
         arguments = Arguments(context, *_TABLES)
         display = Display(arguments.length or "m", arguments.acceleration or "g")
-        if words := arguments.several:
+        if motions := arguments.several:
             if output:
                 raise InvalidValueError(
-                    "{parameter} is of one record, and {set} is of several: --json has them all", parameter="--output",
-                    set=words[0][:100],
+                    "{parameter} accepts one record, and {set} contains several: use --json", parameter="--output",
+                    set=motions[0][:100],
                 )  # fmt: skip
-            deliver(_each(arguments, words, display, quiet=as_json), as_json=as_json)
+            deliver(_several(arguments, motions, display, quiet=as_json), as_json=as_json)
             return
         problem = _problem(arguments, in_space)
     if problem.initial_rotation is not None:
@@ -126,7 +126,7 @@ def simulate(
             "response.initial_rotation" if file else "--initial-rotation",
         )
     if in_space and problem.mechanics.name != "hull":
-        raise InvalidValueError(".glb is of a body in space with friction; other animations are .html or .gif")
+        raise InvalidValueError(".glb is for 3D bodies with friction; use .html or .gif")
     with bar("history", quiet=as_json):
         answer = answer_of(problem, display, listed=stated, details=details)
     deliver(answer, exports, as_json=as_json)
@@ -142,14 +142,14 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
         raise InvalidValueError(
-            "give a motion or --initial-rotation, not both; got {motion!r}", motion=motions[0][:100]
+            "Give a motion or --initial-rotation, not both; got {motion!r}", motion=motions[0][:100]
         )
     stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
     if stated and not motions and (free or dropped):
         name = "--initial-rotation" if free else "a drop"
         raise InvalidValueError(
-            "{option} has no motion, so it takes no {options}", option=name, options=", ".join(stated)
+            "{options} needs a motion, and {option} has no motion", option=name, options=", ".join(stated)
         )
     if not free and not dropped and not motions and not arguments.solid:
         raise InvalidValueError("No ground motion. Add --motion or --initial-rotation.")
@@ -168,17 +168,17 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
 
 
 def _restitution(arguments: Arguments) -> dict[str, Any]:
-    """Return the table [restitution] by its name; nothing where no restitution is stated."""
+    """Return the table [restitution] by its name; empty without a stated model."""
     return {"restitution": stated} if (stated := arguments.restitution()) else {}
 
 
-def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bool) -> "SeveralAnswer":
-    """Return the responses to motions, each by itself."""
+def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet: bool) -> "SeveralAnswer":
+    """Return the responses to several motions."""
     from rocking.cli.study import in_lists
 
     body, _ = arguments.body_and_motions()
     if arguments.options["initial_rotation"] is not None:
-        raise InvalidValueError("give a motion or --initial-rotation, not both; got {motion!r}", motion=words[0][:100])
+        raise InvalidValueError("Give a motion or --initial-rotation, not both; got {motion!r}", motion=texts[0][:100])
     files = CommandFiles(Path())
     with arguments.hinted():
         tables = {
@@ -187,11 +187,11 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
             "settings": arguments.sets.get("settings", {}),
         }  # fmt: skip
         scale = arguments.table("motion", {"scale": arguments.options["scale"]}, keys={"scale"})
-        tables_of = in_lists(arguments.motion_table(word) for word in words)
-        named = [checked(MotionTable, {**each, **scale}) for each in tables_of]
-        made = any_body_of(arguments.body_table(body), files)
-        motions = motions_of(named, files, paired=not isinstance(made, Body))
-        problem = problem_of(checked(ResponseTables, tables), made, motions[0], scale=1.0, inputs=files)
+        tables_of = in_lists(arguments.motion_table(word) for word in texts)
+        named = [checked(MotionTable, {**motion_table, **scale}) for motion_table in tables_of]
+        subject = any_body_of(arguments.body_table(body), files)
+        motions = motions_of(named, files, paired=not isinstance(subject, Body))
+        problem = problem_of(checked(ResponseTables, tables), subject, motions[0], scale=1.0, inputs=files)
         listed = [motions[k] for k in range(len(motions))]
         label = next(iter(problem.restitutions))
         others = COMPARED_RESTITUTIONS if label == DEFAULT_RESTITUTION else ()
@@ -208,7 +208,7 @@ def _each(arguments: Arguments, words: list[str], display: Display, *, quiet: bo
 
 
 def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:
-    """Return the responses to motions with one restitution."""
+    """Return the responses to motions with one restitution model."""
     responses = []
     for motion in motions:
         responses.append(replace(problem, motion=motion).answer(law))
@@ -218,7 +218,7 @@ def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress
 
 @dataclass(frozen=True)
 class SeveralAnswer:
-    """How a body ends under each of several motions, with one restitution."""
+    """Outcomes of a body under several motions with one restitution model."""
 
     body: Any
     motions: list[Any]
@@ -248,7 +248,7 @@ class SeveralAnswer:
         from rocking.cli.study import source_lines
 
         count, display = len(self.motions), self.display
-        page.line(f"It overturns under {self._overturned} of {count} motion{'s' * (count != 1)}.", "bold")
+        page.line(f"Overturning under {self._overturned} of {count} motion{'s' * (count != 1)}.", "bold")
         page.line()
         acceleration = peak_names(map(support_of, self.motions))[0]
         peak = display.entry("peak_ground_acceleration")
@@ -262,9 +262,7 @@ class SeveralAnswer:
         page.line()
         page.facts(source_lines([MotionSummary.of(motion) for motion in self.motions]))
         show_models(page, self.answer(), display, self.label, _overturned(self.responses))
-        page.line(
-            "One motion alone shows more; how likely it is to overturn: rocking predict; its margin: rocking assess."
-        )
+        page.line("Probability of overturning: rocking predict    Margin: rocking assess")
 
 
 def _overturned(responses: list[Any]) -> dict[str, Any]:
@@ -273,21 +271,22 @@ def _overturned(responses: list[Any]) -> dict[str, Any]:
 
 
 def _peak(response: Any) -> dict[str, float]:
-    """Return the largest rotation of a plane body, or tilt of one in space [rad]."""
+    """Return the peak rotation of a 2D body, or the peak tilt of a 3D body [rad]."""
     name = "peak_tilt" if hasattr(response, "peak_tilt") else "peak_rotation"
     return {name: abs(float(getattr(response, name)))}
 
 
-def _check_share(alpha: float, free: float, option: str) -> None:
-    """Refuse, or doubt, what looks like an angle in degrees in place of a share of the slenderness angle [rad]."""
-    if abs(free) * alpha >= 0.5 * math.pi:
+def _check_share(alpha: float, initial_rotation: float, option: str) -> None:
+    """Refuse an initial rotation above 90 degrees, and warn above 1: probably an angle in degrees; alpha [rad]."""
+    fraction = math.radians(initial_rotation) / alpha
+    if abs(initial_rotation) * alpha >= 0.5 * math.pi:
         raise InvalidValueError(
-            "{parameter} is a share of the slenderness angle, here {slenderness_angle:.3g} degrees, and 1 is where "
-            "the body balances; got {free:g}. An angle of {free:g} degrees is {parameter} {share:.3g}",
-            parameter=option, slenderness_angle=math.degrees(alpha), free=free, share=math.radians(free) / alpha,
+            "{parameter} is a fraction of the slenderness angle, {slenderness_angle:.3g} degrees; got {free:g}. "
+            "For an angle of {free:g} degrees use {parameter} {share:.3g}",
+            parameter=option, slenderness_angle=math.degrees(alpha), free=initial_rotation, share=fraction,
         )  # fmt: skip
-    if abs(free) > 1.0:
+    if abs(initial_rotation) > 1.0:
         plausibility.warn([
-            f"let go at {free:g} slenderness angles, beyond where the body balances: it can only fall. An angle of "
-            f"{free:g} degrees is {option} {math.radians(free) / alpha:.3g}"
+            f"an initial rotation of {initial_rotation:g} slenderness angles is beyond equilibrium and leads to "
+            f"overturning. For an angle of {initial_rotation:g} degrees use {option} {fraction:.3g}"
         ])  # fmt: skip

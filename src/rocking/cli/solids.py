@@ -1,4 +1,4 @@
-"""`rocking restitution` of solids: every edge of the base, and what follows when the body falls back from it."""
+"""`rocking restitution` of solids: coefficients of restitution after rocking about each edge of the base."""
 
 import math
 from collections.abc import Mapping
@@ -17,16 +17,16 @@ from rocking.quantities import closely
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3  # edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]
-MOST_EDGES = 16  # of a base with more edges those over which the body falls most easily are computed
-DIRECTIONS = 4  # directions in which a round base is tipped, from x towards y
+MOST_EDGES = 16  # computed edges, those of smallest slenderness angle
+DIRECTIONS = 4  # directions of rocking of a round base, from x towards y
 
 ROUND_BASE = (
-    "a round base rolls round its rim and has no impact in one plane: these values hold only if the body is held to "
-    "one vertical plane, and must not be used for one that is free; `rocking simulate` follows it as it rolls"
+    "these values are valid only if the body is guided in one vertical plane; a free body rolls on its rim without "
+    "impact; use `rocking simulate`"
 )
-"""What must be known before a plane coefficient of a round base is used."""
+"""Limit of a 2D coefficient of a round base."""
 
-_MOST = 12  # corners of a base that are printed
+_MOST = 12  # printed corners of a base
 
 _PLACES = ("edge_start", "edge_end", "base_vertices", "base_centre", "centre")
 _GEOMETRY = (
@@ -36,42 +36,42 @@ _GEOMETRY = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolidAnswer:
-    """A body in space and its edges."""
+    """A 3D body and its edges."""
 
     solid: Solid
-    edges: list[dict[str, Any]]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
+    edges: list[dict[str, Any]]  # edges of the base, at most `MOST_EDGES`; directions of a round base
     gravity: float  # acceleration of gravity [m/s2]
     length: str  # unit of lengths
-    recommendation: Any = None  # which model to use, where that was asked
+    recommendation: Any = None  # recommended model, with --recommend
 
     @classmethod
     def of(
         cls, solid: Solid, models: list[str] | None, gravity: float, length: str, recommendation: Any = None
     ) -> "SolidAnswer":
         """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
-        pull = checks.positive("gravity", gravity, "m/s2")
+        gravity_value = checks.positive("gravity", gravity, "m/s2")
         chosen = [spatial_model(name) for name in models or spatial_models()]
         if solid.known is not None and models is None:
             chosen = [model for model in chosen if not model.needs_solid]
-        return cls(solid, _edges(solid, chosen, pull), pull, length, recommendation)
+        return cls(solid, _edges(solid, chosen, gravity_value), gravity_value, length, recommendation)
 
     @property
     def left_out(self) -> int:
-        """Number of edges that are less slender and not computed."""
+        """Number of edges that are not computed, those of largest slenderness angle."""
         base = self.solid.base
         return len(base.vertices) - len(self.edges) if isinstance(base, SupportPolygon) else 0
 
     @property
     def notes(self) -> list[str]:
-        """What limits the use of the coefficients: one sentence each."""
+        """Limits of the coefficients, one sentence per limit."""
         shown = {name for edge in self.edges for name in edge["coefficients"]}
-        out = [name for name in spatial_models() if spatial_model(name).needs_solid and name not in shown]
-        needs = [f"left out: {', '.join(out)}, which needs the distribution of mass, and only its moments are known"]
-        unknown = needs if out and self.solid.known is not None else []
-        return [ROUND_BASE, *unknown] if isinstance(self.solid.base, RoundBase) else unknown
+        excluded = [name for name in spatial_models() if spatial_model(name).needs_solid and name not in shown]
+        reasons = [f"left out: {', '.join(excluded)}, which needs the distribution of mass"]
+        notes = reasons if excluded and self.solid.known is not None else []
+        return [ROUND_BASE, *notes] if isinstance(self.solid.base, RoundBase) else notes
 
     def answer(self) -> Answer:
-        """Return the body, every edge and the coefficients from it."""
+        """Return the body and every edge with its coefficients."""
         return Answer({
             "body": self.solid.answer(),
             "gravity": self.gravity,
@@ -103,7 +103,7 @@ class SolidAnswer:
         show_body(page, answer["body"], display)
         page.line()
         numbered = not isinstance(self.solid.base, RoundBase)
-        page.line("Edges it may rock about" if numbered else "Directions it may be tipped in", "bold")
+        page.line("Edges of rocking" if numbered else "Directions of rocking", "bold")
         shown = [_rounded(edge) for edge in self.edges]
         page.rows(shown, _GEOMETRY, display, most=len(shown), dense=False)
         page.line()
@@ -115,7 +115,7 @@ class SolidAnswer:
             rows.append((edge["edge"], edge["lands_on"], *values))
         page.table(("from edge", "onto", *self.edges[0]["coefficients"]), rows, ("from edge", "onto"))
         if self.left_out:
-            page.line(f"{self.left_out} edges that are less slender are left out", "dim")
+            page.line(f"{self.left_out} edges with larger slenderness angles are left out", "dim")
         page.warn([*self._flags(), *self.notes])
         show_recommendation(page, self.recommendation)
 
@@ -132,12 +132,12 @@ class SolidAnswer:
 
 
 def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[dict[str, Any]]:
-    """Return every edge, and what follows when the body falls back from it, as plain values."""
+    """Return every edge with the impact that follows rocking about it, as plain values."""
     base = solid.base
     if not isinstance(base, SupportPolygon):
-        turns = [k * 2.0 * math.pi / DIRECTIONS for k in range(DIRECTIONS)]
-        places = [(f"{math.degrees(t):.0f} deg", base.edge(t), "far side", base.edge(t + math.pi)) for t in turns]
-        return [_edge(solid, *place, models, gravity) for place in places]
+        azimuths = [k * 2.0 * math.pi / DIRECTIONS for k in range(DIRECTIONS)]
+        impacts = [(f"{math.degrees(t):.0f} deg", base.edge(t), "far side", base.edge(t + math.pi)) for t in azimuths]
+        return [_edge(solid, *impact, models, gravity) for impact in impacts]
     edges, corners = base.edges, base.vertices.tolist()
     slender = sorted(range(len(edges)), key=lambda i: round(_arm(solid, edges[i])[0], 9))
     return [
@@ -156,7 +156,7 @@ def _edge(
     gravity: float,
     end: list[float] | None = None,
 ) -> dict[str, Any]:
-    """Return one edge; end: its second corner (x, y) [m], none for the point of a round base."""
+    """Return an edge with its impact; end: its second corner (x, y) [m], None for a round base."""
     alpha, semi_diagonal = _arm(solid, edge)
     inertia = float(edge.direction @ solid.inertia @ edge.direction) + solid.mass * semi_diagonal**2
     start = edge.point[:2].tolist()
@@ -182,14 +182,14 @@ def _edge(
 
 
 def _arm(solid: Solid, edge: Edge) -> tuple[float, float]:
-    """Return slenderness angle [rad] and distance of the centre from the edge [m]."""
+    """Return slenderness angle [rad] and distance of the centre of mass from the edge [m]."""
     arm = solid.centre - edge.point
     across = arm - edge.direction * float(arm @ edge.direction)
     return math.atan2(math.hypot(across[0], across[1]), across[2]), float(np.linalg.norm(across))
 
 
 def _landing(base: SupportPolygon, which: int) -> tuple[str, Edge | Corner]:
-    """Return what lands: the parallel edge on the far side, or without one the corner farthest from the edge."""
+    """Return the landing edge, parallel on the opposite side, or else the corner farthest from the edge."""
     edge, edges = base.edge(which), base.edges
     for number, other in enumerate(edges):
         if float(edge.direction @ other.direction) < -math.cos(PARALLEL):
@@ -201,7 +201,7 @@ def _landing(base: SupportPolygon, which: int) -> tuple[str, Edge | Corner]:
 
 
 def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
-    """Return an edge under one model as a row of a table."""
+    """Return an edge with one model as a row of a table."""
     result, start, end = edge["coefficients"][name], edge["edge_start"], edge["edge_end"]
     return {
         **{key: value for key, value in edge.items() if key not in {"coefficients", "edge_start", "edge_end"}},
@@ -215,13 +215,13 @@ def _record(edge: dict[str, Any], name: str) -> dict[str, Any]:
 
 
 def show_body(page: Page, body: Answer, display: Display) -> None:
-    """Write mass, centre, base and repairs of a body in space."""
+    """Write mass, centre of mass, base and repairs of a 3D body."""
     from rocking.cli.numbers import body_line
 
     page.line(body_line(None, Answer(_rounded(body.values)), display, ("parts", "volume", "centre")))
     base = _rounded(body["base"])
     if corners := base.get("base_vertices"):
-        listed = ", ".join(f"({display.cell('base_vertices', each)})" for each in corners[:_MOST])
+        listed = ", ".join(f"({display.cell('base_vertices', corner)})" for corner in corners[:_MOST])
         page.line(f"base: {len(corners)} corners, {listed}{' ...' if len(corners) > _MOST else ''} {display.length}")
     page.values(display.lines(base, ("base_radius", "base_centre")))
     for sentence in body["assumed"]:
@@ -230,6 +230,6 @@ def show_body(page: Page, body: Answer, display: Display) -> None:
 
 
 def _rounded(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values with places to a nanometre, below which they are rounding."""
+    """Return values with coordinates rounded to a nanometre."""
     arrays = {name: np.asarray(value) for name, value in values.items() if name in _PLACES and value is not None}
     return {**values, **{name: (array.round(9) + 0.0).tolist() for name, array in arrays.items()}}

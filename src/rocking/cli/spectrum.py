@@ -58,18 +58,18 @@ def spectrum(
         own = {**arguments.values(SpectrumTable), "slenderness_angles": angles, "periods": periods}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
-            raise InvalidValueError("{file} is a body, and {reason}", file=body, reason=SpectrumQuestion.without_body)
+            raise InvalidValueError("{file} is a body file; {reason}", file=body, reason=SpectrumQuestion.without_body)
         with hinted(None, named[0]):
-            each = in_lists(arguments.each(named, arguments.one_motion))
+            motion_tables = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
                 "rocking-spectrum",
                 arguments,
-                each,
+                motion_tables,
                 restitution={"model": restitution} if restitution else {},
                 spectrum=table,
             )
     with bar("histories", quiet=as_json) as progress:
-        dataset, others = with_models(lambda one: one.answer(progress, threads), problem)
+        dataset, others = with_models(lambda study: study.answer(progress, threads), problem)
     deliver(SpectrumAnswer(dataset, problem.settings, others), exports, as_json=as_json)
 
 
@@ -83,7 +83,7 @@ def _angles(text: str) -> list[float]:
     if bad.size:
         raise InvalidValueError(
             "{parameter} must be {allowed}, got {slenderness}", parameter="--slenderness", allowed=allowed,
-            value=bad[0], slenderness=Amount(bad[0], "rad" if unit else ""), hint="wrong unit?",
+            value=bad[0], slenderness=Amount(bad[0], "rad" if unit else ""), hint="check the unit",
         )  # fmt: skip
     angles: list[float] = (values if unit else np.arctan(1.0 / values)).tolist()
     return angles
@@ -107,7 +107,7 @@ _SHOWN = (
 
 @dataclass(frozen=True, eq=False)
 class SpectrumAnswer:
-    """Spectra, as of `rocking_spectrum`."""
+    """Spectra of `rocking_spectrum`."""
 
     dataset: "xr.Dataset"
     settings: "Settings"
@@ -119,7 +119,7 @@ class SpectrumAnswer:
         return rocking_spectrum_picture(self.dataset)
 
     def answer(self) -> Answer:
-        """Return every history, and what each curve shows."""
+        """Return every history, and the summary of each curve."""
         dataset = self.dataset
         return Answer({
             "motions": [str(name) for name in dataset["motion"].values.tolist()],
@@ -138,7 +138,7 @@ class SpectrumAnswer:
         })  # fmt: skip
 
     def curves(self) -> list[dict[str, Any]]:
-        """Return what every curve shows: how many blocks end how, and the largest that stay standing or overturn."""
+        """Return one summary per curve: numbers of blocks by outcome, largest peak ratio, largest overturned period."""
         return [
             {
                 "motion": str(name),
@@ -160,15 +160,15 @@ class SpectrumAnswer:
             f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
             f"{sizes[-1]:.4g} m, {periods.size} sizes"
         )
-        each = dataset.sizes["slenderness_angle"]
-        for first in range(0, len(curves), each):
+        curves_per_motion = dataset.sizes["slenderness_angle"]
+        for first in range(0, len(curves), curves_per_motion):
             page.line(f"\n{curves[first]['motion']}", "bold")
-            page.rows(curves[first : first + each], _SHOWN, most=each)
+            page.rows(curves[first : first + curves_per_motion], _SHOWN, most=curves_per_motion)
         page.line(
             "\npeak / alpha is the largest of the blocks that stay standing; the last column is the largest 2 pi / p "
             "that overturns."
         )
-        failed = sum(one["failed"] for one in curves)
+        failed = sum(curve["failed"] for curve in curves)
         page.warn([f"{failed} histories could not be computed"] if failed else [])
         page.warn(filter(None, [dataset.attrs["contact"]]))
         show_models(page, self.answer(), Display(), dataset.attrs["restitution"], _overturned(dataset))
@@ -178,14 +178,14 @@ def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:
     return overturned(dataset["mode"].values)
 
 
-def _curve(one: "xr.Dataset") -> dict[str, Any]:
-    mode, period = one["mode"].values, one["period"].values
-    peaks, fallen = one["peak_ratio"].values[(mode == -1) | (mode == -2)], period[mode >= 0]
+def _curve(histories: "xr.Dataset") -> dict[str, Any]:
+    mode, period = histories["mode"].values, histories["period"].values
+    peaks, overturned_periods = histories["peak_ratio"].values[(mode == -1) | (mode == -2)], period[mode >= 0]
     return {
         "not_lifted": int((mode == -2).sum()),
         "rocked": int((mode == -1).sum()),
         "overturned": int((mode >= 0).sum()),
         "failed": int((mode == -3).sum()),
         "largest_peak_ratio": float(peaks.max()) if peaks.size else None,
-        "largest_overturned_period": float(fallen.max()) if fallen.size else None,
+        "largest_overturned_period": float(overturned_periods.max()) if overturned_periods.size else None,
     }

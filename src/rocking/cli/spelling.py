@@ -1,4 +1,4 @@
-"""Errors and hints in the words of the command line: its own options, and --set for keys without one."""
+"""Errors and hints with the options of the command line, and --set for keys without an option."""
 
 from contextvars import ContextVar
 
@@ -9,20 +9,20 @@ from rocking.messages import Fact, Message, Option, Parameter, Spelling
 
 
 class RefusedCommandError(Exception):
-    """A command is refused; its text names what was typed."""
+    """A refused command; its message names the options as typed."""
 
 
 _RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs", default=None)
-_KEYS = {"restitution.model": "restitution"}  # options by keys whose last part they do not have for a name
+_KEYS = {"restitution.model": "restitution"}  # options with another name than the key
 
 
 def run_in(context: typer.Context) -> None:
-    """Let messages name options as the command of a context has them."""
+    """Set the running command, whose options messages name."""
     _RUNNING.set(context)
 
 
 def spelled(message: Message | RockingError | str) -> str:
-    """Return a message or an error as the command that runs spells it."""
+    """Return a message or an error with the options of the running command."""
     context = _RUNNING.get()
     if context is None:
         return str(message)
@@ -32,25 +32,25 @@ def spelled(message: Message | RockingError | str) -> str:
 
 
 def no_command() -> None:
-    """Forget the command that ran before in this process."""
+    """Remove the command that ran before in this process."""
     _RUNNING.set(None)
 
 
 def spelling(context: typer.Context) -> Spelling:
-    """Return how a command spells what a message names."""
+    """Return the spelling of parameters and options in messages of a command."""
 
-    def spelt(fact: Fact) -> str:
+    def text_of(fact: Fact) -> str:
         if isinstance(fact, Option):
             return _stated(context, fact)
         if isinstance(fact, Parameter):
             return _named(context, fact)
         return str(fact)
 
-    return spelt
+    return text_of
 
 
 def _stated(context: typer.Context, option: Option) -> str:
-    """Return an option as it is typed: --units g, or --set motion.skip=3."""
+    """Return an option with its value: --units g, or --set motion.skip=3."""
     value = {True: "true", False: "false"}.get(option.value, option.value)
     if option.name in context.params and not _is_of_another_table(option):
         return f"--{option.name.replace('_', '-')}{'' if value is None else f' {value}'}"
@@ -59,7 +59,7 @@ def _stated(context: typer.Context, option: Option) -> str:
 
 
 def _named(context: typer.Context, parameter: Parameter) -> str:
-    """Return the option that was typed for a parameter, or its key if --set states it; its name otherwise."""
+    """Return the typed option of a parameter, its key if typed with --set, else its name."""
     if any(text.partition("=")[0].strip() == parameter.path for text in context.params.get("sets") or ()):
         return parameter.path
     name = _KEYS.get(parameter.path, parameter.name)
@@ -69,18 +69,18 @@ def _named(context: typer.Context, parameter: Parameter) -> str:
 
 
 def _is_of_another_table(fact: Option | Parameter) -> bool:
-    """Return whether a fact has the name of an option of bodies, but is of no body."""
+    """Return True for a name of a body option in a table that is not of a body."""
     from rocking.bodies.formats.schema import BLOCK_KEYS
 
     return fact.name in BLOCK_KEYS and fact.path.partition(".")[0] not in {"body", "block", fact.path}
 
 
 def typed(context: typer.Context, *names: str) -> list[str]:
-    """Return which of some parameters were typed, as they are spelt."""
-    spelt = {"record": "second word", "motions": "second word", "sets": "--set"}
+    """Return the options of those parameters that were typed."""
+    labels = {"record": "second argument", "motions": "second argument", "sets": "--set"}
     sources = {name: context.get_parameter_source(name) for name in names}
     return [
-        spelt.get(name, f"--{name.replace('_', '-')}")
+        labels.get(name, f"--{name.replace('_', '-')}")
         for name, source in sources.items()
         if source is not None and source.name == "COMMANDLINE"
     ]

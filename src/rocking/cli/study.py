@@ -1,4 +1,4 @@
-"""What the commands of many histories have in common: their document, its problem, and the head of their pages."""
+"""Common functions of the commands with many histories: input document, study, and first lines of the output."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     import typer
 
 TABLES = ("body", "motion", "restitution", "settings")
-"""Tables of which `--set` changes a key, beside the one that a study has of its own."""
+"""Tables with keys that `--set` can change, in addition to the own table of a study."""
 MOST_HISTORIES = 10_000_000
-"""A larger study is a campaign."""
+"""Larger studies need `rocking campaign`."""
 _OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
 
 
-def problem_in(context: "typer.Context", word: str | None, command: str, *beside: str) -> StudyProblem | None:
-    """Return what a file with all tables describes, with the keys of `--set`; None where the word is no such file."""
-    if (file := document_file(context, word, ("campaign", command), beside)) is None:
+def problem_in(context: "typer.Context", word: str | None, command: str, *allowed: str) -> StudyProblem | None:
+    """Return the study of an input file with the keys of `--set`; None if the argument is no input file."""
+    if (file := document_file(context, word, ("campaign", command), allowed)) is None:
         return None
     kinds = [kind for kind, question in questions().items() if question.own_table() == command]
     with located(str(file), "file"):
@@ -43,12 +43,12 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *beside
             with_sets(tables, parsed_sets(context.params.get("sets"), (*TABLES, command)), lists=True)
         )
         if document.kind not in kinds:
-            raise InvalidValueError('it is of kind "{kind}": rocking campaign run computes it', kind=document.kind)
+            raise InvalidValueError('kind "{kind}" needs rocking campaign run', kind=document.kind)
         return _in_memory(document, InputFiles(file.parent))
 
 
 def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
-    """Return the problem of the document that was typed, which has some tables beside the settings."""
+    """Return the study of the options; tables: tables of the document other than motions and settings."""
     settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
     if stated := arguments.restitution(tables.pop("restitution", {})):
         tables["restitution"] = stated
@@ -63,26 +63,26 @@ def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], *
 
 
 def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
-    """Return the problem of a document, after refusing what only the files of a campaign show."""
+    """Return the study of a document; refuse keys of campaigns and studies that are too large."""
     for name, keys in document.of_files.items():
         if odd := sorted(keys & getattr(document, name).model_fields_set):
             raise InvalidValueError(
-                "{parameter} is for files of rocking campaign: leave it out, or compute this with it",
+                "{parameter} is for rocking campaign: remove the key, or use rocking campaign",
                 parameter=f"{name}.{odd[0]}",
             )  # fmt: skip
     problem = StudyProblem.of(document, files)
     if (count := histories_in(problem)) > MOST_HISTORIES:
         raise InvalidValueError(
-            "there must be at most {limit} histories, got {count}", limit=MOST_HISTORIES, count=count,
-            hint="rocking campaign computes more",
+            "at most {limit} histories are allowed, got {count}", limit=MOST_HISTORIES, count=count,
+            hint="use rocking campaign for more",
         )  # fmt: skip
     return problem
 
 
 def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
-    """Return the number of histories with all files of folders; of an adaptive study that of the first round.
+    """Return the number of histories with all files of folders; for an adaptive study that of the first round.
 
-    compared: with those of the models that the default is compared with.
+    compared: include the histories of the models compared with the default.
     """
     document, models = problem.document, 1 + len(problem.with_compared_models) * compared
     motions = len(problem.motions) / document.motion_count if document.motions else 1.0
@@ -92,14 +92,14 @@ def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
 def body_and_motion(
     arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str] | None
 ) -> StudyProblem:
-    """Return the problem of a study of one body and one motion; own: the study's own table."""
+    """Return a study of one body and one motion; own: own table of the study."""
     _, named = arguments.body_and_motions()
     if not named:
         raise InvalidValueError(NO_MOTION)
     if several := arguments.several:
         raise InvalidValueError(
-            "this is of one motion, and {set} is of several: rocking fragility says in which share of them a body "
-            "overturns, rocking predict how likely it is, rocking simulate under which it does",
+            "this command accepts one motion, and {set} contains several. For several use rocking fragility, predict "
+            "or simulate",
             set=" ".join(several)[:100],
         )  # fmt: skip
     return of_body(arguments, kind, own, restitution, in_lists([arguments.of_body(named)]))
@@ -112,7 +112,7 @@ def of_body(
     restitution: Sequence[str] | None,
     motions: list[dict[str, Any]],
 ) -> StudyProblem:
-    """Return the problem of a study of one body under motions; own: the study's own table."""
+    """Return a study of one body under several motions; own: own table of the study."""
     stated = restitution or ()
     if twice := next((text for text in stated if stated.count(text) > 1), None):
         raise InvalidValueError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])
@@ -127,7 +127,7 @@ def of_body(
 
 
 def models_table(restitution: Sequence[str] | None) -> dict[str, Any]:
-    """Return the table [restitution] of models that were typed; empty without any."""
+    """Return the table [restitution] of the given models; empty without a model."""
     return {"models": list(restitution)} if restitution else {}
 
 
@@ -145,30 +145,32 @@ def in_lists(motions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _differ_in_files(table: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Return whether two tables of records differ in their files alone."""
+    """Return True if two tables of records differ only in their files."""
     return "records" in other and {**table, "records": ()} == {**other, "records": ()}
 
 
 def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the table of synthetic motions, none where motions are named; usual: what serves where nobody says."""
+    """Return the table of synthetic motions, None with given motions; usual: defaults."""
     options = {name: arguments.options[name] for name in ("synthetic", "count", "seed")}
     if arguments.body_and_motions()[1]:
         if odd := [f"--{name}" for name, value in options.items() if value is not None]:
             raise InvalidValueError(
-                "{options} is for synthetic motions: leave it out beside --motion", options=", ".join(odd)
+                "{options} is for synthetic motions, not for --motion: remove {options}", options=", ".join(odd)
             )
         return None
     odd = ["--units"] if arguments.acceleration is not None else []
     of_files = OF_FILES - {"time_step"}
     if odd := [*odd, *(f"motion.{key}" for key in arguments.sets.get("motion", {}) if key in of_files)]:
-        raise InvalidValueError("{options} is for record files: leave it out, or give --motion", options=", ".join(odd))
+        raise InvalidValueError(
+            "{options} is for record files: remove {options}, or give --motion", options=", ".join(odd)
+        )
     return {**usual, **arguments.table("motion", options)}
 
 
 def motions_of(
     arguments: Arguments, table: Callable[[Sequence[str]], dict[str, Any]], usual: Mapping[str, Any]
 ) -> list[dict[str, Any]]:
-    """Return the tables of the motions that were named, each made by `table`, or that of synthetic ones."""
+    """Return the tables of the given motions, built by `table`, or that of synthetic motions."""
     if (synthetic := family(arguments, usual)) is None:
         return in_lists(arguments.each(arguments.body_and_motions()[1], table))
     if "synthetic" not in synthetic:
@@ -183,19 +185,19 @@ def source_lines(motions: Sequence[MotionSummary]) -> list[tuple[str, str]]:
 
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
-    """Return what is printed of ground on which bodies may slide and hop: its friction, unless that is varied."""
+    """Return the printed line of a contact with sliding; varied: friction is an axis of the study."""
     stated = settings.stated
     if "friction" not in stated:
         return []
     e, law = stated.get("normal_restitution"), stated.get("normal_restitution_law")
     bounce = f"; normal restitution {e:g} ({law})" if e else ""
     friction = "varied" if varied else f"{settings.friction:g}"
-    moves = "slide, hop" if settings.friction < NEVER_SLIDES else "hop"
-    return [("contact", f"friction {friction}{bounce}: it may {moves} and fly")]
+    motions = "sliding, hopping" if settings.friction < NEVER_SLIDES else "hopping"
+    return [("contact", f"friction {friction}{bounce}; {motions} and free flight are possible")]
 
 
 def subject_lines(problem: StudyProblem, display: Display, *, varied: bool = False) -> list[tuple[str, str]]:
-    """Return what is printed of the body of a study, and of the ground under it."""
+    """Return the printed lines of the body of a study and of its contact."""
     body, settings = problem.bodies[0], problem.settings
     answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
     line = body_line(body, answer, display, ("parts", "centre_height", *SIDE))
@@ -206,7 +208,7 @@ _GROUND = {"friction", "normal_restitution", "normal_restitution_law"}
 
 
 def subject_values(problem: StudyProblem) -> dict[str, Any]:
-    """Return the body and the motion of a study of one of each for an answer."""
+    """Return the values of body and motion of a study of one body and one motion."""
     body, motion = problem.bodies[0], problem.motions[0]
     stated = problem.settings.stated
     varied = {axis.name for axis in problem.document.axes}

@@ -1,4 +1,4 @@
-"""`rocking validate-predictions`: how good predictions are, where the outcomes are known."""
+"""`rocking validate-predictions`: scores of predictions with measured outcomes."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rocking.spec.validation import FolderValidation
 
 TABLES = ("body", "motion", "settings", "predict")
-NOTE = "Scores with their 95 % intervals, whole motions drawn anew; balanced accuracy has no say in a verdict."
+NOTE = "95 % intervals: bootstrap of motions. The verdict does not use balanced accuracy."
 _SCORES = ("forecast", "brier", "logarithmic", "balanced_accuracy")
 
 
@@ -51,8 +51,8 @@ def validate_predictions(
     document, inputs = _document(context, files[0])
     problem = ValidationProblem.of(document, files, inputs)
     with bar("motions", len(problem.motions), quiet=as_json) as progress:
-        found = problem.answer(lambda done: progress(1), threads)
-    deliver(ValidationAnswer(found), exports, as_json=as_json)
+        result = problem.answer(lambda done: progress(1), threads)
+    deliver(ValidationAnswer(result), exports, as_json=as_json)
 
 
 def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, InputFiles]":
@@ -62,12 +62,12 @@ def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, 
     from rocking.spec.validation import is_question
 
     arguments = Arguments(context, *TABLES)
-    told = {
+    values = {
         "restitution": number_or_name(arguments.options["restitution"]), "friction": arguments.options["friction"]
     }  # fmt: skip
     typed = {
         "body": arguments.table("body", {"units": arguments.length}),
-        "predict": arguments.table("predict", told),
+        "predict": arguments.table("predict", values),
         "settings": arguments.table("settings", {}),
         "motion": arguments.table("motion", {"units": arguments.acceleration}),
     }
@@ -75,39 +75,39 @@ def _document(context: typer.Context, body: Path) -> "tuple[ValidationDocument, 
     if is_question(body):
         stated = dict(tables_in(body) or {})
     with located(body.name, "file"):
-        whole = {**stated, **{name: {**stated.get(name, {}), **keys} for name, keys in typed.items() if keys}}
-        return checked(ValidationDocument, whole), CommandFiles(body.parent)
+        tables = {**stated, **{name: {**stated.get(name, {}), **keys} for name, keys in typed.items() if keys}}
+        return checked(ValidationDocument, tables), CommandFiles(body.parent)
 
 
 @dataclass(frozen=True)
 class ValidationAnswer:
-    """How good the predictions of a folder are."""
+    """Scores of the predictions of a folder."""
 
-    found: "FolderValidation"
+    result: "FolderValidation"
 
     def answer(self) -> Answer:
-        """Return how good the predictions were."""
-        return self.found.answer()
+        """Return the scores."""
+        return self.result.answer()
 
     def draw(self) -> Any:
         from rocking.plots import reliability_picture
 
-        return reliability_picture(next(iter(self.found.found.values())))
+        return reliability_picture(next(iter(self.result.found.values())))
 
     def show(self, page: Page) -> None:
-        for each in self.found.found.values():
-            page.line(each.verdict, style="bold")
-            for line in each.sentences[1:]:
+        for validation in self.result.found.values():
+            page.line(validation.verdict, style="bold")
+            for line in validation.sentences[1:]:
                 page.line(line)
             page.line()
-            answer = each.answer()
+            answer = validation.answer()
             page.rows(({"forecast": name, **scores} for name, scores in answer["scores"].items()), _SCORES)
             page.line()
             page.rows(answer["reliability"], ("predicted", "observed", "count"))
             page.line()
         page.line(NOTE)
-        page.facts([("assumed", each) for each in self.found.prediction.assumed])
-        if self.found.ignored:
-            page.line(f"Columns that were not read: {', '.join(self.found.ignored)}")
-        page.warn(self.found.repairs)
-        page.warn(f"{self.found.source}, line {each.line}: {each.reason}" for each in self.found.refused)
+        page.facts([("assumed", reason) for reason in self.result.prediction.assumed])
+        if self.result.ignored:
+            page.line(f"Columns that were not read: {', '.join(self.result.ignored)}")
+        page.warn(self.result.repairs)
+        page.warn(f"{self.result.source}, line {row.line}: {row.reason}" for row in self.result.refused)

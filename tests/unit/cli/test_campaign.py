@@ -65,7 +65,7 @@ def test_run_status_resume_export(run, job, tmp_path):
     folder = tmp_path / "c"
     code, out, err = run("run", job(), "--output", folder)
     assert (code, err) == (0, "")
-    assert f"sines: all 600 histories (6 chunks) are safe in {folder}" in out
+    assert f"sines: all 600 histories (6 chunks) are stored in {folder}" in out
     assert "next: rocking campaign export" in out
     code, out, _ = run("status", folder)
     assert (code, "all 600 histories" in out) == (0, True)
@@ -168,7 +168,7 @@ def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     folder = tmp_path / "c"
     assert run("run", job(), "--output", folder)[0] == 0
     code, out, _ = run("verify", folder)
-    assert (code, "600 of 600 histories were read and are what was written, in 6 chunks" in out) == (0, True)
+    assert (code, "600 of 600 histories verified, in 6 chunks" in out) == (0, True)
     one, other = sorted((folder / "histories" / "shards").glob("*.shard"))[:2]
     data = bytearray(one.read_bytes())
     if harm == "flip":
@@ -239,7 +239,7 @@ def test_killed_before_it_began(run, job, tmp_path):
     (folder / "job.toml").write_bytes(job().read_bytes())
     (folder / "inputs.json").write_text(json.dumps({"job_file": "a", "job_folder": str(tmp_path), "files": []}))
     code, out, _ = run("status", folder)
-    assert (code, "nothing is computed yet; go on with: rocking campaign resume" in out) == (0, True)
+    assert (code, "no history is computed yet; go on with: rocking campaign resume" in out) == (0, True)
     told = json.loads(run("status", folder, "--json")[1])
     assert (list(told), told["chunks"], told["complete"]) == ([*STATUS, "units"], None, False)
     assert run("resume", folder)[0] == 0

@@ -36,19 +36,19 @@ def folder(tmp_path, monkeypatch):
 def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
     """Check is honest about the first round; status counts rounds; a campaign is complete after the last one."""
     out = run("campaign", "check", "map.toml")[1]
-    assert "in the first round, as are time and disk; what it finds decides on later rounds" in out
+    assert "histories, time and disk of the first round" in out
     checked = json.loads(run("campaign", "check", "map.toml", "--json")[1])
     assert checked["first_round_only"] is True
     assert f"usually {checked['later'][0]} to {checked['later'][1]} more histories" in out
     code, out, err = run("campaign", "run", "map.toml", "--output", "c")
     assert (code, err) == (0, "")
     rounds = len(list((tmp_path / "c").glob("round-*")))
-    assert f"({rounds} rounds, {rounds} chunks) are safe in c" in out
+    assert f"({rounds} rounds, {rounds} chunks) are stored in c" in out
     told = json.loads(run("campaign", "status", "c", "--json")[1])
     assert (told["rounds_begun"], told["complete"]) == (rounds, True)
     assert told["histories"] == json.loads((tmp_path / "c" / "finished.json").read_text())["histories"]
     (tmp_path / "c" / "finished.json").unlink()
-    assert f"round {rounds} has begun, how many follow is not known" in run("campaign", "status", "c")[1]
+    assert f"round {rounds} has begun, the number of rounds is open" in run("campaign", "status", "c")[1]
     refuses(("campaign", "export", "c", "--output", "boundary=r.csv"), "go on with: rocking campaign resume c")
     assert run("campaign", "resume", "c", "--workers", "1")[0] == 0
     out = printed("campaign", "export", "c", "--output", "boundary=r.csv")
@@ -66,7 +66,7 @@ def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
 
 
 def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
-    """Ctrl-C before there is a campaign: nothing was begun, and nobody says that anything is safe; afterwards it is."""
+    """Ctrl-C before and during a campaign: the message states that results are kept only if there are results."""
     from rocking.campaigns.jobs import Job, JobFolder
 
     def stopped(*_):
@@ -74,12 +74,12 @@ def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
 
     monkeypatch.setattr(Job, "read", stopped)
     for words in (("check", "map.toml"), ("run", "map.toml", "--output", "c")):
-        assert run("campaign", *words) == (3, "", "rocking: stopped; nothing was begun\n")
+        assert run("campaign", *words) == (3, "", "rocking: stopped; nothing was computed\n")
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
     JobFolder.create("c", Job.read("map.toml"))
     monkeypatch.setattr(Job, "of_text", stopped)
-    assert run("campaign", "resume", "c") == (3, "", "rocking: stopped; what was recorded before is safe\n")
+    assert run("campaign", "resume", "c") == (3, "", "rocking: stopped; finished results are kept\n")
 
 
 @pytest.mark.parametrize("target", ["r.html", "r.csv", "r.json", "r.xlsx", "all"])
@@ -104,7 +104,7 @@ def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
     words = err.replace("\n", " ")
     assert (code, out) == (4, "")
     assert f"cannot write {target}" in words
-    assert "No space left on device; the campaign itself is safe" in words
+    assert "No space left on device; the campaign is unchanged" in words
     left = set(tmp_path.rglob("*")) - set((tmp_path / "c").rglob("*")) - before
     assert left <= {tmp_path / "all", tmp_path / "all" / "inventory.provenance.json"}
 
@@ -141,7 +141,7 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
     [
         (("--output", "r.txt"), "an inventory can be written as .html, .pdf, .xlsx, .csv, .json"),
         (("--output", "boundary=r.csv"), 'a campaign of kind "inventory" has no boundary'),
-        (("--output", "r.html", "--crossing-curves", "refuse"), "without restitution and crossing_curves"),
+        (("--output", "r.html", "--crossing-curves", "refuse"), "without --restitution and --crossing-curves"),
         (("--output", "missing/r.html"), "cannot write missing/r.html"),
     ],
 )

@@ -62,7 +62,7 @@ def test_a_file_that_asks_for_a_response(answered, run, file, tmp_path):
     asked = tmp_path / "asked.toml"
     asked.write_text('[response]\nfriction = 0.5\n[body]\nfile = "body.toml"\n')
     code, out, err = run(asked, "--json")
-    assert (code, "body and gravity are taken from it" in err) == (0, True)
+    assert (code, "only body and gravity are used" in err) == (0, True)
     assert json.loads(out) == answered(body)
     (tmp_path / "other.toml").write_text(PRISM.replace("height = 3.0", "height = 2.5"))
     _, out, _ = run(asked, "--json", "--set", "body.file=other.toml")

@@ -45,7 +45,7 @@ def test_the_list(printed, answered):
 def test_one_is_only_listed(printed, tmp_path, monkeypatch):
     """Nothing is written by --dry-run and --json."""
     monkeypatch.chdir(tmp_path)
-    assert "writes bust.toml, three-components.csv, and by its commands bust.png" in printed("bust", "--dry-run")
+    assert "files: bust.toml, three-components.csv; files of its commands: bust.png" in printed("bust", "--dry-run")
     assert json.loads(printed("bust", "--json"))["examples"][0]["outputs"] == ["bust.png"]
     assert list(tmp_path.iterdir()) == []
 
@@ -64,7 +64,7 @@ def test_nothing_of_the_user_is_written_over(run, refuses, tmp_path, monkeypatch
 def test_a_folder_of_the_user_is_never_taken(refuses, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "histories").mkdir()
-    refuses(["histories", "--force"], "histories: a folder of that name is there already; take another folder")
+    refuses(["histories", "--force"], "histories: a folder of this name already exists; use another folder")
     assert [path.name for path in tmp_path.iterdir()] == ["histories"]
 
 

@@ -210,7 +210,7 @@ def test_a_folder_is_resumed(run, printed, folder, tmp_path, monkeypatch):
     run(folder, "--output", table, "--set", "identify.tilt=0")
     assert len(done) == 6
     for what in (folder, folder / "times_0.csv"):
-        assert "is what is read, and would be written over" in run(what, *SIZE, "--output", folder / "times_0.csv")[2]
+        assert "would overwrite an input file" in run(what, *SIZE, "--output", folder / "times_0.csv")[2]
     (folder / "all.csv").write_bytes(whole)  # a table of trials is no trial
     assert "4 of 6 trials" in run(folder)[1]
 

@@ -23,9 +23,9 @@ def own(monkeypatch, tmp_path):
 @pytest.mark.verifies("behaviour")
 def test_add_list_calibrate(printed, answered, own):
     """A file is added once and listed; models and calibration are then of 41 measurements in ten groups."""
-    assert "added to your evidence" in printed("measurements", "add", own)
+    assert "added to the own measurements" in printed("measurements", "add", own)
     assert answered("measurements", "add", own)["new"] is False
-    assert "are in your evidence already" in printed("measurements", "add", own)
+    assert "already in the own measurements" in printed("measurements", "add", own)
     assert [each["measurements"] for each in answered("measurements", "list")["sets"]] == [12, 9, 9, 9, 2]
     assert "Ceh" in (page := printed("measurements", "list"))
     assert f"\n{store.own_files()[0].name} " in page  # by its name; the folder is said once

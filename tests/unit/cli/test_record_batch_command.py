@@ -118,7 +118,7 @@ def test_simulate_has_a_row_for_each_record(run, folder):
     peaks = [row["peak_rotation"] for row in rows["motions"]]
     assert any(peak == pytest.approx(abs(one["peak_rotation"])) for peak in peaks)
     code, out, _ = run("simulate", *BLOCK, "sine:amplitude=1,period=0.8", "sine:amplitude=9,period=0.8")
-    assert "It overturns under 1 of 2 motions." in out
+    assert "Overturning under 1 of 2 motions." in out
     assert "no uplift" in out
 
 
@@ -178,7 +178,7 @@ def test_convert_keeps_its_source(run, tmp_path, word):
     for out in (own, tmp_path / ".." / tmp_path.name / "own.csv", f"columns={own}"):
         code, _, err = run("record", "convert", word.format(own), "--output", out)
         assert code == 2
-        assert "is what is read, and would be written over" in err
+        assert "would overwrite an input file" in err
     assert own.read_bytes() == before
 
 

@@ -132,7 +132,7 @@ def test_components(run, answered, tmp_path):
     path.write_text(FOUR, encoding="utf-8")
     code, out, err = run(path, "--units", "m/s2")
     assert (code, out) == (2, "")
-    assert f"say which one: {' or '.join(repr(f'{path}#column {k}') for k in (2, 3, 4))}" in err
+    assert f"use {' or '.join(repr(f'{path}#column {k}') for k in (2, 3, 4))}" in err
     assert "component=" not in err
     assert err.count("\n") == 1
     left = run(path, f"z={path}#column 4", "--units", "m/s2")[2]

@@ -32,7 +32,7 @@ def test_the_body_is_taken_and_the_rest_is_for_simulate(run, taken):
     code, out, err = run(taken)
     assert (code, err) == (0, "")
     first, _, rest = out.partition("\n")
-    assert first.endswith("everything else it says is for `rocking simulate`.")
+    assert first.endswith("`rocking simulate` uses the other tables.")
     assert rest == run("--width", 0.5, "--height", 2)[1]
 
 

@@ -83,7 +83,7 @@ def test_a_file_says_how_curves_that_cross_are_written(refuses, run, monkeypatch
         run(*f"fragility stripes.toml --output p58=curves.csv{more}".split())
     assert seen == [("common-dispersion", None), ("refuse", "vase")]
     Path("stripes.toml").write_text(f"{STRIPES}{export}bootstrap = 99\n")
-    refuses(("fragility", "stripes.toml"), "export.bootstrap is for files of rocking campaign")
+    refuses(("fragility", "stripes.toml"), "export.bootstrap is for rocking campaign")
 
 
 def test_numbers_are_whole_in_a_narrow_terminal(run, monkeypatch):
@@ -108,7 +108,7 @@ OTHERS = [(command, file) for command, own in KINDS.items() for file in FILES if
 
 @pytest.mark.parametrize(("command", "file"), OTHERS)
 def test_a_study_of_another_kind_is_refused_before_it_is_computed(refuses, command, file):
-    refuses((command, JOBS / f"{file}.toml"), "rocking campaign run computes it")
+    refuses((command, JOBS / f"{file}.toml"), "needs rocking campaign run")
 
 
 def test_an_inventory_file_runs(run, monkeypatch):

@@ -140,7 +140,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
             "time_step, units, vertical here, got scale",
         ),
         (lambda at: None, ("--set", "predict.fricton=0.4"), "did you mean friction"),
-        (lambda at: None, ("--output", "found.xyz"), "by its ending a file is"),
+        (lambda at: None, ("--output", "found.xyz"), "unknown extension"),
         (shutil.rmtree, (), "no such folder"),
     ],
 )

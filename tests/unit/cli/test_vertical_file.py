@@ -51,9 +51,9 @@ def test_a_file_of_several_components(refuses, answered, files, tmp_path):
     units = ("--units", "m/s2")
     both = answered("record", "show", f"{table}#column 2", f"z={table}#column 3", *units)
     assert both["peak_vertical_acceleration"] == pytest.approx(2.0, rel=1e-6)
-    refuses(("record", "show", table, f"z={table}#column 3", *units), f"say which one: '{table}#column 2'")
+    refuses(("record", "show", table, f"z={table}#column 3", *units), f"use '{table}#column 2'")
     components = "the file has the components column 2, column 3; "
     refuses(
         ("record", "show", f"{table}#column 2", f"z={table}", *units),
-        f"{components}say which one: '{table}#column 2' or",
+        f"{components}use '{table}#column 2' or",
     )

@@ -72,11 +72,11 @@ def test_share_of_the_slenderness_angle(run):
     alpha = Block(width=0.5, height=2.0).slenderness_angle
     share = 10.0 * 3.141592653589793 / 180.0 / alpha
     assert code == 2
-    assert f"An angle of 10 degrees is --initial-rotation {share:.3g}" in err
+    assert f"For an angle of 10 degrees use --initial-rotation {share:.3g}" in err
     assert run("simulate", *SIZE, "--initial-rotation", f"{share:.3g}")[0] == 0
     # 5 alpha is no right angle, and doubted all the same: it can only fall
     code, _, err = run("simulate", *SIZE, "--initial-rotation", "5")
-    assert (code, f"An angle of 5 degrees is --initial-rotation {0.5 * share:.3g}" in err) == (0, True)
+    assert (code, f"For an angle of 5 degrees use --initial-rotation {0.5 * share:.3g}" in err) == (0, True)
 
 
 def test_models_in_space_are_listed_and_shown(printed):

@@ -43,10 +43,10 @@ def test_kinds_with_and_without():
         ("histories", "fragility={}/b.nc", 'nothing to export because a campaign of kind "histories" has no'),
         ("histories", "{}/b.doc", r"histories can be written as .* got '\.doc'"),
         ("histories", "{}/none/b.nc", "no folder"),
-        ("histories", "report={}/b.html", "a report is of an inventory"),
+        ("histories", "report={}/b.html", "report is for inventories"),
         ("histories", "{}/b.png", 'a campaign of kind "histories" has no picture; take its table'),
         ("histories", "{}/a.nc", "names a.nc twice"),
-        ("overturning-map", "picture={}/b.nc", r"a picture is \.png, \.svg, \.pdf, got '\.nc'"),
+        ("overturning-map", "picture={}/b.nc", r"a picture must be \.png, \.svg, \.pdf, got '\.nc'"),
         ("overturning-map", "{}/none/b.png", "no folder"),
     ],
 )
