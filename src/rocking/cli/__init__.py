@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
 
     from rocking.cli.application import SUBCOMMANDS, application
     from rocking.cli.help import Output
-    from rocking.cli.spelling import no_command, spelled
+    from rocking.cli.spelling import help_hint, no_command, spelled, with_help
     from rocking.errors import RockingError, SlowEngineWarning
 
     click_exception: Any = BadParameter.__mro__[2]  # the module of click depends on the version of typer
@@ -41,10 +41,10 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
             full_arguments = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
             code = application(arguments)(args=full_arguments, prog_name="rocking", standalone_mode=False, obj=main)
     except RockingError as error:
-        refusal = error.without_file(unnamed_file)
+        refusal = with_help(error.without_file(unnamed_file))
     except click_exception as error:
         refusal = _refusal(error)
-        refusal.add_hint(_help_of(error))
+        refusal.add_hint(help_hint(getattr(error, "ctx", None)))
     except OSError as error:
         refusal = RockingError(
             "{fault}: {file}" if error.filename else "{fault}", fault=error.strerror or str(error), file=error.filename
@@ -79,14 +79,6 @@ def _register_own_models() -> None:
         from rocking.restitution.from_file import register_own
 
         register_own()
-
-
-def _help_of(error: Any) -> str:
-    """Return a reference to the help of the command with the invalid option."""
-    from rocking.messages import Message
-
-    context = getattr(error, "ctx", None)
-    return Message("see {command} --help", {"command": "rocking" if context is None else context.command_path})
 
 
 def _refusal(error: Any) -> "RockingError":

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.bodies.formats import FORMATS, describes_solid
 from rocking.cli.numbers import units_of, value_of
-from rocking.cli.spelling import typed
+from rocking.cli.spelling import UsageError, typed
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 from rocking.errors import BodyFileError, InvalidValueError, RecordError, RockingError
 from rocking.messages import Message
@@ -70,23 +70,23 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
         path, equals, value = text.partition("=")
         table, dot, key = path.strip().partition(".")
         if not (equals and dot and key):
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} must be table.key=value, such as settings.gravity=9.81, got {value}", parameter="--set",
                 value=text,
             )  # fmt: skip
         if table not in allowed:
             near = checks.nearest(table, list(allowed))
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter}: no table named {table!r:.60} here; there are {names}", parameter="--set", table=table,
                 names=", ".join(allowed), hint=near,
             )  # fmt: skip
         if (new := present.get(f"{table}.{key}")) is not None:
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter}: unknown key {key!r:.60}", parameter="--set", key=f"{table}.{key}",
                 hint=Message("did you mean {name}?", {"name": new}),
             )  # fmt: skip
         if key in tables.setdefault(table, {}):
-            raise InvalidValueError("{parameter} {key} is given twice", parameter="--set", key=f"{table}.{key}")
+            raise UsageError("{parameter} {key} is given twice", parameter="--set", key=f"{table}.{key}")
         try:
             tables[table][key] = tomllib.loads(f"value = {value.strip()}")["value"]
         except (tomllib.TOMLDecodeError, ValueError, RecursionError):
@@ -106,7 +106,7 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
             (stated,) = stated
         if not isinstance(stated, dict):
             reason = f"it has several [[{name}]]" if isinstance(stated, list) else f"its {name} is no table"
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} {key}: {reason}", parameter="--set", key=f"{table}.{next(iter(keys))}", reason=reason,
                 hint="change the file",
             )  # fmt: skip
@@ -122,7 +122,7 @@ def document_file(
         return None
     allowed = {"body", "objects", "motions", "threads", "output", "as_json", "sets", "details", *allowed}
     if stated := typed(context, *(name for name in context.params if name not in allowed)):
-        raise InvalidValueError(
+        raise UsageError(
             "{file} {content}contains the whole input; {options} cannot be combined with it", file=word, content=has,
             options=", ".join(stated), hint="use --set to change a key",
         )  # fmt: skip
@@ -161,7 +161,7 @@ class Arguments:
         for key in sets:
             option = (spelt or {}).get(key, self.spelt(key))
             if option and values.get(key) is not None:
-                raise InvalidValueError(
+                raise UsageError(
                     "{parameter} and --set {key} set the same key; remove one", parameter=option[:100],
                     key=f"{name}.{key}",
                 )  # fmt: skip
@@ -188,7 +188,7 @@ class Arguments:
             body, positional = None, [body, *positional]
         for word in positional:
             if body is not None and is_body(word) and not is_body(body):
-                raise InvalidValueError(
+                raise UsageError(
                     "the body file must precede the motion: {motion} {body}", motion=word[:100], body=body[:100],
                 )  # fmt: skip
         return body, [*positional, *(motions or ())]
@@ -213,7 +213,7 @@ class Arguments:
         """Return the table [restitution] of `--set`, else the default, else that of the option; may be empty."""
         keys: Tables = self.sets.get("restitution", {})
         if keys and (option := self.spelt("restitution")):
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} and --set {key} set the same key; remove one", parameter=option,
                 key=f"restitution.{next(iter(keys))}",
             )  # fmt: skip
@@ -228,10 +228,10 @@ class Arguments:
             in_toml = Path(file).suffix.lower() == ".toml"
             stated = not {"density", *_KNOWN}.isdisjoint(values)
             if self.sizes or "depth" in values or (stated and in_toml):
-                raise InvalidValueError("Give a body file or dimensions, not both.")
+                raise UsageError("Give a body file or dimensions, not both")
             return self.table("body", {"file": file, "units": self.length, **values}, {"file": file})
         if set(self.sizes) not in map(set, _SIZES):
-            raise InvalidValueError(
+            raise UsageError(
                 "No complete body: got {options}. Give a body file, --width and --height, or --set "
                 "body.slenderness_angle and body.semi_diagonal", options=" ".join(self.sizes.values()) or "no option",
             )  # fmt: skip
@@ -244,7 +244,7 @@ class Arguments:
         table = self.table("motion", {**source, "units": units}, dict.fromkeys(source, word), keys)
         spelt = ["--units" if key == "units" and units is not None else f"motion.{key}" for key in table]
         if "pulse" in source and (odd := [origin for key, origin in zip(table, spelt, strict=True) if key in OF_FILES]):
-            raise InvalidValueError(
+            raise UsageError(
                 "{options} is for record files, not for the pulse {pulse!r}", options=", ".join(odd), pulse=word[:200],
             )  # fmt: skip
         return table
@@ -253,17 +253,17 @@ class Arguments:
         """Return the table [motion] of a plane body: one motion, with the vertical component of z=."""
         along = _along(motions)
         if "y" in along:
-            raise InvalidValueError("a plane body accepts motions along x (horizontal) and z (vertical), not along y")
+            raise UsageError("a plane body accepts motions along x (horizontal) and z (vertical), not along y")
         if "x" not in along:
-            raise InvalidValueError("No motion along x. Give --motion x=FILE --motion z=FILE")
+            raise UsageError("No motion along x. Give --motion x=FILE --motion z=FILE")
         table = self.motion_table(along["x"])
         if "z" not in along:
             return table
         vertical = _place(along["z"])
         if "record" not in table or "record" not in vertical:
-            raise InvalidValueError("for a plane body with vertical motion, x and z must be record files")
+            raise UsageError("for a plane body with vertical motion, x and z must be record files")
         if odd := sorted({"vertical", "vertical_file"} & set(table)):
-            raise InvalidValueError(
+            raise UsageError(
                 "z={file} and --set {key} set the same key; remove one", file=along["z"][:100], key=f"motion.{odd[0]}"
             )
         component = {"vertical": vertical["component"]} if "component" in vertical else {}
@@ -275,12 +275,12 @@ class Arguments:
         # `--set` of format, unit and time step applies to every file, other keys to the motion along x, or the first
         along = _along(motions)
         if not along:
-            raise InvalidValueError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")
+            raise UsageError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")
         if list(along) == ["x"]:
             return self.motion_table(along["x"])
         records = [axis for axis, word in along.items() if "record" in _place(word)]
         if len(records) > 1 and "component" in self.sets.get("motion", {}):
-            raise InvalidValueError(
+            raise UsageError(
                 "motion.component accepts one record file, got {count}: use FILE#COMPONENT", count=len(records)
             )
         first = next((axis for axis in ("x", *records, *along) if axis in (records or along)), "x")
@@ -325,8 +325,8 @@ def _along(motions: Sequence[str]) -> dict[str, str]:
         axis, equals, source = word.partition("=")
         axis, source = (axis, source) if equals and axis in {"x", "y", "z"} else ("x", word)
         if axis in along:
-            raise InvalidValueError(
-                "Several motions along {axis}: {first!r} and {second!r}. Remove one.", axis=axis,
+            raise UsageError(
+                "Several motions along {axis}: {first!r} and {second!r}. Remove one", axis=axis,
                 first=along[axis][:100], second=source[:100],
             )  # fmt: skip
         along[axis] = source

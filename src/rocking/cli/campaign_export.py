@@ -14,7 +14,8 @@ from rocking.campaigns.jobs.rounds import finished_rounds
 from rocking.cli.campaign_output import bar
 from rocking.cli.exports import PICTURES
 from rocking.cli.page import print_json
-from rocking.errors import InvalidValueError, RockingError, extra
+from rocking.cli.spelling import UsageError
+from rocking.errors import RockingError, extra
 from rocking.tables import target_of
 
 REPORT, PICTURE = "report", "picture"  # the ranked table of an inventory with its lights; the picture of a study
@@ -29,7 +30,7 @@ def write(
     targets = [_target(text, opened) for text in out]
     paths = [path.resolve() for path, _ in targets]
     if duplicate := next((path for path in paths if paths.count(path) > 1), None):
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} {file} is given twice; use another name", parameter="--output", file=duplicate.name
         )
     for path, content in targets:
@@ -76,31 +77,27 @@ def _check(folder: JobFolder, to: Path, content: str, restitution: str | None, c
         from rocking.reports.inventory_folder import check_form
 
         if folder.job.study.assess is None or restitution is not None or crossing_curves is not None:
-            raise InvalidValueError("report is for inventories, without --restitution and --crossing-curves")
+            raise UsageError("report is for inventories, without --restitution and --crossing-curves")
         if to.suffix:
             check_form(to)
             if not to.parent.is_dir():
-                raise InvalidValueError(
-                    "cannot write {file}: folder {folder} does not exist", file=to, folder=to.parent
-                )
+                raise UsageError("cannot write {file}: folder {folder} does not exist", file=to, folder=to.parent)
     elif content == PICTURE:
         from rocking.plots.campaign import check_picture
 
         target_of(to)
         if to.suffix.lower() not in PICTURES:
-            raise InvalidValueError(
+            raise UsageError(
                 "a picture must be {endings}, got {ending!r}",
                 endings=", ".join(PICTURES),
                 ending=to.suffix or "no extension",
             )
         if crossing_curves is not None:
-            raise InvalidValueError("--crossing-curves is for fragility and fema-p58, not for a picture")
+            raise UsageError("--crossing-curves is for fragility and fema-p58, not for a picture")
         check_picture(folder, restitution)
         extra("matplotlib", "a picture")
     elif content not in ENDINGS:
-        raise InvalidValueError(
-            parameter="CONTENT", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=content
-        )
+        raise UsageError(parameter="CONTENT", allowed=f"one of {', '.join((*ENDINGS, REPORT, PICTURE))}", value=content)
     else:
         checked(folder, to, content, restitution, crossing_curves)
 

@@ -24,7 +24,7 @@ from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
 from rocking.campaigns.jobs.folder import JOB, JobStatus
 from rocking.campaigns.jobs.rounds import resume_hint
 from rocking.cli.page import lines, print_json
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 from rocking.quantities import Quantity
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6  # exit codes; 0 is done, 2 invalid input
@@ -55,13 +55,13 @@ def codes(folder: Path | None = None) -> Iterator[None]:
 def executor_of(name: str, workers: int | None, address: str | None) -> tuple[str | Executor, int | None]:
     """Return the executor and its number of workers."""
     if name not in {"serial", "processes", "dask"}:
-        raise InvalidValueError(parameter="--executor", allowed="serial, processes or dask", value=name)
+        raise UsageError(parameter="--executor", allowed="serial, processes or dask", value=name)
     if (address is not None) != (name == "dask"):
-        raise InvalidValueError("--executor dask and --address tcp://host:8786 must be given together")
+        raise UsageError("--executor dask and --address tcp://host:8786 must be given together")
     if address is None:
         return name, workers
     if workers is not None:
-        raise InvalidValueError("--workers is not for --executor dask, whose cluster sets the number of workers")
+        raise UsageError("--workers is not for --executor dask, whose cluster sets the number of workers")
     return DaskExecutor(address), None
 
 

@@ -14,8 +14,8 @@ from rocking.cli.compared import model_facts, overturned, show_models, with_mode
 from rocking.cli.exports import Export, Exports, write_records
 from rocking.cli.numbers import row
 from rocking.cli.page import Page, bar, deliver
+from rocking.cli.spelling import UsageError
 from rocking.conventions import percent
-from rocking.errors import InvalidValueError
 from rocking.quantities import Quantity, closely
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ def code_checks(
     with bar("histories", quiet=as_json) as progress:
         result, others = with_models(
             lambda study: compare_code_methods(
-                study.bodies, study.motions, study.restitution, levels=level_values, im=intensity_measure, threads=threads,
-                progress=progress, **study.stated,
+                study.bodies, study.motions, study.restitution, levels=level_values, im=intensity_measure,
+                threads=threads, progress=progress, **study.stated,
             ), problem,
         )  # fmt: skip
     result = replace(result, bodies=_names(problem, Display(arguments.length or "m")))
@@ -127,15 +127,13 @@ def _bodies(arguments: "Arguments", file: str | None) -> list[dict[str, Any]]:
     )
     if ratios is not None:
         if widths is not None or heights is None:
-            raise InvalidValueError("--slenderness needs --height and replaces --width")
+            raise UsageError("--slenderness needs --height and replaces --width")
         if min(ratios) <= 0.0:
-            raise InvalidValueError(
-                parameter="--slenderness", allowed="above 0", value=min(ratios), hint="height over width"
-            )
+            raise UsageError(parameter="--slenderness", allowed="above 0", value=min(ratios), hint="height over width")
         heights, widths = zip(*[(h, h / ratio) for h in heights for ratio in ratios], strict=True)
     widths, heights = widths or [None], heights or [None]
     if len(widths) != len(heights) and 1 not in {len(widths), len(heights)}:
-        raise InvalidValueError(
+        raise UsageError(
             "--width and --height must have the same number of values, or one value; got {widths} and {heights}",
             widths=len(widths), heights=len(heights),
         )  # fmt: skip

@@ -10,7 +10,7 @@ from rocking.cli.page import Page
 from rocking.dynamics.mechanics_base import in_space
 from rocking.errors import RockingError
 from rocking.quantities import Quantity
-from rocking.restitution.headline import headline
+from rocking.restitution.headline import headline, label_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 Facts = Callable[[Any], dict[str, Any]]
 _OWN = {
     "overturned": Quantity("overturned", "1", "number of histories with overturning", label="overturned"),
-    "share": Quantity("share", "1", "fraction of the histories with overturning", label="fraction", digits=".2%"),
 }
 
 
@@ -36,10 +35,15 @@ def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem
     return result, others
 
 
+def model_label(name: str, body: Any) -> str:
+    """Return the label of a restitution model in the result of a body: with -3d for a 3D body."""
+    return label_of(name, in_space=in_space(body))
+
+
 def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any = None) -> dict[str, Any]:
-    """Return the sentence on the restitution model of a result, and the values of the compared models."""
+    """Return the sentence on the restitution model of a result, and the values of the compared models by label."""
     values_of_models = {
-        name: {"error": str(result)} if isinstance(result, RockingError) else facts(result)
+        model_label(name, body): {"error": str(result)} if isinstance(result, RockingError) else facts(result)
         for name, result in others.items()
     }
     return {"headline": headline(label, in_space=in_space(body)), "other_models": values_of_models}
@@ -50,6 +54,7 @@ def show_models(page: Page, answer: Answer, display: Display, label: str, own: d
     page.line()
     other_models = answer["other_models"]
     if other_models:
+        label = label_of(label, in_space=all(name.endswith("-3d") for name in other_models))
         rows = {label: own, **{name: values for name, values in other_models.items() if "error" not in values}}
         page.line("Compare restitution models", "bold")
         shown = replace(display, own={**display.own, **_OWN})

@@ -1,4 +1,4 @@
-"""`rocking equilibria`: in which ways a body can stand, what lies between them, and how sure its base is."""
+"""`rocking equilibria`: stable poses of a body, energy barriers between poses, and tolerance of the base."""
 
 import math
 from dataclasses import dataclass
@@ -11,18 +11,20 @@ import typer
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.equilibria import TOLERANCES, BaseTolerance, Equilibria, StablePose, base_tolerances
+from rocking.bodies.solid import RoundBase
 from rocking.cli import options
 from rocking.cli.arguments import Arguments
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.page import Page, deliver
 from rocking.cli.restitution import named_body
 from rocking.cli.solids import show_body
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DIRECTIONS = 12  # azimuths towards which barriers are printed, from x towards y
+DIRECTIONS = 12  # azimuths of printed barriers, from x towards y
+_POSES = 8  # printed poses without --details
 
 EXPORTS = {
     "picture": DRAWN,
@@ -39,6 +41,7 @@ def equilibria(
     min_barrier: Annotated[float | None, typer.Option(help=r"Lowest energy barrier of a pose \[m].")] = None,
     sets: options.Set = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking equilibria`."""
@@ -49,34 +52,35 @@ def equilibria(
         subject = Solid.from_section(subject)
         subject.name = Path(body or "").name
     if isinstance(subject, Body):
-        raise InvalidValueError(
-            "equilibria are those of a body in space: give a mesh, a file with [[solid.part]], or a block or a section"
+        raise UsageError(
+            "a 3D body is needed: give a mesh, a file with [[solid.part]], or a block or a section with depth"
         )
     result = subject.equilibria(min_barrier=min_barrier)
-    deliver(EquilibriaAnswer(subject, result, arguments.length or "m"), exports, as_json=as_json)
+    deliver(EquilibriaAnswer(subject, result, arguments.length or "m", details), exports, as_json=as_json)
 
 
 @dataclass(frozen=True)
 class EquilibriaAnswer:
-    """All ways in which a solid can stand, and the one in which it does."""
+    """All stable poses of a solid, and its present pose."""
 
     solid: Solid
     equilibria: Equilibria
     length: str  # unit of lengths
+    details: bool = False
 
     @cached_property
     def pose(self) -> StablePose:
-        """The pose into which it settles from its way up."""
+        """The present pose, into which the solid settles."""
         return self.equilibria.settling((0.0, 0.0, -1.0))
 
     @cached_property
     def bases(self) -> tuple[BaseTolerance, ...]:
-        """What it stands on by tolerance."""
+        """Base, uplift and energy barrier for tolerances of the contact points."""
         return base_tolerances(self.equilibria, self.pose, [t for t in TOLERANCES if t < self.pose.height])
 
     @cached_property
     def directions(self) -> AnswerRows:
-        """What it takes to lift and to topple it, by azimuth."""
+        """Rise of the centre of mass to overturning, and uplift acceleration, by azimuth."""
         turns = [2.0 * math.pi * k / DIRECTIONS for k in range(DIRECTIONS)]
         ends = [self.equilibria.toppled(self.pose, turn) for turn in turns]
         return AnswerRows({
@@ -88,7 +92,7 @@ class EquilibriaAnswer:
         })  # fmt: skip
 
     def answer(self) -> Answer:
-        """Return every way to stand, what leaves the pose that it has, and how sure its base is."""
+        """Return every stable pose, the energy barriers of the present pose, and the tolerance of its base."""
         equilibria, stable = self.equilibria, self.equilibria.stable
         passes = equilibria.neighbours(self.pose)
         return Answer({
@@ -107,7 +111,10 @@ class EquilibriaAnswer:
             "stands_in": self.pose.number,
             "passes": AnswerRows({
                 "topples_into": [saddle.end for saddle in passes],
-                **{name: [getattr(saddle, name) for saddle in passes] for name in ("rise", "energy", "tilt", "azimuth")},
+                **{
+                    name: [getattr(saddle, name) for saddle in passes]
+                    for name in ("rise", "energy", "tilt", "azimuth")
+                },
             }),
             "directions": self.directions,
             "base_tolerances": AnswerRows({
@@ -140,27 +147,41 @@ class EquilibriaAnswer:
         answer, display = self.answer(), Display(self.length)
         show_body(page, answer["body"], display)
         page.line()
-        ways = "one way" if len(equilibria.stable) == 1 else f"{len(equilibria.stable)} ways"
-        page.line(
-            f"It can stand in {ways}; between them lie {len(equilibria.saddles)} saddles and {len(equilibria.summits)} summits."
-            if equilibria.saddles
-            else f"It can stand in {ways}."
-        )
+        count = len(equilibria.stable)
+        page.line(f"The body has {count} stable pose{'s' * (count != 1)}. The present pose is {number}.", "bold")
+        page.values(self._weakest(display))
         for ring in answer["rings"]:
-            what = "rolls" if ring["kind"] == "stable" else "can be balanced"
-            lean, height = display.text("tilt", ring["tilt"]), display.text("centre_height", ring["centre_height"])
-            page.line(f"It {what} all the way round with its axis {lean} from the vertical, centre {height} high.")
+            tilt, height = display.text("tilt", ring["tilt"]), display.text("centre_height", ring["centre_height"])
+            page.line(
+                f"Ring of equilibria ({ring['kind']}): axis {tilt} from the vertical, centre of mass {height} high."
+            )
+        page.line()
         names = ("pose", "centre_height", "energy", "nearest_edge", "barrier")
-        page.rows(answer["stable"], names, display, bold={number}, most=len(equilibria.stable))
-        page.line()
-        page.line(f"It stands in pose {number}. To topple it towards a direction its centre must rise", "bold")
+        page.rows(answer["stable"], names, display, bold={number}, most=count if self.details else _POSES)
+        page.warn(equilibria.notes)
+        if self.details:
+            self._show_details(page, display)
+        else:
+            page.line("Directions and tolerance of the base: --details    Files: -o poses.csv, -o poses.png")
+
+    def _weakest(self, display: Display) -> list[tuple[str, str]]:
+        """Return labels and texts of the smallest uplift acceleration, the lowest barrier and the saddles."""
+        lines = []
+        for base in self.bases[:1]:  # without a tolerance
+            uplift = f"from {display.text('uplift_acceleration', base.uplift_acceleration)}"
+            if not isinstance(self.solid.base, RoundBase):
+                uplift += f", azimuth {display.text('azimuth', base.azimuth)} (from x towards y)"
+            rise = f"{display.text('barrier', base.barrier)} rise of the centre of mass"
+            lines += [("uplift", uplift), ("energy barrier", rise)]
+        saddles, summits = len(self.equilibria.saddles), len(self.equilibria.summits)
+        return [*lines, ("unstable equilibria", f"{saddles} saddles, {summits} summits")]
+
+    def _show_details(self, page: Page, display: Display) -> None:
+        page.line("\nRise of the centre of mass to overturning, by azimuth from x towards y", "bold")
         page.rows(self.directions, (), display)
-        page.line("azimuth: from x towards y.")
-        page.line()
-        page.line("What it stands on, if points of it that are this close to the ground touch it too", "bold")
+        page.line("\nBase with all points within this distance from the ground", "bold")
         page.rows(
-            answer["base_tolerances"],
+            self.answer()["base_tolerances"],
             ("tolerance", "touching", "corners", "nearest_edge", "azimuth", "uplift_acceleration", "barrier"),
             display,
         )
-        page.warn(equilibria.notes)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.cli.spelling import UsageError
+from rocking.errors import MissingExtraError
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -32,10 +33,10 @@ class Exports:
         files = tuple(_file(text, kinds) for text in texts or ())
         paths = [path for _, path in files]
         if duplicate := next((path for path in paths if paths.count(path) > 1), None):
-            raise InvalidValueError("{parameter} {file} is given twice", parameter="--output", file=duplicate)
+            raise UsageError("{parameter} {file} is given twice", parameter="--output", file=duplicate)
         for name, path in files:
             if not path.parent.is_dir():
-                raise InvalidValueError(
+                raise UsageError(
                     "cannot write {file!r}: folder {folder!r} does not exist", folder=str(path.parent), file=path.name
                 )
             if kinds[name].needs:
@@ -54,7 +55,7 @@ class Exports:
         names = [name for word in map(str, sources) for name in (word, word.partition("=")[2])]
         read = {Path(source).resolve() for name in names for source in (name, name.rpartition("#")[0]) if source}
         if overwritten := next((path for _, path in self.files if path.resolve() in read), None):
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} {file} would overwrite an input file", parameter="--output", file=overwritten,
                 hint="use another name",
             )  # fmt: skip
@@ -76,7 +77,7 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     if equals and name in kinds:
         path = Path(file)
         if path.suffix.lower() not in kinds[name].endings:
-            raise InvalidValueError(
+            raise UsageError(
                 "{content} must be {endings}, got {file!r:.60}", content=name, endings=_or(kinds[name].endings),
                 file=path.name,
             )  # fmt: skip
@@ -84,7 +85,7 @@ def _file(text: str, kinds: dict[str, Export]) -> tuple[str, Path]:
     path = Path(text)
     kind_name = next((kind for kind, export in kinds.items() if path.suffix.lower() in export.endings), None)
     if kind_name is None:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} {file!r:.60}: unknown extension; files: {contents}", parameter="--output", file=path.name,
             contents=_possible(kinds),
         )  # fmt: skip

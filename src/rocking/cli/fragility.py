@@ -9,7 +9,7 @@ from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import bar, deliver
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 from rocking.messages import Range
 from rocking.spec.questions.fragility import ExportTable, FragilityTable
 
@@ -147,17 +147,17 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     sets = arguments.sets.get("fragility", {})
     im = arguments.table("fragility", {"im": arguments.options["im"]}, keys={"im"})
     if not isinstance(im["im"], str):
-        raise InvalidValueError(parameter="fragility.im", allowed="text", value=im["im"])
+        raise UsageError(parameter="fragility.im", allowed="text", value=im["im"])
     intensity_measure = measure_of(im["im"])
     if len(arguments.options["restitution"] or ()) > 1 and kind != "stripes":
-        raise InvalidValueError(
+        raise UsageError(
             "--analysis {analysis} accepts one --restitution; use --analysis stripes for several", analysis=kind
         )
     own: dict[str, Any] = {**im, "limit_states": _states(states)}
     limit_states_of(tuple(own["limit_states"]))
     if scale is not None:
         if kind != "cloud":
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} is for --analysis cloud; {analysis} scales every motion to the levels",
                 parameter="--scale", analysis=kind,
             )  # fmt: skip
@@ -165,9 +165,9 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
     written = "g" if intensity_measure.name == "pga" else ""
     if kind == "cloud":
         if levels is not None:
-            raise InvalidValueError("--levels is not for --analysis cloud, which does not scale the motions")
+            raise UsageError("--levels is not for --analysis cloud, which does not scale the motions")
     elif intensity_measure.power == 0:
-        raise InvalidValueError(
+        raise UsageError(
             "{measure} does not change with the scale factor of a motion: use --analysis cloud",
             measure=intensity_measure.name,
         )
@@ -176,7 +176,7 @@ def _table(arguments: "Arguments") -> tuple[dict[str, Any], str]:
         own["levels"], written = values_table("--levels", levels, unit)
         checked_levels("--levels", row("--levels", levels, unit)[0], intensity_measure.unit)
     elif intensity_measure.uplift is None and "levels" not in sets:
-        raise InvalidValueError(
+        raise UsageError(
             "No intensity levels. Give --levels FIRST:LAST:COUNT of {measure} in {unit}",
             measure=intensity_measure.name,
             unit=intensity_measure.unit,
@@ -201,7 +201,7 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
     motions = motions_of(arguments, arguments.of_body, {"count": COUNT, "seed": SEED})
     count = motions[0].get("count")
     if isinstance(count, int) and not 1 <= count <= MOST_MOTIONS:
-        raise InvalidValueError(
+        raise UsageError(
             parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="use rocking campaign for more"
         )
     if kind != "cloud" and "levels" not in own:  # defaults depend on the uplift acceleration
@@ -221,12 +221,12 @@ def _check(problem: "StudyProblem", exports: Exports) -> None:
     """Refuse files that could not be written, before the computation."""
     several = len(problem.restitutions)
     if (curves := [f"{name}=FILE" for name in CURVES if name in exports.names]) and several > 1:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} {files} accepts the curves of one --restitution", parameter="--output",
             files=", ".join(curves), hint="use csv=FILE for several",
         )  # fmt: skip
     if "picture" in exports.names and several > MOST_IN_PICTURE:
-        raise InvalidValueError(
+        raise UsageError(
             "a picture accepts at most {limit} --restitution, got {count}", limit=MOST_IN_PICTURE, count=several
         )
     if "nrml" in exports.names:

@@ -12,8 +12,7 @@ from typing import Annotated, Any, ClassVar
 import typer
 from typer.core import TyperCommand
 
-from rocking.cli.spelling import run_in
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError, run_in
 
 SIZE, SHAKING, HOW, OUTPUT = "Block dimensions", "Ground motion", "Computation", "Output"
 _PANELS = ("Arguments", "Options", SHAKING, SIZE, HOW, OUTPUT)
@@ -121,7 +120,7 @@ class Command(TyperCommand):
             and not ctx.resilient_parsing
         ):
             run_in(ctx)
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} accepts one model here", parameter="restitution",
                 hint="use simulate to compare all models; map, fragility, histories and assess accept several",
             )  # fmt: skip

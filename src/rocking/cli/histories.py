@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from rocking.answers import Answer, Display
 from rocking.cli import options
-from rocking.cli.compared import model_facts, overturned, show_models, with_models
+from rocking.cli.compared import model_facts, model_label, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.outcome import contact_words, lost_contact, mode_shares
@@ -96,8 +96,12 @@ class HistoriesAnswer:
 
     @property
     def label(self) -> str:
-        """The restitutions."""
-        return ", ".join(self.problem.restitutions)
+        """Labels of the restitution models, separated by commas."""
+        return ", ".join(self._labels)
+
+    @property
+    def _labels(self) -> list[str]:
+        return [model_label(name, self.problem.bodies[0]) for name in self.problem.restitutions]
 
     def draw(self) -> Any:
         return self.problem.document.plot(_Finished(self.problem, self.dataset), None)
@@ -112,7 +116,7 @@ class HistoriesAnswer:
             "bodies": [str(body) for body in problem.bodies],
             "assumed": list(dict.fromkeys(text for body in problem.bodies for text in getattr(body, "assumed", ()))),
             "motions": [summary.answer() for summary in summaries_of(problem.kept_motions)],
-            "restitution": list(problem.restitutions),
+            "restitution": self._labels,
             "gravity": problem.settings.gravity,
             **{name: dataset[name].values.tolist() for name in names},
             "modes": mode_shares(dataset["mode"].values),

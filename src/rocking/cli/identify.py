@@ -11,8 +11,9 @@ from rocking.answers import Answer
 from rocking.cli import options
 from rocking.cli.exports import CSV, NETCDF, REPORTED, Export, Exports
 from rocking.cli.page import Page, bar, deliver
+from rocking.cli.spelling import UsageError
 from rocking.conventions import FEET, NORMAL_95
-from rocking.errors import InvalidValueError, MeasurementError, located
+from rocking.errors import MeasurementError, located
 from rocking.messages import Message, WrittenFile
 
 if TYPE_CHECKING:
@@ -22,8 +23,12 @@ if TYPE_CHECKING:
     from rocking.spec.reading import InputFiles
 
 TABLES = ("body", "measurement", "motion", "identify")
-_TELLING = 3
+_PROPOSED = 3
 """Number of proposed experiments that are printed."""
+_FACTS = 2
+"""Number of other quantities that are printed without --details."""
+_TRIALS = 8
+"""Number of trials that are printed without --details."""
 
 _NOISES = {"times": "ms", "rotation": "mrad", "angular_velocity": "mrad/s"}
 """Units of the noise by kind of measurement."""
@@ -56,6 +61,7 @@ def identify(
     sets: options.Set = None,
     workers: Annotated[int | None, typer.Option(min=1, max=4096, help="Number of processes for a folder.")] = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking identify`."""
@@ -68,11 +74,11 @@ def identify(
         table = next((path for name, path in exports.files if name == "csv"), None)
         with bar("trials", len(problem.trials), quiet=as_json) as progress:
             trials = problem.answers(table, workers, progress)
-        deliver(TrialsAnswer(trials), exports, as_json=as_json)
+        deliver(TrialsAnswer(trials, details), exports, as_json=as_json)
         return
     with bar("measurement", quiet=as_json):
         result = problem.answer()
-    answer = IdentifiedAnswer(result, Path(body or "").stem if record else "")
+    answer = IdentifiedAnswer(result, Path(body or "").stem if record else "", details)
     if result.refused:
         written = exports.write(answer)
         see = Message(" See {file}.", {"file": WrittenFile(str(written[0]))}) if written else ""
@@ -90,11 +96,11 @@ def _question(context: typer.Context, texts: list[str]) -> "tuple[Identification
     arguments = Arguments(context, *TABLES)
     bodies, measured = [text for text in texts if is_body(text)], [text for text in texts if not is_body(text)]
     if len(bodies) > 1 or len(measured) > 1:
-        raise InvalidValueError("Give one body and one measurement, got {arguments}", arguments=" and ".join(texts))
+        raise UsageError("Give one body and one measurement, got {arguments}", arguments=" and ".join(texts))
     if measured and Path(measured[0]).is_dir() and not bodies and not arguments.sizes:
         bodies = [str(path) for path in bodies_in(Path(measured[0]))]
         if len(bodies) > 1:
-            raise InvalidValueError(
+            raise UsageError(
                 "several body files, {bodies}", bodies=", ".join(bodies), hint="give one body file before the folder"
             ).at(measured[0])
     file = document_file(context, bodies[0] if bodies else None, ("measurement", "identify"), ("record", "workers"))
@@ -106,7 +112,7 @@ def _question(context: typer.Context, texts: list[str]) -> "tuple[Identification
         with located(str(file), "file"):
             return checked(IdentificationDocument, tables), InputFiles(file.parent)
     if not measured:
-        raise InvalidValueError("No measurement. Give a sound, a table of times or rotations, or a folder of trials")
+        raise UsageError("No measurement. Give a sound, a table of times or rotations, or a folder of trials")
     document: dict[str, Any] = {
         "measurement": arguments.table("measurement", {"file": measured[0]}),
         "identify": arguments.table("identify", {}),
@@ -132,6 +138,7 @@ class IdentifiedAnswer:
 
     result: "Identification"
     name: str = ""  # of the body
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return the coefficients, impacts and fit."""
@@ -145,22 +152,25 @@ class IdentifiedAnswer:
 
         result = self.result
         page.line(result.verdict, style="bold")
-        for foot in FEET:
-            page.line(f"Landing {foot}: {result.coefficients[foot]}.")
+        facts = _facts(result)
+        feet = [(f"landing {foot}", str(result.coefficients[foot])) for foot in FEET]
+        page.values([*feet, *(facts if self.details else facts[:_FACTS])])
         if result.forced:
             page.line(str(result.forced))
-        page.line()
-        page.rows(result.answer()["impacts"], IMPACT, most=len(result.impacts))
+        if self.details:
+            page.line()
+            page.rows(result.answer()["impacts"], IMPACT, most=len(result.impacts))
         _compared(page, result.models)
-        page.line()
-        page.facts(_facts(result), width=20)
-        page.line()
-        for design in result.designs[:_TELLING]:
-            page.line(
-                f"Let go from {design.release_ratio:g} of its slenderness angle, {design.impacts} impacts timed to "
-                f"{1e3 * design.timing_noise:.2g} ms: r to +- {NORMAL_95 * design.deviation:.2g}."
-            )
         page.warn(result.doubts)
+        if not self.details:
+            page.line("Impacts, noise and better experiments: --details    Files: -o impacts.csv, -o report.pdf")
+            return
+        page.line("\nProposed experiments", "bold")
+        for design in result.designs[:_PROPOSED]:
+            page.line(
+                f"Release at {design.release_ratio:g} of the slenderness angle, {design.impacts} impacts, timing "
+                f"error {1e3 * design.timing_noise:.2g} ms: 95 % interval of r +- {NORMAL_95 * design.deviation:.2g}."
+            )
 
 
 def _facts(result: "Identification") -> list[tuple[str, str]]:
@@ -168,16 +178,16 @@ def _facts(result: "Identification") -> list[tuple[str, str]]:
     p, tilt, noise = result.frequency_parameter, result.tilt, result.noise
     unit = next(unit for name, unit in _NOISES.items() if getattr(result.measurement, name, None) is not None)
     lines = [
-        ("scatter of ln r", f"{result.scatter}; none with a probability of {result.no_scatter:.3g}"),
-        ("p", f"{p} rad/s"),
+        ("scatter of ln r", f"{result.scatter}; probability of no scatter {result.no_scatter:.3g}"),
+        ("frequency parameter p", f"{p} rad/s"),
         ("tilt of the floor", f"{1e3 * tilt.value:.3g} ({1e3 * tilt.low:.3g} to {1e3 * tilt.high:.3g}) mrad"),
         ("noise", f"{1e3 * noise.value:.3g} {unit}"),
     ]
     if result.p_value == result.p_value:
-        lines += [("steadiness", f"p = {result.p_value:.2g} that impacts change with their number by chance alone")]
+        lines += [("constant r", f"p-value {result.p_value:.2g} (r independent of the number of the impact)")]
     if result.forced:
-        lines += [("clock, ahead by", f"{result.forced.clock} s"), ("gain", str(result.forced.gain))]
-    lines += [(f"impulse, {foot}", f"k = {position}") for foot, position in result.impulse.items()]
+        lines += [("clock offset", f"{result.forced.clock} s"), ("gain", str(result.forced.gain))]
+    lines += [(f"impulse position, {foot}", f"k = {position}") for foot, position in result.impulse.items()]
     return lines + [(name, str(getattr(result, name))) for name in ("trend", "damping") if getattr(result, name)]
 
 
@@ -186,6 +196,7 @@ class TrialsAnswer:
     """Result of the trials of a folder."""
 
     result: "IdentifiedTrials"
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return the trials and their mean."""
@@ -203,16 +214,18 @@ class TrialsAnswer:
         page.line(result.verdict, style="bold")
         if result.mean is not None:
             page.line(
-                "The interval is from how trials differ, and never narrower than their own allow; the error of the "
-                "size of the body, common to all, is in it."
+                "The interval is that of the differences between trials, and at least that of single trials. It "
+                "includes the error of the size of the body, common to all trials."
             )
         page.line()
-        page.rows(result.good_rows, TRIAL, most=len(result.rows))
+        page.rows(result.good_rows, TRIAL, most=len(result.rows) if self.details else _TRIALS)
         _compared(page, result.models)
         kept = len(result.rows) - result.computed
         if kept:
-            page.line(f"{kept} of {len(result.rows)} were there already, and were not computed again.")
+            page.line(f"{kept} of {len(result.rows)} trials were stored and not recomputed.")
         if result.passed_over:
             page.line(result.passed_over_verdict)
         page.warn(result.doubts)
         page.warn(f"{row['trial']}: {row['refused']}" for row in result.rows if row["refused"])
+        if not self.details:
+            page.line("All trials: --details    Files: -o trials.csv, -o trials.png")

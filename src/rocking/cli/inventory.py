@@ -11,14 +11,14 @@ from rocking.answers import Answer
 from rocking.cli import completion, options
 from rocking.cli.help import SHAKING
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 from rocking.spec.questions.inventory import InventoryTable
 
 if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.inventory.assessment import Assessment
 
-_MOST_PLANNED = 5
+_MOST_PLANNED, _MOST_OBJECTS = 3, 8  # printed without --details
 _MOST_REASONS = 5
 NOTHING_ASSESSED = 1
 """Exit code if no object of the list could be assessed."""
@@ -64,6 +64,7 @@ def inventory(
         list[str] | None,
         options.output("Folder for all reports, or file: .html, .pdf, .xlsx, .csv, .json; repeatable."),
     ] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking inventory`."""
@@ -78,7 +79,7 @@ def inventory(
         print(f"rocking: {nothing_assessed(assessment)}", file=sys.stderr)
         raise typer.Exit(NOTHING_ASSESSED)
     written, left_out = _write(assessment, targets)
-    deliver(InventoryAnswer(assessment), as_json=as_json)
+    deliver(InventoryAnswer(assessment, details), as_json=as_json)
     if not as_json:
         for path in written:
             print(f"wrote {path}")
@@ -101,7 +102,7 @@ def _check(targets: list[Path]) -> None:
         if target.suffix and not target.is_dir():
             check_form(target)
             if not target.parent.is_dir():
-                raise InvalidValueError(
+                raise UsageError(
                     "cannot write {file!r}: folder {folder!r} does not exist",
                     folder=str(target.parent),
                     file=target.name,
@@ -132,14 +133,14 @@ def _problem(context: typer.Context) -> "StudyProblem":
     options, named = arguments.options, arguments.options["motion"] or ()
     objects, values = str(options["objects"]), arguments.values(InventoryTable)
     if {"pga", "pgv"} <= values.keys():
-        raise InvalidValueError("Give --pga or --pgv, not both; motions are scaled to one of them.")
+        raise UsageError("Give --pga or --pgv, not both; motions are scaled to one of them")
     table = arguments.table("inventory", {**values, "objects": objects}, {"objects": objects})
     synthetic = family(arguments, {"synthetic": FAMILY, "count": COUNT, "seed": SEED})
     if synthetic is not None and not {"pga", "pgv"} & set(table):
-        raise InvalidValueError("No intensity level. Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
+        raise UsageError("No intensity level. Give --pga 0.3g or --pgv 25cm/s, or --motion FILE")
     motions = arguments.each(named, arguments.components) if synthetic is None else [synthetic]
     if pulse := next((motion["pulse"] for motion in motions if "pulse" in motion), None):
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} accepts record files only, got the pulse {pulse!r}", parameter="--motion", pulse=pulse[:80]
         )
     tables: dict[str, Any] = {"inventory": table}
@@ -153,6 +154,7 @@ class InventoryAnswer:
     """A ranked list."""
 
     assessment: "Assessment"
+    details: bool = False
 
     def answer(self) -> Answer:
         """Return the ranked list, the plan of measures, and the basis of the assessment."""
@@ -161,52 +163,85 @@ class InventoryAnswer:
         return answer_of(self.assessment)
 
     def show(self, page: Page) -> None:
-        from rich.text import Text
-
-        from rocking.cli.study import source_lines
         from rocking.dynamics.settings import NEVER_SLIDES
-        from rocking.motions.summary import summaries_of
         from rocking.restitution.headline import headline
         from rocking.studies.inventory import table
-        from rocking.studies.inventory.lights import LIGHT_MARKS, LIGHT_NAMES
+        from rocking.studies.inventory.lights import LIGHT_MARKS
 
         assessment = self.assessment
-        say, hazard = table.words_of(assessment), assessment.hazard
+        say, hazard, verdicts = table.words_of(assessment), assessment.hazard, assessment.verdicts
         page.line(f"{assessment.source}: {hazard.words(say.code)}, {say(hazard.source)}")
-        page.facts([] if hazard.synthetic else source_lines(summaries_of(hazard.motions)))
-        for rank, verdict in enumerate(assessment.verdicts, start=1):
+        numbers = {light: sum(verdict.light is light for verdict in verdicts) for light in LIGHT_MARKS}
+        counts = [f"{say(LIGHT_MARKS[light])} {number}" for light, number in numbers.items()]
+        page.line(f"{', '.join(reversed(counts))}\n", "bold")
+        self._show_objects(page, say)
+        self._show_plan(page, say)
+        page.line()
+        if self.details:
+            self._show_details(page, say)
+        in_space = {verdict.item.solid is not None or verdict.friction < NEVER_SLIDES for verdict in verdicts}
+        models = [say(headline(assessment.restitution, in_space=is_3d)) for is_3d in sorted(in_space)]
+        page.line("\n".join(dict.fromkeys(models)))
+        if assessment.ignored:
+            page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))
+        for text in (table.untranslated(assessment), table.sliding(assessment)):
+            if text:
+                page.line(text)
+        if not self.details:
+            page.line("Advice, all objects and definitions: --details    Reports: -o FOLDER, -o report.pdf")
+
+    def _show_objects(self, page: Page, say: Any) -> None:
+        """Write one line per object, with the other models if they differ, and the advice with details."""
+        from rich.text import Text
+
+        from rocking.studies.inventory import table
+        from rocking.studies.inventory.lights import LIGHT_MARKS
+
+        assessment = self.assessment
+        count = len(assessment.verdicts) if self.details else _MOST_OBJECTS
+        for rank, verdict in enumerate(assessment.verdicts[:count], start=1):
             line = Text(f"{rank:3}  ")
             line.append(f"{say(LIGHT_MARKS[verdict.light]):<7}", style=_STYLES[verdict.light.name])
             line.append(f"  {table.named(verdict, say)}: {table.sentence(verdict, assessment)}")
             page.rich(line)
-            notes = [getattr(table, name)(verdict, assessment) for name in ("advice", "model_note", "noted")]
-            page.line(f"{'':12} {' '.join(filter(None, notes))}", "dim")
+            names = ("advice", "model_note", "noted") if self.details else ("model_note",)
+            if notes := " ".join(filter(None, (getattr(table, name)(verdict, assessment) for name in names))):
+                page.line(f"{'':12} {notes}", "dim")
+        if (remaining := len(assessment.verdicts) - count) > 0:
+            page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
         for refused in assessment.not_assessed:
             reason, name = say(refused.reason), refused.label or say("no name")
             page.line(
                 f"     {say('not assessed: {name}, line {row}: {reason}', name=name, row=refused.row, reason=reason)}"
             )
-        if plan := assessment.plan:
-            page.line(f"\n{say('What to do first, any one of:')}")
-            for k, entry in enumerate(plan[:_MOST_PLANNED], start=1):
-                page.line(f"{k:3}  {table.plan_words(entry, say)}")
-            if (remaining := len(plan) - _MOST_PLANNED) > 0:
-                page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
-        lights = assessment.thresholds.sentences(say.code).items()
-        page.line("\n" + "\n".join(f"{say(LIGHT_NAMES[light]).upper()}: {text}" for light, text in lights))
+
+    def _show_plan(self, page: Page, say: Any) -> None:
+        """Write the first objects of the plan of measures."""
+        from rocking.studies.inventory import table
+
+        plan = self.assessment.plan
+        count = len(plan) if self.details else _MOST_PLANNED
+        if plan:
+            page.line(f"\n{say('First measures, one per object is sufficient:')}")
+        for k, entry in enumerate(plan[:count], start=1):
+            page.line(f"{k:3}  {table.plan_words(entry, say)}")
+        if (remaining := len(plan) - count) > 0:
+            page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
+
+    def _show_details(self, page: Page, say: Any) -> None:
+        """Write the definitions of the ratings, the sources, and the lines and statements of the list."""
+        from rocking.cli.study import source_lines
+        from rocking.motions.summary import summaries_of
+        from rocking.studies.inventory import table
+        from rocking.studies.inventory.lights import LIGHT_MARKS
+
+        assessment = self.assessment
+        for light, text in assessment.thresholds.sentences(say.code).items():
+            page.line(f"{say(LIGHT_MARKS[light])}: {text}")
         page.line(assessment.thresholds.conventions(say.code)[0])
+        page.facts([] if assessment.hazard.synthetic else source_lines(summaries_of(assessment.hazard.motions)))
         if others := table.passed_over(assessment):
-            lines = "; ".join(f"{', '.join(map(str, rows))} ({cause})" for cause, rows in others)
+            lines = "; ".join(f"{', '.join(map(str, rows))} ({reason})" for reason, rows in others)
             page.line(say("Lines that are not objects: {lines}", lines=lines))
-        if words := table.stated(assessment):
-            page.line(words)
-        in_space = {
-            verdict.item.solid is not None or verdict.friction < NEVER_SLIDES for verdict in assessment.verdicts
-        }
-        models = [say(headline(assessment.restitution, in_space=is_3d)) for is_3d in sorted(in_space)]
-        page.line("\n".join(dict.fromkeys(models)))
-        if assessment.ignored:
-            page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))
-        if words := table.untranslated(assessment):
-            page.line(words)
-        page.line(table.sliding(assessment))
+        if text := table.stated(assessment):
+            page.line(text)

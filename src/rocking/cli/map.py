@@ -12,6 +12,7 @@ from rocking.cli import options
 from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
+from rocking.cli.spelling import UsageError
 from rocking.outcome import mode_shares
 from rocking.quantities import Quantity
 from rocking.spec.questions.map import MapTable
@@ -26,14 +27,14 @@ if TYPE_CHECKING:
 
 _LINE = 1e-4  # tolerance of the boundary in a picture, finer than a pixel
 _RESTITUTIONS = {
-    "first": Quantity("first", "", "restitution", label="restitution"),
-    "second": Quantity("second", "", "restitution that is compared with it", label="against"),
+    "first": Quantity("first", "", "restitution model", label="restitution"),
+    "second": Quantity("second", "", "compared restitution model", label="compared with"),
 }
 _OUTCOMES = {"count": Quantity("count", "1", "number of cells", label="cells")}
 _CHANGES = {
-    "count": Quantity("count", "1", "number of cells with different outcomes", label="flips"),
-    "only_second": Quantity("only_second", "1", "overturning with the second alone", label="only with the second"),
-    "only_first": Quantity("only_first", "1", "overturning with the first alone", label="only with the first"),
+    "count": Quantity("count", "1", "number of cells with different outcomes", label="different outcomes"),
+    "only_second": Quantity("only_second", "1", "cells", label="overturning only with second"),
+    "only_first": Quantity("only_first", "1", "cells", label="overturning only with first"),
 }
 _FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
 _LAST = 3  # overturning after more impacts is one row; JSON has one entry per number
@@ -59,6 +60,7 @@ def map(
     friction: options.Friction = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(DATASET)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking map`."""
@@ -77,17 +79,17 @@ def map(
         picture = "picture" in exports.names
         maps, others = with_models(lambda study: _computed(study, progress, threads, picture=picture), problem)
     arrays, compared = maps
-    deliver(MapAnswer(problem, arrays, compared, typed_units, length or "m", others), exports, as_json=as_json)
+    answer = MapAnswer(problem, arrays, compared, typed_units, length or "m", others, details)
+    deliver(answer, exports, as_json=as_json)
 
 
 def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, picture: bool) -> "tuple[MapArrays, Any]":
     """Return the map with the first restitution model, and the comparison of several models or None."""
-    from rocking.errors import InvalidValueError
     from rocking.studies._overturning_map import MapArrays
 
     axes = problem.document.axes
     if picture and min(axis.values.size for axis in axes) < 2:
-        raise InvalidValueError("a picture needs at least two values of --x and of --y, got one")
+        raise UsageError("a picture needs at least two values of --x and of --y, got one")
     result = problem.answer(progress, threads)
     if len(problem.restitutions) == 1:
         return result, None
@@ -98,15 +100,13 @@ def _computed(problem: "StudyProblem", progress: Any, threads: int | None, *, pi
 
 def _table(arguments: "Arguments") -> tuple[dict[str, Any], dict[str, str]]:
     """Return the table [map], and the given units by name of the axis."""
-    from rocking.errors import InvalidValueError
-
     axes, typed_units = {}, {}
     for option in ("x", "y"):
         axes[option], unit = _axis(f"--{option}", arguments.options[option])
         if unit:
             typed_units[axes[option]["axis"]] = unit
     if arguments.options["restitution"] and "restitution" in {axes["x"]["axis"], axes["y"]["axis"]}:
-        raise InvalidValueError("restitution is an axis of this map: remove --restitution")
+        raise UsageError("restitution is an axis of this map: remove --restitution")
     return arguments.table("map", {**arguments.values(MapTable), **axes}), typed_units
 
 
@@ -118,7 +118,6 @@ def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
     """
     from rocking import checks
     from rocking.cli.numbers import values_table
-    from rocking.errors import InvalidValueError
     from rocking.studies.axis import axes
 
     name, equals, values = text.partition("=")
@@ -126,12 +125,12 @@ def _axis(option: str, text: str) -> tuple[dict[str, Any], str]:
     name = checks.spelling(name.strip(), available)
     if name not in available:
         hint = checks.nearest(name, available)
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter}: unknown axis {axis!r:.60}; axes: {names}", parameter=option, axis=name,
             names=", ".join(sorted(available)), hint=hint,
         )  # fmt: skip
     if not equals or not values.strip():
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} must be {axis}=FIRST:LAST:COUNT or {axis}=A,B,C, got no values", parameter=option, axis=name
         )
     table, unit = values_table(name, values, available[name].unit)
@@ -148,6 +147,7 @@ class MapAnswer:
     written: dict[str, str]  # given units by name of the axis
     length: str  # unit of lengths
     others: dict[str, Any]  # maps of the compared models
+    details: bool = False
 
     @property
     def axes(self) -> "tuple[Axis, Axis]":
@@ -261,37 +261,40 @@ class MapAnswer:
         return {"x": [float(x.min()), float(x.max())], "y": [float(y.min()), float(y.max())], "first": first}
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import source_lines, subject_lines
-        from rocking.motions.summary import MotionSummary
+        from rocking.cli.study import show_assumed, show_subject
 
         problem, answer = self.problem, self.answer()
         written = {which: self.written.get(axis.name, "") for which, axis in zip("xy", self.axes, strict=True)}
         display = Display(self.length, own=answer.quantities, units=written)
         varied = "friction" in {axis.name for axis in self.axes}
-        page.facts(subject_lines(problem, display, varied=varied))
-        page.line(f"motion:       {self.arrays.attributes['motion']}")
-        page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
-        page.line(f"restitution:  {answer['restitution']};  engine: {answer['engine']}")
+        show_subject(page, problem, display, self.arrays.attributes["motion"], varied=varied)
         for which in "xy":
             values = answer[which]["values"]
-            span = _span(display, which, (values[0], values[-1])).replace(" ", ", ", 1)
-            page.line(f"{which}:            {span}, {values.size} values")
+            page.line(f"{which}: {_span(display, which, (values[0], values[-1]))}, {values.size} values")
+        page.line(f"Restitution: {answer['restitution']}")
+        page.line()
+        count = overturned(self.arrays["mode"])["overturned"]
+        page.line(f"Overturning in {count} of {answer['cells']} cells.", "bold")
+        page.values(_overturning_lines(display, answer))
+        page.warn(filter(None, [answer["contact"]]))
         page.line()
         counted = replace(display, own={**answer.quantities, **_OUTCOMES})
-        page.rows(_grouped(answer["modes"]), ("mode", "count", "share"), counted, dense=False)
-        page.line()
-        page.line(_begins(display, answer["overturning"]))
-        for line in _islands_sentences(display, answer["islands"]):
-            page.line(line)
-        page.warn(filter(None, [answer["contact"]]))
-        if self.arrays.points is not None and self.problem.document.map.refine:
-            page.line(f"Refined along boundaries: {self.arrays.points} points.")
+        page.rows(_grouped(answer["modes"]), ("mode", "count", "share"), counted)
         if self.compared is not None:
             page.line()
             changed = replace(display, own={**answer.quantities, **_CHANGES})
-            page.rows(answer["sensitivity"]["pairs"], _FLIPS, changed, dense=False)
+            page.rows(answer["sensitivity"]["pairs"], _FLIPS, changed)
             page.line(self.compared.verdict)
         show_models(page, answer, display, answer["restitution"], overturned(self.arrays["mode"]))
+        show_assumed(page, problem, details=self.details)
+        if not self.details:
+            page.line("Safe islands and engine: --details    Files: -o map.csv, -o map.png")
+            return
+        for line in answer["islands"]["sentences"]:
+            page.line(line)
+        if self.arrays.points is not None and self.problem.document.map.refine:
+            page.line(f"Refined along boundaries: {self.arrays.points} points.")
+        page.line(f"Engine: {answer['engine']}")
 
 
 def _grouped(shares: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -303,21 +306,21 @@ def _grouped(shares: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [*rows, *late]
 
 
-def _begins(display: Display, extent: dict[str, Any] | None) -> str:
-    if extent is None:
-        return "Nothing on this map overturns."
-    x, y = (f"{display.entry(which).heading} = {display.text(which, extent['first'][which])}" for which in "xy")
-    within = ", ".join(_span(display, which, extent[which]) for which in "xy")
-    return f"Overturning begins at {y}, where {x}; it lies within {within}."
+def _overturning_lines(display: Display, answer: Answer) -> list[tuple[str, str]]:
+    """Return labels and texts of the lowest point, the range and the safe islands of overturning."""
+    lines = []
+    if (extent := answer["overturning"]) is not None:
+        lowest = ", ".join(_span(display, which, (extent["first"][which],) * 2) for which in "yx")
+        lines += [("lowest overturning", lowest), ("range of overturning", _ranges(display, extent))]
+    islands = answer["islands"]["all"]
+    cells = sum(island["cells"] for island in islands)
+    counts = f"{len(islands)}, with {cells} of {answer['cells']} cells" if islands else "0"
+    lines += [("safe islands", counts)]
+    return lines + [("largest safe island", _ranges(display, island)) for island in islands[:1]]
 
 
-def _islands_sentences(display: Display, islands: dict[str, Any]) -> list[str]:
-    lines = list(islands["sentences"])
-    if islands["all"]:
-        largest = islands["all"][0]
-        cells = f"{largest['cells']} cell{'s' if largest['cells'] != 1 else ''}"
-        lines.insert(1, f"The largest has {cells}: {', '.join(_span(display, w, largest[w]) for w in 'xy')}.")
-    return lines
+def _ranges(display: Display, area: dict[str, Any]) -> str:
+    return ", ".join(_span(display, which, area[which]) for which in "xy")
 
 
 def _span(display: Display, which: str, ends: Sequence[float]) -> str:

@@ -1,5 +1,6 @@
 """`rocking measurements`: own and published measurements, and the calibration of the models."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -154,7 +155,7 @@ def _different(names: tuple[str, ...]) -> list[str]:
     return [name for name in dict.fromkeys(names) if name]
 
 
-def show_league(page: Page, league: "tuple[LeagueRow, ...]", count: int) -> None:
+def show_league(page: Page, league: "Sequence[LeagueRow]", count: int) -> None:
     """Print the errors of all models."""
     from rocking.answers import Display
     from rocking.quantities import QUANTITIES

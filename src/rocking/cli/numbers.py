@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.bodies import Block
 from rocking.cli.page import Page
+from rocking.cli.spelling import UsageError
 from rocking.conventions import UNITS, FloatArray
-from rocking.errors import InvalidValueError
 from rocking.spec.fields import Values, kinds_of, meaning_and_unit
 
 if TYPE_CHECKING:
@@ -38,16 +38,16 @@ def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tu
         values, written = _quantities(name, text.split(","), unit)
         return {"values": values}, written
     if len(pieces) not in {3, 4} or (len(pieces) == 4 and pieces[3].strip() not in {"linear", "log"}):
-        raise InvalidValueError(parameter=name, allowed="FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C", value=text)
+        raise UsageError(parameter=name, allowed="FIRST:LAST:COUNT, FIRST:LAST:COUNT:log or A,B,C", value=text)
     (first, last), written = _quantities(name, pieces[:2], unit)
     if not re.fullmatch(r"\s*[0-9]{1,9}\s*", pieces[2]) or not 2 <= int(pieces[2]) <= MOST_VALUES:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} must have a COUNT from 2 to {limit}, got {value}", parameter=name, limit=MOST_VALUES,
             value=pieces[2],
         )  # fmt: skip
     spacing = pieces[3].strip() if len(pieces) == 4 else spacing
     if spacing == "log" and min(first, last) <= 0.0:
-        raise InvalidValueError(parameter=name, allowed="above 0 for logarithmic spacing", value=text)
+        raise UsageError(parameter=name, allowed="above 0 for logarithmic spacing", value=text)
     return {"from": first, "to": last, "count": int(pieces[2]), "spacing": spacing}, written
 
 
@@ -62,9 +62,7 @@ def numbers_in(name: str, text: str) -> list[float]:
     try:
         return [float(word) for word in text.split(",")]
     except ValueError as error:
-        raise InvalidValueError(
-            parameter=name, allowed="numbers separated by commas, such as 0.42,0.7", value=text
-        ) from error
+        raise UsageError(parameter=name, allowed="numbers separated by commas, such as 0.42,0.7", value=text) from error
 
 
 def value_of(field: "FieldInfo", option: str, value: Any) -> Any:
@@ -81,7 +79,7 @@ def value_of(field: "FieldInfo", option: str, value: Any) -> Any:
 
 def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], str]:
     if len(texts) > MOST_VALUES:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} must have at most {limit} values, got {count}", parameter=name, limit=MOST_VALUES,
             count=len(texts),
         )  # fmt: skip
@@ -89,7 +87,7 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
     written = [suffix for _, suffix in pairs]
     if "" in written and any(written):  # 0.1:1g could mean either
         hint = checks.number_hint(",".join(texts))
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} must have a unit at every number or no unit, got {value}", parameter=name,
             value=":".join(texts), hint=hint,
         )  # fmt: skip
@@ -108,7 +106,7 @@ def units_of(text: str | None, *kinds: Mapping[str, float]) -> tuple[str | None,
         name = checks.one_of("--units", entry.strip(), [unit for kind in kinds for unit in kind])
         index = next(k for k, kind in enumerate(kinds) if name in kind)
         if units[index] is not None:
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} must have one unit per quantity, got {first} and {second}", parameter="--units",
                 first=units[index], second=name,
             )  # fmt: skip

@@ -7,11 +7,11 @@ import typer
 
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
-from rocking.cli.compared import model_facts, show_models, with_models
+from rocking.cli.compared import model_facts, model_label, show_models, with_models
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.help import HOW
 from rocking.cli.numbers import beside_g
-from rocking.cli.page import Page, bar, deliver, sentence
+from rocking.cli.page import MOST_ROWS, Page, bar, deliver, sentence
 from rocking.conventions import g, percent
 from rocking.messages import Message
 from rocking.quantities import closely
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rocking.studies.minimum_acceleration import Transitions
 
 _SPOKEN = 4  # intervals of overturning in a sentence
+_MOST = 8  # printed crossings
 _SHOWN = ("peak_ground_acceleration", "uplift_ratio", "mode_below", "mode_above")
 _CLOSELY = closely(peak_ground_acceleration=".6f", uplift_acceleration=".6g")
 
@@ -63,6 +64,7 @@ def overturning_pga(
     friction: options.Friction = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking overturning-pga`."""
@@ -79,7 +81,7 @@ def overturning_pga(
         problem = body_and_motion(arguments, "minimum-acceleration", table, restitution and [restitution])
     with bar("histories", quiet=as_json) as progress:
         transitions, others = with_models(lambda study: study.answer(progress, threads), problem)
-    answer = MinimumAnswer(problem, transitions, length or "m", acceleration or "m/s2", others)
+    answer = MinimumAnswer(problem, transitions, length or "m", acceleration or "m/s2", others, details)
     deliver(answer, exports, as_json=as_json)
 
 
@@ -92,6 +94,7 @@ class MinimumAnswer:
     length: str  # units of lengths and of accelerations
     acceleration: str
     others: dict[str, Any]  # of the compared models
+    details: bool = False
 
     def draw(self) -> Any:
         from rocking.plots.transitions import transitions_picture
@@ -103,7 +106,8 @@ class MinimumAnswer:
     @property
     def label(self) -> str:
         model = self.problem.restitution
-        return COMPLEMENTARITY if model is None else str(getattr(model, "label", model))
+        name = COMPLEMENTARITY if model is None else str(getattr(model, "label", model))
+        return model_label(name, self.problem.bodies[0])
 
     def answer(self) -> Answer:
         """Return every crossing, and the intervals between them."""
@@ -134,32 +138,31 @@ class MinimumAnswer:
         }, _CLOSELY)  # fmt: skip
 
     def show(self, page: Page) -> None:
-        from rocking.cli.study import source_lines, subject_lines
-        from rocking.motions.summary import MotionSummary
+        from rocking.cli.study import show_assumed, show_subject
 
         problem, transitions, answer = self.problem, self.transitions, self.answer()
         display = Display(self.length, beside_g(self.acceleration), own=answer.quantities)
-        lifts = answer["uplift_acceleration"]
-        page.facts(subject_lines(problem, display))
-        page.line(f"motion:       {problem.motions[0].name}, scaled")
-        page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
-        page.line(f"restitution:  {answer['restitution']}")
-        slides = problem.settings.friction * problem.settings.gravity
-        first = "lifts it" if lifts < slides else "slides from"
-        page.facts([(first, display.text("uplift_acceleration", min(lifts, slides)))])
+        show_subject(page, problem, display, f"{problem.motions[0].name}, scaled")
+        page.line(f"Restitution: {answer['restitution']}")
         page.line()
         lowest = answer["minimum_acceleration"]
         if lowest is not None and (peak := problem.motions[0].peak) > 0.0:
-            at = display.text("minimum_acceleration", lowest)
-            page.line(f"The lowest at which it overturns is {lowest / peak:.4g} times this motion, {at}.", "bold")
+            text = display.text("minimum_acceleration", lowest)
+            page.line(f"Overturning from {text}, {lowest / peak:.4g} x motion.", "bold")
         page.line(sentence(answer["sentence"]), "bold")
-        if len(transitions):
-            page.line()
-            page.rows(answer["crossings"], _SHOWN, display, dense=False)
+        uplift, sliding = answer["uplift_acceleration"], problem.settings.friction * problem.settings.gravity
+        name = "uplift" if uplift < sliding else "sliding"
+        page.values([(name, f"from {display.text('uplift_acceleration', min(uplift, sliding))}")])
         if transitions.failed:
             page.warn([f"{transitions.failed} of {transitions.samples} histories could not be computed"])
         page.warn(filter(None, [transitions.contact]))
+        if len(transitions) > 1 or self.details:
+            page.line()
+            page.rows(answer["crossings"], _SHOWN, display, most=MOST_ROWS if self.details else _MOST)
         show_models(page, answer, display, self.label, _of_model(transitions))
+        show_assumed(page, problem, details=self.details)
+        if not self.details:
+            page.line("Source and all crossings: --details    Files: -o crossings.csv, -o crossings.png")
 
 
 def _of_model(transitions: "Transitions") -> dict[str, Any]:
@@ -168,44 +171,41 @@ def _of_model(transitions: "Transitions") -> dict[str, Any]:
 
 _SCANNED = "scanned from {low} to {high}, resolution {resolution}"
 _SCANNED_FINER = (
-    "scanned from {low} to {high}, resolution {resolution} ({below} below the first crossing); thinner stretches may "
+    "scanned from {low} to {high}, resolution {resolution} ({below} below the first crossing); smaller intervals may "
     "exist"
 )
 
 
 def stretches(transitions: "Transitions") -> str:
-    """Return where the body overturns, in words: with many stretches the first and the last."""
-    falls = transitions.overturning_intervals
+    """Return the intervals of overturning as text; of many intervals the first and the last."""
+    intervals = transitions.overturning_intervals
     facts = {
         "low": _g(transitions.min_pga), "high": _g(transitions.max_pga), "resolution": percent(transitions.resolution),
         "below": percent(transitions.resolution_below),
     }  # fmt: skip
     finer = transitions.minimum is not None and transitions.resolution_below < 0.5 * transitions.resolution
     scanned = Message(_SCANNED_FINER if finer else _SCANNED, facts)
-    if not falls:
-        return Message.followed(Message("survives everything"), scanned)
-    if falls == ((transitions.min_pga, transitions.max_pga),):
+    if not intervals:
+        return Message.followed(Message("does not overturn"), scanned)
+    if intervals == ((transitions.min_pga, transitions.max_pga),):
         return Message.followed(Message("overturns at every acceleration"), scanned)
-    texts = [_stretch(transitions, falls, k) for k in range(len(falls))]
+    texts = [_interval(transitions, intervals, k) for k in range(len(intervals))]
     if len(texts) > _SPOKEN:
         left_out = len(texts) - _SPOKEN
-        last = _stretch(transitions, falls[-1:], 0)  # it names its own beginning
-        texts = [*texts[: _SPOKEN - 1], Message("{count} more such stretches follow", {"count": left_out}), last]
+        texts = [*texts[: _SPOKEN - 1], Message("{count} more intervals", {"count": left_out}), texts[-1]]
     first = texts[0]
     for text in texts[1:]:
         first = Message("{first}, {second}", {"first": first, "second": text})
     return Message.followed(first, scanned)
 
 
-def _stretch(transitions: "Transitions", falls: tuple[tuple[float, float], ...], k: int) -> str:
-    """Return one stretch of overturning in words, and how far it then survives."""
-    low, high = falls[k]
-    if k == len(falls) - 1 and high == transitions.max_pga:
-        return Message("overturns above") if k else Message("overturns above {low}", {"low": _g(low)})
+def _interval(transitions: "Transitions", intervals: tuple[tuple[float, float], ...], k: int) -> str:
+    """Return the text of an interval of overturning; the first text has a verb."""
+    low, high = intervals[k]
     facts = {"low": _g(low), "high": _g(high)}
-    if k == len(falls) - 1:
-        return Message("overturns from {low} to {high}, survives above", facts)
-    return Message("overturns from {low} to {high}, survives to {next}", {**facts, "next": _g(falls[k + 1][0])})
+    if k == len(intervals) - 1 and high == transitions.max_pga:
+        return Message("above {low}", facts) if k else Message("overturns above {low}", facts)
+    return Message("from {low} to {high}", facts) if k else Message("overturns from {low} to {high}", facts)
 
 
 def _g(acceleration: float) -> str:

@@ -12,7 +12,8 @@ from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError, RockingError
+from rocking.cli.spelling import UsageError
+from rocking.errors import RockingError
 from rocking.messages import Message, Option
 from rocking.quantities import QUANTITIES, Quantity
 
@@ -86,7 +87,7 @@ def record_batch(
     file = document_file(context, record[0], ("motions",), allowed_options) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
     if missing := [word for word in record if not is_file(word) and not is_pattern(word)]:
-        raise InvalidValueError("{file:.200}: no such file or folder", file=missing[0])
+        raise UsageError("{file:.200}: no such file or folder", file=missing[0])
     damping = checks.within("--damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     spectrum_periods = PERIODS if periods is None else parsed_periods(periods)
     count = min(processors(), _MOST_PROCESSES) if workers is None else checks.whole("--workers", workers, 1, 256)

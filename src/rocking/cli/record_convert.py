@@ -12,8 +12,8 @@ from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, deliver
+from rocking.cli.spelling import UsageError
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import InvalidValueError
 from rocking.quantities import closely
 from rocking.spec.motion_tables import MotionKeys
 
@@ -103,7 +103,7 @@ def record_convert(
         exports.spare(*(word.removeprefix(f"{word[:1]}=") for word in record), *named)
         pairs = _pairs(table, files)
     if not all(isinstance(motion, GroundMotion) for pair in pairs.values() for motion in pair):
-        raise InvalidValueError("Give a record file, got the pulse {pulse!r:.80}", pulse=record[0])
+        raise UsageError("Give a record file, got the pulse {pulse!r:.80}", pulse=record[0])
     # formats that state no unit keep the unit of the file
     unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)

@@ -12,7 +12,7 @@ from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import Page, deliver
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 from rocking.spec.motion_tables import MotionKeys
 
 if TYPE_CHECKING:
@@ -103,15 +103,13 @@ def parsed_periods(text: str) -> list[float]:
     """
     texts = [entry.strip() for entry in text.split(",") if entry.strip()]
     if not 1 <= len(texts) <= _MOST_PERIODS:
-        raise InvalidValueError(
+        raise UsageError(
             parameter="periods", allowed=f"1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1", value=text[:60]
         )
     try:
         numbers = [float(entry) for entry in texts]
     except ValueError as error:
-        raise InvalidValueError(
-            parameter="periods", allowed="numbers such as 0.1,0.5,1 [s]", value=text[:60]
-        ) from error
+        raise UsageError(parameter="periods", allowed="numbers such as 0.1,0.5,1 [s]", value=text[:60]) from error
     hint = checks.number_hint(text)
     return [checks.positive("periods", number, "s", hint) for number in numbers]
 

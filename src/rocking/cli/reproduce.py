@@ -10,6 +10,7 @@ import typer
 from rocking.cli import options
 from rocking.cli.measurements import show_league
 from rocking.cli.page import Page, bar, print_json
+from rocking.cli.spelling import UsageError
 
 if TYPE_CHECKING:
     from rocking.answers import Answer
@@ -29,6 +30,7 @@ def reproduce(
     ] = None,
     full: Annotated[bool, typer.Option("--full", help=f"All frequencies, starts and cells of {GAIBOR}.")] = False,
     output: Annotated[Path | None, options.output("Folder for report, tables and figures.")] = None,
+    details: options.Details = False,
     as_json: Annotated[bool, typer.Option("--json", help="Result as JSON.")] = False,
 ) -> None:
     """Run `rocking reproduce`."""
@@ -36,9 +38,7 @@ def reproduce(
         _gaibor(full, output, as_json)
         return
     if full:
-        from rocking.errors import InvalidValueError
-
-        raise InvalidValueError(parameter="full", allowed=f"with {GAIBOR} only", value=full)
+        raise UsageError("--full is for {name} only", name=GAIBOR)
     from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce as recomputed
 
@@ -48,11 +48,11 @@ def reproduce(
         print_json(result.answer())
     if output is not None:
         from rocking.plots.paper_figures import paper_figures
-        from rocking.reports.paper_document import look_at, paper_document
+        from rocking.reports.paper_document import paper_document
 
-        _write(paper_document(result), paper_figures(result.data), result.answer(), output, look_at(result), as_json)
+        _write(paper_document(result), paper_figures(result.data), result.answer(), output, as_json)
     if not as_json:
-        _show(result)
+        _show(result, details=details)
 
 
 def _gaibor(full: bool, output: Path | None, as_json: bool) -> None:
@@ -68,7 +68,7 @@ def _gaibor(full: bool, output: Path | None, as_json: bool) -> None:
     if output is not None:
         from rocking.plots.gaibor_2026 import gaibor_figures
 
-        _write(gaibor_document(result), gaibor_figures(result), result.answer(), output, (), as_json)
+        _write(gaibor_document(result), gaibor_figures(result), result.answer(), output, as_json)
     if not as_json:
         page = Page()
         page.line("Gaibor and Lopez (2026), arXiv:2606.14288, recomputed", "bold")
@@ -82,31 +82,23 @@ def _gaibor(full: bool, output: Path | None, as_json: bool) -> None:
             page.line(f"    {claim.evidence}")
 
 
-def _write(
-    document: "Document", figures: dict[str, Any], answer: "Answer", folder: Path,
-    look_at: Sequence[tuple[str, str]], as_json: bool,
-) -> None:  # fmt: skip
-    """Write the folder; print what was written and the main points."""
+def _write(document: "Document", figures: dict[str, Any], answer: "Answer", folder: Path, as_json: bool) -> None:
+    """Write the folder; print the names of its files."""
     from rocking.reports.paper_folder import write_folder
 
     with bar("", len(figures) + 3, quiet=as_json) as progress:
         written, left_out = write_folder(document, figures, answer, folder, lambda name: progress(1, name))
     for sentence in left_out:
         print(f"rocking: note: {sentence}", file=sys.stderr)
-    if as_json:
-        return
-    page = Page()
-    page.line("What to look at", "bold")
-    for path in written:
-        page.line(f"  {path}")
-    page.line(f"  {folder / 'figures'}  {folder / 'tables'}")
-    for name, sentence in look_at:
-        page.line(f"  {name}: {sentence}")
-    page.line()
+    for path in () if as_json else (*written, folder / "figures", folder / "tables"):
+        print(f"wrote {path}")
 
 
-def _show(result: "Reproduction") -> None:
-    """Print the summary: tables, claims, league, verdict."""
+def _show(result: "Reproduction", *, details: bool) -> None:
+    """Print the numbers of tables and claims, the models with the smallest errors, and the verdict.
+
+    details: print every claim, all models, and the whole verdict.
+    """
     from rich.padding import Padding
     from rich.text import Text
 
@@ -114,16 +106,20 @@ def _show(result: "Reproduction") -> None:
     from rocking.evidence.claims_of_errors import tally
 
     page = Page()
-    page.line("Tables of Mao et al. (2024), recomputed", "bold")
+    page.line(f"Mao et al. (2024): {tally(result.claims)}", "bold")
     for title, rows in result.tables.items():
         page.line(f"  {title}: {agreement(rows)}")
-    page.line(f"  errata found: {sum(e.found for e in result.errata)} of {len(result.errata)}")
-    page.line("\nClaims", "bold")
-    page.rich(_claims(result.claims))
-    page.line(f"  {tally(result.claims)}")
-    show_league(page, result.league, len(result.data))
+    page.line(f"  Errata found: {sum(erratum.found for erratum in result.errata)} of {len(result.errata)}")
+    if details:
+        page.line("\nClaims", "bold")
+        page.rich(_claims(result.claims))
+    shown = {result.league[0].name, "ked", "housner"}
+    show_league(page, [row for row in result.league if details or row.name in shown], len(result.data))
+    verdict = result.verdict if details else result.verdict[:1]
     page.line("\nVerdict", "bold")
-    page.rich(Padding(Text("\n".join(result.verdict)), (0, 0, 0, 2)), soft_wrap=False)
+    page.rich(Padding(Text("\n".join(verdict)), (0, 0, 0, 2)), soft_wrap=False)
+    if not details:
+        page.line("Claims, all models and the whole verdict: --details    Report, tables and figures: -o FOLDER")
 
 
 def _styles() -> dict[str, str]:

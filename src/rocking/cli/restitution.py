@@ -14,8 +14,9 @@ from rocking.cli.arguments import Arguments, document_file, hinted, with_sets
 from rocking.cli.exports import DRAWN, PICTURES, Export, Exports, write_records
 from rocking.cli.numbers import SIDE, body_line, recommendation_values, show_recommendation
 from rocking.cli.page import Page, deliver
+from rocking.cli.spelling import UsageError
 from rocking.conventions import g
-from rocking.errors import InvalidValueError, located
+from rocking.errors import located
 from rocking.quantities import closely
 from rocking.spec.bodies import body_moved
 from rocking.spec.fields import JobTable
@@ -78,7 +79,7 @@ def restitution(
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, "body", "settings")
     if odd := sorted(set(arguments.sets.get("settings", {})) - {"gravity"}):
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} {key}: rocking restitution accepts settings.gravity only",
             parameter="--set",
             key=f"settings.{odd[0]}",
@@ -97,7 +98,7 @@ def restitution(
         plane = {"--foot": foot != "both", "--check-identities": check_identities}
         plane["--output stages=FILE"] = "stages" in exports.names
         if stated := [name for name, is_stated in plane.items() if is_stated]:
-            raise InvalidValueError(
+            raise UsageError(
                 "{options} is for 2D bodies; a 3D body rocks about every edge of its base", options=", ".join(stated),
             )  # fmt: skip
         recommendation = _recommended(subject, restitution) if recommend else None

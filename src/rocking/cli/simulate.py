@@ -13,11 +13,12 @@ from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
-from rocking.cli.compared import model_facts, show_models
+from rocking.cli.compared import model_facts, model_label, show_models
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
+from rocking.cli.spelling import UsageError
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
-from rocking.errors import InvalidValueError, RockingError, located
+from rocking.errors import RockingError, located
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
 from rocking.outcome import Outcome
@@ -112,7 +113,7 @@ def simulate(
         display = Display(arguments.length or "m", arguments.acceleration or "g")
         if motions := arguments.several:
             if output:
-                raise InvalidValueError(
+                raise UsageError(
                     "{parameter} accepts one record, and {set} contains several: use --json", parameter="--output",
                     set=motions[0][:100],
                 )  # fmt: skip
@@ -126,7 +127,7 @@ def simulate(
             "response.initial_rotation" if file else "--initial-rotation",
         )
     if in_space and problem.mechanics.name != "hull":
-        raise InvalidValueError(".glb is for 3D bodies with friction; use .html or .gif")
+        raise UsageError(".glb is for 3D bodies with friction; use .html or .gif")
     with bar("history", quiet=as_json):
         answer = answer_of(problem, display, listed=stated, details=details)
     deliver(answer, exports, as_json=as_json)
@@ -141,18 +142,14 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     free = "initial_rotation" in response
     dropped = "start_height" in response or "start_velocity" in response
     if free and motions:
-        raise InvalidValueError(
-            "Give a motion or --initial-rotation, not both; got {motion!r}", motion=motions[0][:100]
-        )
+        raise UsageError("Give a motion or --initial-rotation, not both; got {motion!r}", motion=motions[0][:100])
     stated = [arguments.spelt("scale"), "--units" if arguments.acceleration else ""]
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
     if stated and not motions and (free or dropped):
         name = "--initial-rotation" if free else "a drop"
-        raise InvalidValueError(
-            "{options} needs a motion, and {option} has no motion", option=name, options=", ".join(stated)
-        )
+        raise UsageError("{options} needs a motion, and {option} has no motion", option=name, options=", ".join(stated))
     if not free and not dropped and not motions and not arguments.solid:
-        raise InvalidValueError("No ground motion. Add --motion or --initial-rotation.")
+        raise UsageError("No ground motion. Add --motion or --initial-rotation")
     with arguments.hinted():
         tables: dict[str, Any] = {
             "body": arguments.body_table(body),
@@ -178,7 +175,7 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
 
     body, _ = arguments.body_and_motions()
     if arguments.options["initial_rotation"] is not None:
-        raise InvalidValueError("Give a motion or --initial-rotation, not both; got {motion!r}", motion=texts[0][:100])
+        raise UsageError("Give a motion or --initial-rotation, not both; got {motion!r}", motion=texts[0][:100])
     files = CommandFiles(Path())
     with arguments.hinted():
         tables = {
@@ -204,7 +201,8 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
                     if name == label:
                         raise
                     responses[name] = error
-    return SeveralAnswer(problem.body, listed, responses.pop(label), display, label, responses)
+    own = responses.pop(label)
+    return SeveralAnswer(problem.body, listed, own, display, model_label(label, problem.body), responses)
 
 
 def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:
@@ -280,7 +278,7 @@ def _check_share(alpha: float, initial_rotation: float, option: str) -> None:
     """Refuse an initial rotation above 90 degrees, and warn above 1: probably an angle in degrees; alpha [rad]."""
     fraction = math.radians(initial_rotation) / alpha
     if abs(initial_rotation) * alpha >= 0.5 * math.pi:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} is a fraction of the slenderness angle, {slenderness_angle:.3g} degrees; got {free:g}. "
             "For an angle of {free:g} degrees use {parameter} {share:.3g}",
             parameter=option, slenderness_angle=math.degrees(alpha), free=initial_rotation, share=fraction,

@@ -12,7 +12,7 @@ from rocking.cli.compared import model_facts, overturned, show_models, with_mode
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.numbers import row, values_table
 from rocking.cli.page import Page, bar, deliver
-from rocking.errors import InvalidValueError
+from rocking.cli.spelling import UsageError
 from rocking.messages import Amount
 from rocking.spec.questions.spectrum import SpectrumQuestion, SpectrumTable
 
@@ -42,6 +42,7 @@ def spectrum(
     friction: options.Friction = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(DATASET)] = None,
+    details: options.Details = False,
     as_json: options.AsJson = False,
 ) -> None:
     """Run `rocking spectrum`."""
@@ -53,12 +54,12 @@ def spectrum(
     if (problem := problem_in(context, named[0] if len(named) == 1 else None, "spectrum")) is None:
         arguments = Arguments(context, "motion", "settings", "spectrum")
         if not named:
-            raise InvalidValueError(NO_MOTION.replace("a record file", "record files"))
+            raise UsageError(NO_MOTION.replace("a record file", "record files"))
         angles, periods = _angles(slenderness), _periods(arguments.options["periods"])
         own = {**arguments.values(SpectrumTable), "slenderness_angles": angles, "periods": periods}
         table = arguments.table("spectrum", own, {"slenderness_angles": arguments.spelt("slenderness")})
         if body := next((word for word in named if is_body(word) and is_file(word)), None):
-            raise InvalidValueError("{file} is a body file; {reason}", file=body, reason=SpectrumQuestion.without_body)
+            raise UsageError("{file} is a body file; {reason}", file=body, reason=SpectrumQuestion.without_body)
         with hinted(None, named[0]):
             motion_tables = in_lists(arguments.each(named, arguments.one_motion))
             problem = problem_of(
@@ -70,7 +71,7 @@ def spectrum(
             )
     with bar("histories", quiet=as_json) as progress:
         dataset, others = with_models(lambda study: study.answer(progress, threads), problem)
-    deliver(SpectrumAnswer(dataset, problem.settings, others), exports, as_json=as_json)
+    deliver(SpectrumAnswer(dataset, problem.settings, others, details), exports, as_json=as_json)
 
 
 def _angles(text: str) -> list[float]:
@@ -81,7 +82,7 @@ def _angles(text: str) -> list[float]:
     highest, allowed = (0.5 * math.pi, "in (0, 90) deg") if unit else (1e9, "h/b, above 0")
     bad = values[~((values > 0.0) & (values < highest))]
     if bad.size:
-        raise InvalidValueError(
+        raise UsageError(
             "{parameter} must be {allowed}, got {slenderness}", parameter="--slenderness", allowed=allowed,
             value=bad[0], slenderness=Amount(bad[0], "rad" if unit else ""), hint="check the unit",
         )  # fmt: skip
@@ -95,10 +96,11 @@ def _periods(text: str) -> dict[str, Any]:
 
     values, _ = row("--periods", text, "s", "log")
     if np.any(values <= 0.0) or np.any(np.diff(values) <= 0.0):
-        raise InvalidValueError(parameter="--periods", allowed="above 0 s and increase", value=text)
+        raise UsageError(parameter="--periods", allowed="above 0 s and increase", value=text)
     return values_table("--periods", text, "s", "log")[0]
 
 
+_MOST = 8  # printed curves
 _SHOWN = (
     "slenderness_ratio", "slenderness_angle", "not_lifted", "rocked", "overturned", "largest_peak_ratio",
     "largest_overturned_period",
@@ -112,6 +114,7 @@ class SpectrumAnswer:
     dataset: "xr.Dataset"
     settings: "Settings"
     others: dict[str, Any]  # spectra of the compared models
+    details: bool = False
 
     def draw(self) -> Any:
         from rocking.plots.rocking_spectrum import rocking_spectrum_picture
@@ -155,23 +158,31 @@ class SpectrumAnswer:
 
         dataset, curves = self.dataset, self.curves()
         periods, sizes = dataset["period"].values, dataset["semi_diagonal"].values
-        page.facts([("restitution", dataset.attrs["restitution"]), *contact_lines(self.settings)])
         page.line(
-            f"blocks:       2 pi / p from {periods[0]:.4g} to {periods[-1]:.4g} s, R from {sizes[0]:.4g} to "
-            f"{sizes[-1]:.4g} m, {periods.size} sizes"
+            f"Blocks: 2 pi / p {periods[0]:.4g} to {periods[-1]:.4g} s, R {sizes[0]:.4g} to {sizes[-1]:.4g} m, "
+            f"{periods.size} sizes"
         )
-        curves_per_motion = dataset.sizes["slenderness_angle"]
-        for first in range(0, len(curves), curves_per_motion):
+        page.facts(contact_lines(self.settings))
+        page.line(f"Restitution: {dataset.attrs['restitution']}")
+        page.line()
+        count = _overturned(dataset)["overturned"]
+        page.line(f"Overturning in {count} of {dataset['mode'].size} histories.", "bold")
+        per_motion = dataset.sizes["slenderness_angle"]
+        count = len(curves) if self.details else max(_MOST // per_motion, 1) * per_motion
+        for first in range(0, min(count, len(curves)), per_motion):
             page.line(f"\n{curves[first]['motion']}", "bold")
-            page.rows(curves[first : first + curves_per_motion], _SHOWN, most=curves_per_motion)
+            page.rows(curves[first : first + per_motion], _SHOWN, most=per_motion)
+        if len(curves) > count:
+            page.line(f"... and {(len(curves) - count) // per_motion} more motions: --details")
         page.line(
-            "\npeak / alpha is the largest of the blocks that stay standing; the last column is the largest 2 pi / p "
-            "that overturns."
+            "\npeak / alpha: largest value without overturning. overturns up to: largest 2 pi / p with overturning."
         )
         failed = sum(curve["failed"] for curve in curves)
         page.warn([f"{failed} histories could not be computed"] if failed else [])
         page.warn(filter(None, [dataset.attrs["contact"]]))
         show_models(page, self.answer(), Display(), dataset.attrs["restitution"], _overturned(dataset))
+        if not self.details:
+            page.line("All motions: --details    Files: -o spectrum.csv, -o spectrum.png")
 
 
 def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:

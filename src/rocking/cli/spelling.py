@@ -4,12 +4,12 @@ from contextvars import ContextVar
 
 import typer
 
-from rocking.errors import RockingError
+from rocking.errors import InvalidValueError, RockingError
 from rocking.messages import Fact, Message, Option, Parameter, Spelling
 
 
-class RefusedCommandError(Exception):
-    """A refused command; its message names the options as typed."""
+class UsageError(InvalidValueError):
+    """The arguments of a command are invalid; the message ends with a reference to the help of the command."""
 
 
 _RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs", default=None)
@@ -29,6 +29,19 @@ def spelled(message: Message | RockingError | str) -> str:
     if isinstance(message, RockingError):
         return message.spelt(spelling(context), within=False)
     return message.spelt(spelling(context)) if isinstance(message, Message) else message
+
+
+def help_hint(context: typer.Context | None = None) -> Message:
+    """Return a reference to the help of a command, by default of the running command."""
+    context = context or _RUNNING.get()
+    return Message("see {command} --help", {"command": "rocking" if context is None else context.command_path})
+
+
+def with_help(error: RockingError) -> RockingError:
+    """Return an error, with a reference to the help of the running command if an argument is invalid."""
+    if isinstance(error, UsageError) or str(error.parameter or "").startswith("--"):
+        error.add_hint(help_hint())
+    return error
 
 
 def no_command() -> None:

@@ -10,8 +10,10 @@ from rocking.bodies import Body
 from rocking.bodies.body import assumed_rows
 from rocking.cli.arguments import NO_MOTION, Arguments, document_file, parsed_sets, with_sets
 from rocking.cli.numbers import SIDE, body_line
+from rocking.cli.page import Page, sentence
+from rocking.cli.spelling import UsageError
 from rocking.dynamics.settings import NEVER_SLIDES, Settings
-from rocking.errors import InvalidValueError, located
+from rocking.errors import located
 from rocking.motions.summary import MotionSummary, motion_answer, short_provenance
 from rocking.spec.motion_tables import OF_FILES
 from rocking.spec.question import StudyQuestion
@@ -43,7 +45,7 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *allowe
             with_sets(tables, parsed_sets(context.params.get("sets"), (*TABLES, command)), lists=True)
         )
         if document.kind not in kinds:
-            raise InvalidValueError('kind "{kind}" needs rocking campaign run', kind=document.kind)
+            raise UsageError('kind "{kind}" needs rocking campaign run', kind=document.kind)
         return _in_memory(document, InputFiles(file.parent))
 
 
@@ -66,13 +68,13 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
     """Return the study of a document; refuse keys of campaigns and studies that are too large."""
     for name, keys in document.of_files.items():
         if odd := sorted(keys & getattr(document, name).model_fields_set):
-            raise InvalidValueError(
+            raise UsageError(
                 "{parameter} is for rocking campaign: remove the key, or use rocking campaign",
                 parameter=f"{name}.{odd[0]}",
             )  # fmt: skip
     problem = StudyProblem.of(document, files)
     if (count := histories_in(problem)) > MOST_HISTORIES:
-        raise InvalidValueError(
+        raise UsageError(
             "at most {limit} histories are allowed, got {count}", limit=MOST_HISTORIES, count=count,
             hint="use rocking campaign for more",
         )  # fmt: skip
@@ -95,9 +97,9 @@ def body_and_motion(
     """Return a study of one body and one motion; own: own table of the study."""
     _, named = arguments.body_and_motions()
     if not named:
-        raise InvalidValueError(NO_MOTION)
+        raise UsageError(NO_MOTION)
     if several := arguments.several:
-        raise InvalidValueError(
+        raise UsageError(
             "this command accepts one motion, and {set} contains several. For several use rocking fragility, predict "
             "or simulate",
             set=" ".join(several)[:100],
@@ -115,7 +117,7 @@ def of_body(
     """Return a study of one body under several motions; own: own table of the study."""
     stated = restitution or ()
     if twice := next((text for text in stated if stated.count(text) > 1), None):
-        raise InvalidValueError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])
+        raise UsageError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])
     with arguments.hinted():
         body, _ = arguments.body_and_motions()
         tables = {
@@ -154,16 +156,14 @@ def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | N
     options = {name: arguments.options[name] for name in ("synthetic", "count", "seed")}
     if arguments.body_and_motions()[1]:
         if odd := [f"--{name}" for name, value in options.items() if value is not None]:
-            raise InvalidValueError(
+            raise UsageError(
                 "{options} is for synthetic motions, not for --motion: remove {options}", options=", ".join(odd)
             )
         return None
     odd = ["--units"] if arguments.acceleration is not None else []
     of_files = OF_FILES - {"time_step"}
     if odd := [*odd, *(f"motion.{key}" for key in arguments.sets.get("motion", {}) if key in of_files)]:
-        raise InvalidValueError(
-            "{options} is for record files: remove {options}, or give --motion", options=", ".join(odd)
-        )
+        raise UsageError("{options} is for record files: remove {options}, or give --motion", options=", ".join(odd))
     return {**usual, **arguments.table("motion", options)}
 
 
@@ -174,7 +174,7 @@ def motions_of(
     if (synthetic := family(arguments, usual)) is None:
         return in_lists(arguments.each(arguments.body_and_motions()[1], table))
     if "synthetic" not in synthetic:
-        raise InvalidValueError(NO_MOTION + ", or --synthetic firm-ground")
+        raise UsageError(NO_MOTION + ", or --synthetic firm-ground")
     return [synthetic]
 
 
@@ -202,6 +202,22 @@ def subject_lines(problem: StudyProblem, display: Display, *, varied: bool = Fal
     answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
     line = body_line(body, answer, display, ("parts", "centre_height", *SIDE))
     return [("body", line), *assumed_rows(body), *contact_lines(settings, varied=varied)]
+
+
+def show_subject(page: Page, problem: StudyProblem, display: Display, motion: str, *, varied: bool = False) -> None:
+    """Write body, motion and contact of a study of one body."""
+    body, settings = problem.bodies[0], problem.settings
+    answer = body.answer(settings.gravity) if isinstance(body, Body) else body.answer()
+    page.line(f"{body_line(body, answer, display)}; {motion}")
+    page.facts(contact_lines(settings, varied=varied))
+
+
+def show_assumed(page: Page, problem: StudyProblem, *, details: bool) -> None:
+    """Write the assumed values of the body, and with details the source and the processing of the motion."""
+    for text in problem.bodies[0].assumed:
+        page.line(sentence(text))
+    if details:
+        page.facts(source_lines([MotionSummary.of(problem.motions[0])]))
 
 
 _GROUND = {"friction", "normal_restitution", "normal_restitution_law"}

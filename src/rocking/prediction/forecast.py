@@ -35,7 +35,10 @@ _UNPREDICTABLE = (
     "of histories with a difference of one part in a million in scale, {pairs} have different outcomes or peaks that "
     "differ by more than 1 %."
 )
-_BESIDE = "With another restitution model and otherwise equal inputs, overturning has {probabilities}."
+_COMPARED = (
+    "With another restitution model and {count} of the {total} samples of the other inputs, overturning has "
+    "{probabilities}."
+)
 _AT_ENDS = (
     "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
 )
@@ -123,8 +126,8 @@ class Prediction(Exported):
     gravity : float
         Acceleration of gravity [m/s2].
     beside : dict of str to Chance
-        Probability of overturning with KED and with Housner's model, for otherwise equal inputs; with the default
-        restitution only.
+        Probability of overturning with KED and with Housner's model, for half of the samples of the other inputs; with
+        the default restitution only.
     """
 
     body: "Body | Solid"
@@ -216,7 +219,8 @@ class Prediction(Exported):
             first = others[0]
             for other in others[1:]:
                 first = Message("{first} and {second}", {"first": first, "second": other})
-            sentences.append(Message(_BESIDE, {"probabilities": first}))
+            facts = {"count": self.count // 2, "total": self.count, "probabilities": first}
+            sentences.append(Message(_COMPARED, facts))
         ranked = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, item in ranked[:2]:
             if item.probability_low != item.probability_high:

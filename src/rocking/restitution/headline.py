@@ -1,6 +1,6 @@
 """The sentence that names the restitution model of a result, and the reason for it."""
 
-from rocking.conventions import DEFAULT_RESTITUTION
+from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.messages import Message
 from rocking.restitution.calibrated import KEPT, kept
 
@@ -15,6 +15,15 @@ _DEFAULT_3D = (
 _STATED = "Restitution model of the result: {model}, as stated in the input."
 
 
+def label_of(name: str, *, in_space: bool) -> str:
+    """Return the label of a restitution model in a result; in_space: True for a 3D body.
+
+    >>> label_of("ked", in_space=True), label_of("ked", in_space=False), label_of("0.9", in_space=True)
+    ('ked-3d', 'ked', '0.9')
+    """
+    return f"{name}-3d" if in_space and name in {DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS} else name
+
+
 def headline(label: str, *, in_space: bool = False) -> Message:
     """Return the sentence with the model of a result and its reason; in_space: True for a 3D body.
 
@@ -24,5 +33,5 @@ def headline(label: str, *, in_space: bool = False) -> Message:
     name = label.removesuffix("-3d")
     if name != DEFAULT_RESTITUTION:
         return Message(_STATED, {"model": label})
-    model = f"{name}-3d" if in_space else label
+    model = label_of(name, in_space=True) if in_space else label
     return Message(_DEFAULT if model == name else _DEFAULT_3D, {"model": model, "count": len(kept(KEPT)["unseen"])})

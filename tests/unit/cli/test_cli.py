@@ -83,9 +83,9 @@ def paper(run, reproduction, monkeypatch):
 
 def test_paper_summary_and_json(paper):
     """`rocking reproduce` prints tables, claims, league and verdict, no number cut off; --json has numbers."""
-    code, out, _ = paper()
+    code, out, _ = paper("--details")
     assert code == 0
-    for words in ("Table 3: 54 of 54", "errata found: 10 of 10", "does not hold", "eta*ked", "Verdict"):
+    for words in ("Table 3: 54 of 54", "Errata found: 10 of 10", "does not hold", "eta*ked", "Verdict"):
         assert words in out
     table = out[out.index("League") : out.index("Verdict")]
     assert "…" not in table
@@ -95,10 +95,10 @@ def test_paper_summary_and_json(paper):
 
 
 def test_paper_folder(paper, tmp_path):
-    """`rocking reproduce --output` writes report, figures and tables, and first names what to look at."""
+    """`rocking reproduce --output` writes report, figures and tables, and names them."""
     code, out, _ = paper("--output", tmp_path / "report")
     assert code == 0
-    assert out.startswith("What to look at")
+    assert f"wrote {tmp_path / 'report' / 'figures'}" in out
     html = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
     assert not [word for word in ("<img", 'src="http', "<script") if word in html]
     assert html.count("<svg") == 14

@@ -155,7 +155,7 @@ def test_comparison(run, answered, tmp_path):
     assert [row["restitution"] for row in rows] == 9 * ["0.95"] + 9 * ["0.7"]
     assert [int(row["reached overturned [-]"]) for row in rows] == [*first, *second]
     out = run(*words)[1]
-    assert "The choice between 0.95 and 0.7 changes the verdict in" in out
+    assert "With 0.7 instead of 0.95, the outcome differs in" in out
 
 
 def test_page_in_the_unit_of_the_levels(run, answered):

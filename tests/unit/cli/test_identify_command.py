@@ -199,7 +199,7 @@ def test_a_folder_is_resumed(run, printed, folder, tmp_path, monkeypatch):
     assert len(table.read_text("utf-8").splitlines()) == 5  # a header, two good trials, two refused
     out = printed(folder, "--output", table)
     assert done[5:] == ["clapping.wav", "damaged.wav", "times_1.csv", "times_2.csv"]
-    assert "2 of 6 were there already" in out
+    assert "2 of 6 trials were stored" in out
     whole = table.read_bytes()
     done.clear()
     table.write_bytes(whole[:-20])  # cut off in the last line

@@ -249,12 +249,11 @@ class Sensitivity:
 
     def _sentence(self, label: str, unit: tuple[str, float] | None) -> str:
         flips = self.flips_between(self.baseline, label)
-        where = f"{flips.count:,}" if flips.count else "none"
         share = percent(flips.share)
         if _known(flips.share_low) is not None:
             share += f", 95 % interval {percent(flips.share_low)} to {percent(flips.share_high)}"
         words = [
-            f"The choice between {self.baseline} and {label} changes the verdict in {where} of {flips.compared:,} "
+            f"With {label} instead of {self.baseline}, the outcome differs in {flips.count:,} of {flips.compared:,} "
             f"{self.cases} ({share})"
         ]
         if flips.count:

@@ -61,7 +61,7 @@ def test_maps_of_differences():
 def test_the_verdict_in_words():
     """The sentence names both choices, the count, the share, and which way the verdicts went; no interval of cells."""
     words = sensitivity(given(KNOWN), ["housner", "ked", 0.9]).verdict.splitlines()
-    assert words[0].startswith("The choice between housner and ked changes the verdict in 3 of 6 cells (50 %); ")
+    assert words[0].startswith("With ked instead of housner, the outcome differs in 3 of 6 cells (50 %); ")
     assert words[0].endswith("2 overturn only with ked, 1 only with housner.")
     assert "in none of 5 cells (0 %); 1 could not be computed." in words[1]
 

@@ -165,7 +165,7 @@ const Verdict = ({ answer, question }) => {
     ${answer.sentences.slice(1).map((/** @type {string} */ line) => html`<p key=${line}>${line}</p>`)}
     <${Drawing} question=${question} alt="Smallest overturning scale factor of each motion, by model" />
     <h3>By restitution model</h3>
-    <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns in", "smallest factor"]} rows=${rows} />
+    <${Rows} caption="Models" head=${["restitution", "r left", "r right", "overturns in", "margin"]} rows=${rows} />
     <h3>Probabilities</h3>
     <${Chances} of=${answer.prediction} />
     <${Sources} of=${answer.prediction} />
@@ -183,7 +183,7 @@ const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", {
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}
     rows=${[...Object.entries(probability).map(([outcome, chance]) => [WHAT[outcome], chance]),
-      ...Object.entries(beside).map(([model, chance]) => [t("overturns, with {model} and otherwise equal inputs", { model: modelWords(model) }), chance])].map(([label, chance]) => [
+      ...Object.entries(beside).map(([model, chance]) => [t("overturns, with {model} and half of the samples", { model: modelWords(model) }), chance])].map(([label, chance]) => [
       label, percent(chance.value), between(chance.low, chance.high), between(chance.wide_low, chance.wide_high)])} />`;
 
 /** Source and processing of the motions, and the scale of the words for probabilities.
