@@ -97,7 +97,7 @@ def folder(tmp_path_factory):
 
 REFUSED = {
     "equilibria": {
-        "points.toml": "equilibria are those of a body in space",
+        "points.toml": "a 3D body is needed",
     },
     "examples": {
         "pierr": "did you mean 'pier'?",
