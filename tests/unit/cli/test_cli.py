@@ -163,7 +163,7 @@ def test_table_names_every_format(run):
     assert set(formats()) <= set(rows)
     for name, kind in formats().items():
         assert all(suffix in out for suffix in kind.suffixes)
-        assert ("you say" in rows[name]) == (not (kind.states_unit and kind.states_time_step))
+        assert ("required" in rows[name]) == (not (kind.states_unit and kind.states_time_step))
     assert "--units" in out
     assert max(len(line) for line in out.splitlines()) <= 100
 

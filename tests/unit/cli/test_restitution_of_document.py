@@ -56,8 +56,8 @@ def test_its_gravity_holds_unless_another_is_given(run, tmp_path):
 @pytest.mark.parametrize(
     ("text", "words", "said"),
     [
-        (TAKEN, ["--width", "1"], "takes no --width"),
-        (TAKEN, ["--units", "cm"], "takes no --units"),
+        (TAKEN, ["--width", "1"], "--width cannot be combined"),
+        (TAKEN, ["--units", "cm"], "--units cannot be combined"),
         (TAKEN.replace("width = 50", "width = -50"), [], "width"),
         (TAKEN.replace("height = 200\n", ""), [], "height"),
         (TAKEN + "[campaign]\n", [], "campaign"),
