@@ -214,7 +214,7 @@ def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
     assert expected["selection"]["sentence"].startswith("2 records scaled by ")
     one.write_text(f'[motion]\nrecord = "{source.name}"\nprocess = ["taper", "mean", "taper:fraction=2"]\n')
     refuses(["record", "convert", one], "step 3, taper: fraction must be")
-    refuses(["record", "convert", one, "--units", "g"], "says everything itself")
+    refuses(["record", "convert", one, "--units", "g"], "contains the whole input")
     refuses(["record", "convert", one, "--set", "motion.pulse=sine:amplitude=3,period=0.8"], "exactly one of")
     many.write_text('[[motions]]\npulse = ["sine:amplitude=3,period=0.8"]\n')
     refuses(["record", "batch", many], "records is missing")

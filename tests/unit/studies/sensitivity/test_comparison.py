@@ -63,7 +63,7 @@ def test_the_verdict_in_words():
     words = sensitivity(given(KNOWN), ["housner", "ked", 0.9]).verdict.splitlines()
     assert words[0].startswith("With ked instead of housner, the outcome differs in 3 of 6 cells (50 %); ")
     assert words[0].endswith("2 overturn only with ked, 1 only with housner.")
-    assert "in none of 5 cells (0 %); 1 could not be computed." in words[1]
+    assert "in 0 of 5 cells (0 %); 1 could not be computed." in words[1]
 
 
 def test_histories_of_one_motion_are_counted_together():
