@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
-from rocking.dynamics.plane.equations import EventKind
+from rocking.dynamics.plane.equations import EventKind, angular_acceleration
 from rocking.dynamics.taylor import shifted
 
 if TYPE_CHECKING:
@@ -63,35 +63,39 @@ class Tangent:
 def tangent_of(response: "Response") -> Tangent:
     """Return the tangent dynamics along the states and events of a response, of either engine."""
     output, parameters = response.dense_output, response.parameters
-    nodes = np.append(output.start, output.end[-1])
-    flows = _flows(response)
-    matrix = np.hstack([np.eye(2), np.zeros((2, len(PARAMETERS)))])
-    jumps = output.acceleration[:-1, 1] - output.acceleration[1:, 0]
-    impacts = {
-        int(np.searchsorted(nodes, event.time)): (number, event)
-        for number, event in enumerate(e for e in response.trajectory.events if e.kind is EventKind.IMPACT)
-    }
-    matrices, determinants = np.empty((nodes.size, 2, 2 + len(PARAMETERS))), np.zeros(len(impacts))
-    for k in range(nodes.size):
+    nodes, flows = np.append(output.start, output.end[-1]), _flows(response)
+    impacts = [event for event in response.trajectory.events if event.kind is EventKind.IMPACT]
+    matrices, determinants = np.empty((nodes.size, 2, 2 + len(PARAMETERS))), np.empty(len(impacts))
+    jumps = np.zeros(nodes.size)  # a jump of the ground acceleration comes earlier at higher frequencies
+    jumps[1:-1] = (output.acceleration[1:, 0] - output.acceleration[:-1, 1]) * nodes[1:-1]
+    matrix, count = np.hstack([np.eye(2), np.zeros((2, len(PARAMETERS)))]), 0
+    for k, time in enumerate(nodes.tolist()):
         if k:
             matrix = flows[k - 1, :, :2] @ matrix
             matrix[:, 2:] += flows[k - 1, :, 2:]
-        if k in impacts:
-            number, event = impacts[k]
+        before = count
+        while count < len(impacts) and impacts[count].time <= time:
+            event, (push, lift) = impacts[count], (x[max(k - 1, 0), min(k, 1)] for x in (output.push, output.lift))
             r, base = event.coefficient, parameters.side(event.side).coefficient
-            slope = r + base * abs(event.before) * _slope(parameters.law, abs(event.before), response.stream, number)
-            falling, rising = output.acceleration[max(k - 1, 0), 1], output.acceleration[min(k, len(flows) - 1), 0]
-            saltation = np.array([[r, 0.0], [(rising - slope * falling) / event.before, slope]])
-            matrix = saltation @ matrix
+            slope = r + base * abs(event.before) * _slope(parameters.law, abs(event.before), response.stream, count)
+            falling, rising = (_acceleration(response, side, push, lift) for side in (-event.side, event.side))
+            matrix = np.array([[r, 0.0], [(rising - slope * falling) / event.before, slope]]) @ matrix
             matrix[1, 4] += event.after / base if base else event.before
-            determinants[number] = r * slope
-        elif 0 < k < len(flows):  # jumps of the ground acceleration come earlier at higher frequencies
-            matrix[1, 3] -= jumps[k - 1] * nodes[k]
+            determinants[count] = r * slope
+            count += 1
+        if count == before:
+            matrix[1, 3] += jumps[k]
         matrices[k] = matrix
-    time = response.time
-    at = matrices[np.searchsorted(nodes, time)]
+    at = matrices[np.searchsorted(nodes, response.time)]
     by_parameter = {name: at[:, :, 2 + column] for column, name in enumerate(PARAMETERS)}
-    return Tangent(time, at[:, :, :2], by_parameter, determinants, parameters.right.frequency_parameter)
+    return Tangent(response.time, at[:, :, :2], by_parameter, determinants, parameters.right.frequency_parameter)
+
+
+def _acceleration(response: "Response", sign: int, push: float, lift: float) -> float:
+    """Return the acceleration on one foot at an impact [rad/s2]."""
+    side, g = response.parameters.side(sign), response.settings.gravity
+    angles = side.slenderness_angle, side.frequency_parameter
+    return float(angular_acceleration(0.0, sign, *angles, push / g, 1.0 + lift / g, linear=response.settings.linear))
 
 
 def _slope(law: ImpactLaw, speed: float, stream: int, impact: int) -> float:
