@@ -76,7 +76,7 @@ def predict(
 def in_file(
     file: Path, sets: list[str] | None, kind: type[D], tables: Sequence[str] = TABLES
 ) -> "tuple[D, InputFiles]":
-    """Return the document of a file with the keys of `--set`; kind: its class; tables: those that `--set` accepts."""
+    """Return the document of a file, of class `kind`, with the keys of `--set` in `tables`."""
     from rocking.cli.arguments import parsed_sets, with_sets
     from rocking.spec.reading import InputFiles, checked, tables_in
 
@@ -90,7 +90,7 @@ def in_file(
 def typed(
     context: typer.Context, kind: type[D], values: dict[str, Any], own: dict[str, dict[str, Any]] | None = None
 ) -> "tuple[D, InputFiles]":
-    """Return the document of the options; values: of its table [predict]; own: tables of other commands."""
+    """Return the document of the options, with `values` in its table [predict] and the tables `own`."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import motions_of
     from rocking.spec.reading import CommandFiles, checked

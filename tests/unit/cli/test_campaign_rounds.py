@@ -39,7 +39,7 @@ def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
     assert "histories, time and disk of the first round" in out
     checked = json.loads(run("campaign", "check", "map.toml", "--json")[1])
     assert checked["first_round_only"] is True
-    assert f"usually {checked['later'][0]} to {checked['later'][1]} more histories" in out
+    assert f"usually add {checked['later'][0]} to {checked['later'][1]} histories" in out
     code, out, err = run("campaign", "run", "map.toml", "--output", "c")
     assert (code, err) == (0, "")
     rounds = len(list((tmp_path / "c").glob("round-*")))
