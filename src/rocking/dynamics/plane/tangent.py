@@ -79,6 +79,7 @@ def tangent_of(response: "Response") -> Tangent:
             r, base = event.coefficient, parameters.side(event.side).coefficient
             slope = r + base * abs(event.before) * _slope(parameters.law, abs(event.before), response.stream, count)
             falling, rising = (_acceleration(response, side, push, lift) for side in (-event.side, event.side))
+            # Eq. 332
             matrix = np.array([[r, 0.0], [(rising - slope * falling) / event.before, slope]]) @ matrix
             matrix[1, 4] += event.after / base if base else event.before
             determinants[count] = r * slope

@@ -211,7 +211,7 @@ def uncertainty_exponent(
         return UncertaintyExponent(math.nan, math.nan, distance, fraction)
     weights = fraction / (1.0 - fraction)  # inverse variance of the logarithm of a binomial fraction, up to a factor
     x = np.log(distance) - np.average(np.log(distance), weights=weights)
-    slopes = weights * x / float((weights * x * x).sum())
+    slopes = weights * x / float((weights * x * x).sum())  # Eq. 341
     by_start = (slopes / fraction) @ uncertain
     error = float(by_start.std(ddof=1)) / math.sqrt(samples)
     return UncertaintyExponent(float(slopes @ np.log(fraction)), error, distance, fraction)

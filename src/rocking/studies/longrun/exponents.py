@@ -63,6 +63,7 @@ class LyapunovExponents:
     @property
     def sum_rule(self) -> FloatArray:
         """Sum of the exponents less 2 ln r times the impact rate [1/s]: zero for a symmetric body with a constant r."""
+        # Eq. 337
         r = np.log(self.system.sides[2]) + np.log(self.system.sides[5])
         return np.asarray(self.by_orbit.sum(axis=1) - r * self.impact_rate)
 

@@ -94,6 +94,7 @@ def test_function(jacobian: FloatArray, name: str) -> float:
     """Return the function of a jacobian that is zero at a fold, or at a pitchfork or period doubling ("flip")."""
     (a, b), (c, d) = jacobian.tolist()
     trace = a + d
+    # Eqs. 335, 336
     return float(1.0 + (-trace if name == "fold" else trace) + (a * d - b * c))
 
 

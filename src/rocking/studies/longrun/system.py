@@ -169,7 +169,7 @@ class HarmonicRocking:
     @property
     def unit(self) -> float:
         """Ground acceleration that lifts the body from its right foot [m/s2]."""
-        return self.gravity * (self.alpha if self.linear else math.tan(self.alpha))
+        return self.gravity * (self.alpha if self.linear else math.tan(self.alpha))  # Eq. 331
 
     @property
     def amplitude_ratio(self) -> float:

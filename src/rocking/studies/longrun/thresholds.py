@@ -57,7 +57,7 @@ def slender_conditions(frequency: float, restitution: float) -> tuple[FloatArray
     w = checks.positive("frequency", frequency)
     r = checks.within("restitution", restitution, 0.0, 1.0, open_low=True)
     c, s = math.cosh(math.pi / w), math.sinh(math.pi / w)
-    # (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r)
+    # Eq. 333: (1 + c) X + s Y = c - 1 - v s,  s X + (1 + c) Y = s - v (c + 1 / r)
     sides = np.array([[c - 1.0, -s], [s, -(c + 1.0 / r)]])
     at_zero, by_speed = np.linalg.solve([[1.0 + c, s], [s, 1.0 + c]], sides).T * [1.0, 1.0 / w]
     return at_zero, by_speed
@@ -100,8 +100,9 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
     least_squared = free @ free - (free @ by_speed) ** 2 / (by_speed @ by_speed)
     return SlenderThresholds(
         uplift=1.0,
-        fold=(1.0 + w * w) * math.sqrt(least_squared),
-        melnikov=(1.0 + w * w) * (1.0 - r * r) / 4.0,
+        fold=(1.0 + w * w) * math.sqrt(least_squared),  # Eq. 334
+        melnikov=(1.0 + w * w) * (1.0 - r * r) / 4.0,  # Eq. 339
+        # Eq. 338
         heteroclinic=(1.0 + w * w) * (1.0 - r) / math.sqrt((w * (1.0 - r)) ** 2 + (1.0 + r) ** 2),
         no_impact=_half_sine(w),
     )
@@ -111,5 +112,6 @@ def _half_sine(w: float) -> float:
     """Return the amplitude at which a half sine overturns without impact: cos x + exp(-(pi - x) / w) = w sin x."""
     from scipy.optimize import brentq
 
+    # Eq. 340
     x = brentq(lambda x: math.cos(x) + math.exp(-(math.pi - x) / w) - w * math.sin(x), 1e-12, math.pi / 2.0, xtol=1e-15)
     return 1.0 / math.sin(x)
