@@ -50,11 +50,12 @@ struct Column {
         if (skip == 2) return first_zero<kOrder - 2>(c + 2);
         return first_zero<kOrder - 3>(c + 3);
     }
-    // The value at the first zero of the slope.
-    double top() const {
-        double slope[kOrder];
+    // The largest value between 0 and `end` at a zero of the slope; 0 without one.
+    double top(double end) const {
+        double slope[kOrder], largest = 0.0;
         slopes_of<kOrder>(c, slope);
-        return value_of<kOrder>(c, std::min(first_zero<kOrder - 1>(slope), 1.0));
+        each_fall<kOrder - 1>(slope, [&](double x) { largest = x < end ? std::max(largest, value_of<kOrder>(c, x)) : largest; });
+        return largest;
     }
 };
 

@@ -242,7 +242,7 @@ class Lanes {
             event = Event::failed;
         } else if (plain) {
             move(one, i);
-            if (rate[i] > 0.0 && one.v < 0.0 && driver.counts_peaks(one)) crest(one, column(c, i));
+            if (rate[i] > 0.0 && one.v < 0.0 && driver.counts_peaks(one)) crest(one, column(c, i), 1.0);
         } else {
             event = with_zero(one, i);
         }
@@ -264,7 +264,7 @@ class Lanes {
         const int skip = one.y > 0.0 ? 0 : one.lifts ? 3 : one.v > 0.0 ? 1 : 2;
         if (!(y.c[skip] > 0.0)) return Event::failed;
         const double zero = y.zero(skip);
-        if (driver.counts_peaks(one) && rate[i] >= 0.0 && (zero <= 1.0 || rates[i] < 0.0)) crest(one, y);
+        if (driver.counts_peaks(one)) crest(one, y, zero);
         if (zero > 1.0) {
             move(one, i);
             return Event::none;
@@ -281,7 +281,7 @@ class Lanes {
         return one.land();
     }
     // The highest point within a step.
-    void crest(Lane<V>& one, const Column& y) { one.peak = std::max(one.peak, y.top() / one.side[one.s].alpha); }
+    void crest(Lane<V>& one, const Column& y, double end) { one.peak = std::max(one.peak, y.top(end) / one.side[one.s].alpha); }
 };
 
 }  // namespace longrun
