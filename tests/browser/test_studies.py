@@ -218,6 +218,19 @@ def test_a_study_without_a_form_of_its_own(studies: Any, shot: Any) -> None:
     shot(studies, "studies-histories")
 
 
+def test_a_study_without_ground_motion(studies: Any, shot: Any) -> None:
+    """A basin needs no motion; its summary and its picture are shown."""
+    studies.get_by_role("radio", name="basins").check(force=True)
+    studies.get_by_label("phases").fill("12")
+    studies.get_by_label("speeds").fill("12")
+    studies.locator("#study-name").fill("small basin")
+    studies.get_by_test_id("study-launch").click()
+    expect(studies.get_by_test_id("sheet-findings")).to_contain_text("stability")
+    expect(studies.locator("img.drawing")).to_have_js_property("complete", True)
+    assert studies.locator("img.drawing").evaluate("image => image.naturalWidth") > 100
+    shot(studies, "studies-basins")
+
+
 def test_rocking_spectra(studies: Any, shot: Any) -> None:
     """Spectra show one curve for every slenderness and model."""
     studies.get_by_role("radio", name="Rocking spectra").check(force=True)

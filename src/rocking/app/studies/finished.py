@@ -127,7 +127,7 @@ def written(
             analysis = list(study.analyses.values())[restitution]
             draw_to(lambda: incremental_dynamic_analysis_picture(analysis), target)
             return
-        if len(labels) < 2:
+        if len(labels) < 2 and study.question.has_motions():
             raise Refused("a study with one restitution has nothing to compare")
         draw_to(lambda: campaign_picture(study.opened), target)
     else:

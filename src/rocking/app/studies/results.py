@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic_core import to_json
 
+from rocking.answers import AnswerRows
 from rocking.app.studies.finished import OpenStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
@@ -16,6 +17,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.messages import messages_of
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
+from rocking.quantities import Quantity, quantity
 from rocking.spec.schema import SCHEMA
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
@@ -159,8 +161,19 @@ def outcomes_result(study: OpenStudy) -> dict[str, Any]:
     return {
         "dimensions": [coordinate(study, name) for name in study.axes if name in coordinates],
         "shares": [mode_shares(mode) for mode in by_restitution(study, "mode")],
-        "tables": {} if study.job.study.search is None else tables_of(study),
+        "tables": findings_of(study) if study.job.study.search is None else tables_of(study),
     }
+
+
+def findings_of(study: OpenStudy) -> dict[str, Any]:
+    """Return the summary of a study as a table, if it has one."""
+    dataset = study.job.study.dataset(study.results)
+    columns = AnswerRows.of_records(study.question.findings(study.job.problem, dataset)).columns
+    about = {name: quantity(name) or Quantity(name, "", "") for name in columns}
+    return {"findings": [
+        {"name": about[name].heading, "unit": about[name].unit, "words": about[name].meaning, "values": values}
+        for name, values in columns.items()
+    ]} if columns else {}  # fmt: skip
 
 
 def map_result(study: OpenStudy) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 /** Studies without a figure: number of histories per outcome, and tables. */
 import { html } from "/parts/preact.js";
+import { Fetched } from "/charts/pictured.js";
 import { Table } from "/parts/table.js";
 import { percent } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
@@ -7,10 +8,11 @@ import { t } from "/app/words.js";
 
 const MOST = 500;
 
-/** Counts of outcomes, and the tables of a study. @param {{ result: any }} props */
-export const Counts = ({ result }) => {
+/** Counts of outcomes, the tables of a study, and its picture if it has findings. @param {{ study: Server.StudyFacts, result: any }} props */
+export const Counts = ({ study, result }) => {
   const several = result.restitutions?.length > 1;
   return html`
+    ${result.tables?.findings && html`<${Fetched} title=${study.kind} path=${`studies/${study.id}/export.svg`} alt=${study.kind} />`}
     ${(result.shares ?? []).map((/** @type {Server.Share[]} */ shares, /** @type {number} */ k) => html`<${Table} key=${k} columns=${["Outcome", "simulations", "fraction"]} testid="study-counts"
       rows=${shares.map(({ meaning, count, share }) => [meaning, count, percent(share)])}
       caption=${several ? t("Outcomes with {model}", { model: modelWords(result.restitutions[k]) }) : "Outcomes"} />`)}
