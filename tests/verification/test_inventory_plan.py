@@ -287,7 +287,7 @@ def test_anchors_in_three_dimensions():
     low = replace(BOX, height=0.3, centre_of_mass_height=0.1, friction=0.1)
     (entry,) = assess([low], two).plan
     assert (entry.pull, entry.shear) == pytest.approx((0.0, 0.4), rel=1e-9)
-    assert "a fixing that holds 0.4 of its weight across" in plan_words(entry, language("en"))
+    assert "a fixing for a horizontal force of 0.4 times its weight" in plan_words(entry, language("en"))
 
 
 @pytest.mark.verifies("closed form", "friction times gravity", within="a thousandth on either side")
@@ -302,7 +302,7 @@ def test_what_slides_often_is_not_green():
         assert (verdict.light, verdict.worse.overturned) == (light, 0)
         assert verdict.worse.slid == (2 if light is Light.AMBER else 0)
         assert found.plan == () or found.plan[0].weaker >= 0.99
-    assert "Keep it from sliding" in advice(verdict, found)
+    assert "Prevent sliding" in advice(verdict, found)
     assert Thresholds().light(lifted=0, overturned=0, count=100, high_rotation=0.0, slid=19) is Light.GREEN
     assert Thresholds().of("high").light(lifted=0, overturned=0, count=100, high_rotation=0.0, slid=8) is Light.AMBER
 

@@ -26,7 +26,14 @@ from rocking.restitution import RestitutionModel, model, models
 from rocking.studies.code_methods import CODE_METHODS
 from rocking.studies.code_methods.methods import BodySides, Shaking
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.remedies import CALIBRATED, Margins, first_to_fall, highest, lifting_factor, remedies
+from rocking.studies.remedies import (
+    CALIBRATED,
+    Margins,
+    find_min_factors,
+    highest_acceleration,
+    lifting_factor,
+    remedies,
+)
 
 SPACE_DIRECTIONS = 6
 """Directions of a solid over half a turn; both polarities cover the full turn."""
@@ -147,7 +154,7 @@ class SolidHistories:
         mechanics, polarities, count = self._mechanics.with_restitution(restitution), self.polarities, len(self.motions)
         peaks = np.array([motion.peak for motion in self.motions])
         grid = np.array([
-            np.geomspace(factor, highest(factor * peak, REACH) / peak, POINTS)
+            np.geomspace(factor, highest_acceleration(factor * peak, REACH) / peak, POINTS)
             for factor, peak in zip(uplift_factors, peaks, strict=True)
         ])  # fmt: skip
 
@@ -155,7 +162,7 @@ class SolidHistories:
             return self._run(mechanics, level, rows, factors)[0]
 
         unscaled = overturned(np.arange(polarities * count), np.ones(polarities * count)).reshape(polarities, count)
-        min_factors = first_to_fall(np.tile(grid, (polarities, 1)), overturned, TOGETHER).reshape(polarities, count)
+        min_factors = find_min_factors(np.tile(grid, (polarities, 1)), overturned, TOGETHER).reshape(polarities, count)
         # the factor 1 may be in an interval of overturning between two levels
         min_factors = np.where(unscaled == 1.0, np.minimum(min_factors, 1.0), min_factors)
         return replace(plane_margin, overturned=np.maximum.reduce(unscaled), min_factors_by_polarity=min_factors)
@@ -428,7 +435,11 @@ def _margins(
 def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:
     margins = Margins.of(body, motions, restitution, "pga", None, options)
     # the factor 1 may be in an interval of overturning between two levels
-    min_factors = np.where(margins.fell_each[:, :, 0] == 1.0, np.minimum(margins.least_each, 1.0), margins.least_each)
+    min_factors = np.where(
+        margins.overturned_by_polarity[:, :, 0] == 1.0,
+        np.minimum(margins.min_factors_by_polarity, 1.0),
+        margins.min_factors_by_polarity,
+    )
     parameters = RockingParameters.of_body(body, restitution, options["gravity"])
     return ModelMargin(
         {foot: getattr(parameters, foot).coefficient for foot in FEET}, margins.overturned[:, 0], min_factors

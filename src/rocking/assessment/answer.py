@@ -487,11 +487,11 @@ class BodyAssessment:
         shear = rounded_up(remedy.shear / 1e3)
         sentences: list[str] = [Message(_ANCHORS[tuple(forces)], {"motion": demand, "shear": shear, **forces})]
         for change, texts in ((remedy.wider, _WIDER), (remedy.lower, _LOWER)):
-            no_uplift = millimetres(change.lifts_not) if math.isfinite(change.lifts_not) else None
-            if change.why_not:
-                sentences.append(Message(texts[0], {"reason": change.why_not}))
-            elif change.stands > 0.0:
-                stands = Message(texts[1], {"length": millimetres(change.stands)})
+            no_uplift = millimetres(change.length_no_uplift) if math.isfinite(change.length_no_uplift) else None
+            if change.reason:
+                sentences.append(Message(texts[0], {"reason": change.reason}))
+            elif change.length_no_overturning > 0.0:
+                stands = Message(texts[1], {"length": millimetres(change.length_no_overturning)})
                 sentences.append(Message.joined([stands, Message("By {length} mm: no uplift.", {"length": no_uplift})]))
             elif no_uplift is not None:
                 without = "The unchanged body does not overturn." if self.lowest.factor > remedy.margin else ""

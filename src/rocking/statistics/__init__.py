@@ -1,4 +1,4 @@
-"""Statistics of outcomes that fail or survive at levels: counts, likelihoods, curves, intervals; no rocking in it."""
+"""Statistics of failures and survivals at levels: counts, likelihoods, curves, intervals; independent of rocking."""
 
 from lazy_loader import attach_stub
 

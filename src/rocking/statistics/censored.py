@@ -1,4 +1,4 @@
-"""Lognormal distribution of levels of which some are only known to lie above a limit."""
+"""Lognormal distribution of levels, some of which are censored: only a lower bound is known."""
 
 import math
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ class CensoredFit:
 
     median: float  # median [unit of the levels]
     dispersion: float  # standard deviation of the natural logarithm [-]
-    crossings: int  # crossings, censored: levels that are known, and levels that are known to lie above a limit
+    crossings: int  # crossings, censored: numbers of exact levels, and of levels above a limit
     censored: int
-    method: str  # how it was found, in words
+    method: str  # method of the fit, as text
 
     def probability(self, level: Any) -> FloatArray:
-        """Return the share of levels below levels > 0 [their unit]; a step if the dispersion is zero [-]."""
+        """Return the probability of levels below a level > 0 [unit of the levels]; a step for zero dispersion [-]."""
         logs = np.log(checks.positive_array("level", level)) - math.log(self.median)
         return np.asarray(ndtr(logs / self.dispersion)) if self.dispersion else np.asarray(1.0 * (logs >= 0.0))
 
@@ -36,7 +36,7 @@ class CensoredFit:
 
 
 def fit_moments(levels: FloatArray) -> CensoredFit:
-    """Return mean and standard deviation (n - 1) of the logarithms, of levels that are all known, at least two."""
+    """Return mean and standard deviation (n - 1) of the logarithms of at least two exact levels."""
     if np.size(levels) < 2:
         raise InvalidValueError("a dispersion needs at least 2 crossings, got {count}", count=np.size(levels))
     logs = np.log(checks.positive_array("levels", levels))
@@ -46,39 +46,39 @@ def fit_moments(levels: FloatArray) -> CensoredFit:
 
 
 def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
-    """Return the lognormal fit of maximum likelihood to levels of which some only have a lower bound."""
-    # with 1 / sigma and mu / sigma as parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so that
-    # a vanishing gradient proves the maximum; it is verified
+    """Return the maximum-likelihood lognormal fit to levels, some with only a lower bound."""
+    # the likelihood is concave in 1 / sigma and mu / sigma (Olsen 1978, Econometrica 46:1211): zero gradient proves the
+    # maximum, which is verified
     logs = np.log(checks.positive_array("levels", levels))
-    known, bounds = logs[~censored], logs[censored]
-    if known.size < 2:
+    exact, bounds = logs[~censored], logs[censored]
+    if exact.size < 2:
         raise InvalidValueError(
-            "a dispersion needs at least 2 crossings, got {count} of {total} motions", count=known.size, total=logs.size
+            "a dispersion needs at least 2 crossings, got {count} of {total} motions", count=exact.size, total=logs.size
         )
-    centre, spread = float(known.mean()), float(known.std())
-    if spread == 0.0 and not np.any(bounds > known[0]):
-        raise InvalidValueError("a dispersion needs crossings that differ, got {count} equal ones", count=known.size)
-    spread = spread or float(bounds.max() - known[0])
-    h, d = _maximum((known - centre) / spread, (bounds - centre) / spread)
+    centre, spread = float(exact.mean()), float(exact.std())
+    if spread == 0.0 and not np.any(bounds > exact[0]):
+        raise InvalidValueError("a dispersion needs different crossings, got {count} equal ones", count=exact.size)
+    spread = spread or float(bounds.max() - exact[0])
+    h, d = _maximum((exact - centre) / spread, (bounds - centre) / spread)
     median = math.exp(centre + spread * d / h)
-    words = "maximum likelihood of the logarithms" + (", motions without a crossing censored" if bounds.size else "")
-    return CensoredFit(median, spread / h, int(known.size), int(bounds.size), words)
+    method = "maximum likelihood of the logarithms" + (", motions without a crossing censored" if bounds.size else "")
+    return CensoredFit(median, spread / h, int(exact.size), int(bounds.size), method)
 
 
 def fit_crossings(crossings: FloatArray, highest: float) -> CensoredFit | None:
-    """Return the lognormal distribution of crossings, of which infinite ones lie above the highest level.
+    """Return the lognormal distribution of crossings; infinite ones lie above the highest level.
 
     Parameters
     ----------
     crossings : ndarray
-        Levels, infinite where there is none up to the highest [any unit].
+        Levels, infinite if above the highest level [any unit].
     highest : float
-        Highest level that was tried [unit of the crossings].
+        Highest computed level [unit of the crossings].
 
     Returns
     -------
     CensoredFit or None
-        By moments if all are finite, else by maximum likelihood; None if the crossings tell no dispersion.
+        Fit by moments if all are finite, else by maximum likelihood; None if the dispersion is undetermined.
     """
     crossed = np.isfinite(crossings)
     if crossed.sum() < 2:
@@ -91,45 +91,45 @@ def fit_crossings(crossings: FloatArray, highest: float) -> CensoredFit | None:
         return None
 
 
-def _maximum(known: FloatArray, bounds: FloatArray) -> tuple[float, float]:
+def _maximum(exact: FloatArray, bounds: FloatArray) -> tuple[float, float]:
     """Return h = 1 / sigma and d = mu / sigma by Newton's method with halved steps."""
-    at = np.array([1.0, float(known.mean())])
-    value = _likelihood(at, known, bounds)
+    at = np.array([1.0, float(exact.mean())])
+    value = _likelihood(at, exact, bounds)
     for _ in range(_ROUNDS):
-        gradient, hessian = _slopes(at, known, bounds)
-        if float(np.abs(gradient).max()) < 1e-10 * (known.size + bounds.size):
+        gradient, hessian = _slopes(at, exact, bounds)
+        if float(np.abs(gradient).max()) < 1e-10 * (exact.size + bounds.size):
             return float(at[0]), float(at[1])
         step = -np.linalg.solve(hessian, gradient)
         size = 1.0
         while size > 1e-12:
             trial = at + size * step
-            if trial[0] > 0.0 and (found := _likelihood(trial, known, bounds)) >= value:
-                at, value = trial, found
+            if trial[0] > 0.0 and (trial_value := _likelihood(trial, exact, bounds)) >= value:
+                at, value = trial, trial_value
                 break
             size *= 0.5
         else:
             break
-    gradient, _ = _slopes(at, known, bounds)
-    if float(np.abs(gradient).max()) < 1e-6 * (known.size + bounds.size):
+    gradient, _ = _slopes(at, exact, bounds)
+    if float(np.abs(gradient).max()) < 1e-6 * (exact.size + bounds.size):
         return float(at[0]), float(at[1])
     raise InvalidValueError(
-        "no lognormal distribution fits {count} crossings and {bounds} bounds", count=known.size, bounds=bounds.size
+        "no lognormal distribution fits {count} crossings and {bounds} bounds", count=exact.size, bounds=bounds.size
     )
 
 
-def _likelihood(at: FloatArray, known: FloatArray, bounds: FloatArray) -> float:
+def _likelihood(at: FloatArray, exact: FloatArray, bounds: FloatArray) -> float:
     h, d = at
-    z = h * known - d
-    return float(known.size * (math.log(h) - _LOG_OF_ROOT) - 0.5 * (z @ z) + log_ndtr(d - h * bounds).sum())  # Eq. 214
+    z = h * exact - d
+    return float(exact.size * (math.log(h) - _LOG_OF_ROOT) - 0.5 * (z @ z) + log_ndtr(d - h * bounds).sum())  # Eq. 214
 
 
-def _slopes(at: FloatArray, known: FloatArray, bounds: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _slopes(at: FloatArray, exact: FloatArray, bounds: FloatArray) -> tuple[FloatArray, FloatArray]:
     h, d = at
-    z, w = h * known - d, d - h * bounds
+    z, w = h * exact - d, d - h * bounds
     # the hazard phi / Phi, without overflow in the tail
     hazard = np.exp(-0.5 * w * w - _LOG_OF_ROOT - log_ndtr(w))
     bend = hazard * (w + hazard)
-    gradient = np.array([known.size / h - z @ known - hazard @ bounds, z.sum() + hazard.sum()])  # Eq. 215
-    cross = float(known.sum() + bend @ bounds)
-    hh = -known.size / h**2 - known @ known - bend @ (bounds * bounds)
-    return gradient, np.array([[hh, cross], [cross, -known.size - bend.sum()]])
+    gradient = np.array([exact.size / h - z @ exact - hazard @ bounds, z.sum() + hazard.sum()])  # Eq. 215
+    cross = float(exact.sum() + bend @ bounds)
+    hh = -exact.size / h**2 - exact @ exact - bend @ (bounds * bounds)
+    return gradient, np.array([[hh, cross], [cross, -exact.size - bend.sum()]])

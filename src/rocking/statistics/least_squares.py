@@ -1,4 +1,4 @@
-"""A straight line through points, with what is known of its slope and scatter."""
+"""Regression line of points, with the uncertainty of slope and scatter."""
 
 import math
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ class Regression:
     slope: float
     scatter: float  # standard deviation of the residuals, with n - 2 degrees of freedom [unit of y]
     slope_error: float  # standard error of the slope [unit of the slope]
-    determination: float  # R squared: the share of the variance of y that the line explains [-]
-    residuals: FloatArray  # what is left of each y [unit of y]
+    determination: float  # R squared: fraction of the variance of y explained by the line [-]
+    residuals: FloatArray  # residual of each point [unit of y]
 
     @property
     def count(self) -> int:
@@ -28,12 +28,12 @@ class Regression:
         return int(self.residuals.size)
 
     def at(self, x: Any) -> FloatArray:
-        """Return the heights of the line [unit of y] at places [unit of x]."""
+        """Return the values of the line [unit of y] at x [unit of x]."""
         return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
 
     def probability_above(self, y: float, x: Any) -> FloatArray:
-        """Return the probability that a new point at places [unit of x] is above a height [unit of y] [-]."""
-        # for normal residuals, without the uncertainty of the line itself
+        """Return the probability that a new point at x [unit of x] lies above y [unit of y] [-]."""
+        # for normal residuals, without the uncertainty of the line
         margin = self.at(x) - y
         if self.scatter == 0.0:
             return np.asarray(margin > 0.0, dtype=np.float64)
@@ -41,7 +41,7 @@ class Regression:
 
     @property
     def p_value(self) -> float:
-        """Probability of a slope at least this large if there were none: Student's t with n - 2 degrees of freedom."""
+        """p-value of the slope: Student's t with n - 2 degrees of freedom."""
         if self.slope_error == 0.0:
             return 1.0 if self.slope == 0.0 else 0.0
         return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))  # Eq. 219
@@ -58,7 +58,7 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     Parameters
     ----------
     x, y : ndarray
-        At least three points, at different places [any units].
+        At least three points with different x [any units].
 
     Returns
     -------
@@ -75,7 +75,7 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     if count < 3 or np.shape(x) != np.shape(y):
         raise InvalidValueError(
             "a line needs at least 3 points, got {count}", count=count,
-            hint="too few rocked, not barely, and stayed standing?",
+            hint="Too few histories rocked clearly without overturning.",
         )  # fmt: skip
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise InvalidValueError("points of a line must be finite, got NaN or infinity")
@@ -83,7 +83,7 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     spread, total = float(dx @ dx), float(dy @ dy)
     if not spread > (1e-12 * max(1.0, float(np.abs(x).max()))) ** 2 * count:
         raise InvalidValueError(
-            "a line needs points at different places, got {count} at {position:g}", count=count,
+            "a line needs points with different x, got {count} at {position:g}", count=count,
             position=float(x.mean()),
         )  # fmt: skip
     slope = float(dx @ dy) / spread  # Eq. 218

@@ -1,4 +1,4 @@
-"""Probit likelihood of many data sets at once, safe however far in the tails a curve is tried; plain and penalised."""
+"""Probit likelihood of many data sets, stable in the far tails; plain and penalised."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self
@@ -8,14 +8,14 @@ from scipy.special import erfcx
 
 from rocking.conventions import FloatArray
 
-FAR = 300.0  # beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]
-WIDEST = 1 << 16  # levels that are looked at together: what is in between takes a hundred bytes of each
-SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])  # slopes b that the search for the maximum starts from [-]
-PLACES = 9  # number of positions that the search starts from [-]
+FAR = 300.0  # number of standard deviations above which the curvature is from its series: the closed form cancels [-]
+WIDEST = 1 << 16  # largest number of levels processed together: intermediate arrays need 100 bytes per level
+SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])  # start slopes b of the search for the maximum [-]
+POSITIONS = 9  # number of start positions of the search [-]
 
 
 class Tails(NamedTuple):
-    """The normal distribution at one place, seen from both sides: failing below it, surviving above it."""
+    """Both tails of the normal distribution: failure below, survival above."""
 
     log_failure: FloatArray  # log_failure, log_survival: ln Phi(eta) and ln Phi(-eta) [-]
     log_survival: FloatArray
@@ -43,34 +43,34 @@ def tails(eta: FloatArray) -> Tails:
         tail_bend = np.where(t > FAR, 1.0 - u + 6.0 * u * u, tail_bend)
     body_bend = body_rate * (body_rate + t)
     low = eta < 0.0
-    both = ((log_tail, log_body), (tail_rate, body_rate), (tail_bend, body_bend))
-    return Tails(*(np.where(low, *pair) if first else np.where(low, *pair[::-1]) for pair in both for first in (1, 0)))
+    pairs = ((log_tail, log_body), (tail_rate, body_rate), (tail_bend, body_bend))
+    return Tails(*(np.where(low, *pair) if first else np.where(low, *pair[::-1]) for pair in pairs for first in (1, 0)))
 
 
 class Derivatives(NamedTuple):
-    """A function of a few coefficients, and its first and second derivatives, one row a data set."""
+    """A function of a few coefficients, and its first and second derivatives, one row per data set."""
 
     value: FloatArray  # the function [-]
     gradient: FloatArray  # its gradient; the last axis is the coefficient [-]
-    curvature: FloatArray  # minus its Hessian; positive definite where the function is strictly concave [-]
+    curvature: FloatArray  # minus its Hessian; positive definite for a strictly concave function [-]
 
 
 @dataclass(frozen=True, eq=False)
 class Probit:
-    """Log likelihood of failing with probability Phi(a + b u), one row a data set.
+    """Log likelihood of failure with probability Phi(a + b u), one row per data set.
 
-    It is concave in (a, b), strictly so once two levels hold data: a stationary point is the one maximum. The binomial
-    coefficients are left out, so that pooling equal levels changes nothing.
+    It is concave in (a, b), strictly concave with data at two levels: a stationary point is the only maximum. Binomial
+    coefficients are omitted, so that pooling equal levels has no effect.
     """
 
-    position: FloatArray  # u, the logarithms of the levels in a scale near one; one row, or one row a data set [-]
-    # failures, survivals: trials that failed and survived at each level; one row, or one row a data set [-]
+    position: FloatArray  # u, scaled logarithms of the levels; one row, or one row per data set [-]
+    # failures, survivals: numbers of failures and survivals at each level; one row, or one row per data set [-]
     failures: FloatArray
     survivals: FloatArray
     concave: ClassVar[bool] = True
 
     def rows(self, index: Any) -> Self:
-        """Return the same likelihood of some of the data sets."""
+        """Return the likelihood of a subset of the data sets."""
         fields = (self.position, self.failures, self.survivals)
         return type(self)(*(field if field.shape[0] == 1 else field[index] for field in fields))
 
@@ -83,8 +83,8 @@ class Probit:
         if self.position.shape[1] > WIDEST:
             pieces = (slice(first, first + WIDEST) for first in range(0, self.position.shape[1], WIDEST))
             fields = (self.position, self.failures, self.survivals)
-            parts = [type(self)(*(each[:, piece] for each in fields)).derivatives(theta) for piece in pieces]
-            return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
+            terms = [type(self)(*(field[:, piece] for field in fields)).derivatives(theta) for piece in pieces]
+            return Derivatives(*(np.asarray(np.sum(values, axis=0)) for values in zip(*terms, strict=True)))
         return self._of(tails(self.eta(theta)))
 
     def _of(self, at: Tails) -> Derivatives:
@@ -95,13 +95,13 @@ class Probit:
         return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
 
     def information(self, theta: FloatArray) -> FloatArray:
-        """Return the expected (Fisher) information, one matrix a row."""
+        """Return the expected (Fisher) information, one matrix per row."""
         at = tails(self.eta(theta))
         weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate  # Eq. 197
         return _matrix(self._moments(weight, 3))
 
     def _moments(self, weight: FloatArray, count: int) -> FloatArray:
-        """Return the sums over levels of a weight times u to the powers 0 to count - 1."""
+        """Return the sums over levels of a weight multiplied by u to the powers 0 to count - 1."""
         sums = [weight.sum(axis=1)]
         for _ in range(count - 1):
             weight = weight * self.position
@@ -110,7 +110,7 @@ class Probit:
 
 
 def _times(count: FloatArray, logarithm: FloatArray) -> FloatArray:
-    """Return the product where 0 times minus infinity is 0: nobody was there to fail."""
+    """Return the product, with 0 for 0 times minus infinity: no trial, no contribution."""
     if np.isfinite(logarithm).all():
         return count * logarithm
     return np.where(count > 0.0, count * np.where(count > 0.0, logarithm, 0.0), 0.0)
@@ -120,29 +120,29 @@ def _matrix(moments: FloatArray) -> FloatArray:
     return moments[:, [[0, 1], [1, 2]]]
 
 
-def places(position: FloatArray) -> FloatArray:
-    """Return positions, spread evenly over the levels and the gaps between, where a curve may reach one half."""
-    known = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
-    return known[np.linspace(0, known.size - 1, PLACES).round().astype(np.int64)]
+def start_positions(position: FloatArray) -> FloatArray:
+    """Return start positions of probability 0.5, evenly distributed over the levels and their midpoints."""
+    candidates = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
+    return candidates[np.linspace(0, candidates.size - 1, POSITIONS).round().astype(np.int64)]
 
 
 def starts(position: FloatArray) -> FloatArray:
-    """Return coefficients to start from, since the penalised likelihood may have more than one maximum."""
-    place, slope = (part.ravel() for part in np.meshgrid(places(position), SLOPES))
-    return np.stack([-slope * place, slope], axis=1)
+    """Return start coefficients: the penalised likelihood may have more than one maximum."""
+    start, slope = (grid.ravel() for grid in np.meshgrid(start_positions(position), SLOPES))
+    return np.stack([-slope * start, slope], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class PenalisedProbit(Probit):
-    """Log likelihood plus half the logarithm of the determinant of the Fisher information, one row a data set.
+    """Log likelihood plus half the logarithm of the determinant of the Fisher information, one row per data set.
 
-    It need not be concave: a maximum that is found is proven to be a local one, the largest from all `starts`.
+    It may not be concave: the result is a proven local maximum, the largest from all `starts`.
     """
 
     concave: ClassVar[bool] = False
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
-        """Return the same, penalised; minus infinity where the information vanishes."""
+        """Return the penalised value and derivatives; minus infinity for zero information."""
         eta = self.eta(theta)
         at = tails(eta)
         plain, penalty = self._of(at), self._penalty(eta, at)
@@ -167,7 +167,7 @@ class PenalisedProbit(Probit):
 
 
 def _slope(m: FloatArray, p: FloatArray, i: int) -> FloatArray:
-    """Return the derivative of the determinant with respect to coefficient i (a shifts no power of u, b one)."""
+    """Return the derivative of the determinant with respect to coefficient i (b raises the power of u by one)."""
     return p[:, i] * m[:, 2] + m[:, 0] * p[:, 2 + i] - 2.0 * m[:, 1] * p[:, 1 + i]  # Eq. 203
 
 

@@ -1,4 +1,4 @@
-"""Quantiles of samples: the one definition of all summaries."""
+"""Quantiles of samples: the common definition of all summaries."""
 
 from typing import Any
 
@@ -15,9 +15,9 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
     """Return quantiles of a sample along an axis: definition 7 of Hyndman and Fan, which is the default of NumPy.
 
     The quantile is linear between the two neighbours in the sorted sample. The median of an even number of values is
-    the mean of the middle two. An infinite value is a value that lies beyond all others, for example the peak rotation
-    of a body that overturns. A quantile between a finite and an infinite neighbour is infinite: the finite one is
-    exceeded, and by how much is not known.
+    the mean of the middle two. An infinite value lies beyond all others, for example the peak rotation of an overturned
+    body. A quantile between a finite and an infinite neighbour is infinite: it exceeds the finite one
+    by an unknown amount.
 
     Parameters
     ----------
@@ -50,23 +50,23 @@ def quantiles(values: Any, probabilities: Any, axis: int = 0) -> FloatArray:
     >>> quantiles([3.0, 1.0, 2.0, math.inf], [0.0, 0.5, 0.84]).tolist()
     [1.0, 2.5, inf]
     """
-    share = np.asarray(probabilities, dtype=np.float64)
-    if not ((share >= 0.0) & (share <= 1.0)).all():
+    probability = np.asarray(probabilities, dtype=np.float64)
+    if not ((probability >= 0.0) & (probability <= 1.0)).all():
         raise InvalidValueError(
             "{parameter} must be {allowed}, got {low:g} to {high:g}", parameter="probabilities",
-            allowed=Range(0.0, 1.0), low=float(share.min()), high=float(share.max()),
+            allowed=Range(0.0, 1.0), low=float(probability.min()), high=float(probability.max()),
         )  # fmt: skip
     ordered = np.moveaxis(np.sort(np.asarray(values, dtype=np.float64), axis=axis), axis, 0)  # NaN last
     last = (~np.isnan(ordered)).sum(axis=0) - 1
     if not len(ordered):
-        return np.full(share.shape + last.shape, np.nan)
-    share = share.reshape(share.shape + (1,) * last.ndim)
-    rank = np.round(share * np.maximum(last, 0), _ROUNDING)
+        return np.full(probability.shape + last.shape, np.nan)
+    probability = probability.reshape(probability.shape + (1,) * last.ndim)
+    rank = np.round(probability * np.maximum(last, 0), _ROUNDING)
     below, above = (
         np.take_along_axis(ordered, ends.astype(np.int64).reshape(-1, *last.shape), 0).reshape(rank.shape)
         for ends in (np.floor(rank), np.ceil(rank))
     )
-    part = rank - np.floor(rank)
+    fraction = rank - np.floor(rank)
     with np.errstate(invalid="ignore"):  # infinite less infinite, which is not selected
-        between = np.where(np.isinf(below) | np.isinf(above), below + above, below + part * (above - below))
-    return np.where(part == 0.0, below, between)
+        between = np.where(np.isinf(below) | np.isinf(above), below + above, below + fraction * (above - below))
+    return np.where(fraction == 0.0, below, between)

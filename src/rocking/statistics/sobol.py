@@ -1,4 +1,4 @@
-"""Scrambled Sobol points, as `scipy.stats.qmc` makes them: that takes a second to be imported."""
+"""Scrambled Sobol points, equal to `scipy.stats.qmc`, whose import takes one second."""
 
 import numpy as np
 
@@ -27,14 +27,16 @@ def scrambled_sobol(dimensions: int, count: int, seed: int) -> FloatArray:
     shift = random.integers(2, size=(dimensions, _BITS), dtype=np.uint32) @ (2 ** np.arange(_BITS, dtype=np.uint32))
     lower = np.tril(random.integers(2, size=(dimensions, _BITS, _BITS), dtype=np.uint32))
     lower[:, range(_BITS), range(_BITS)] = 1
-    numbers = np.array([_directions(each) for each in range(dimensions)])
-    places = np.arange(_BITS)[::-1]
-    bits = numbers[:, :, None] >> places & 1  # dimension, number, bit from the highest on
-    # each number times a random lower triangular matrix of bits (Matousek 1998), the sum modulo two
-    scrambled = ((bits @ lower.transpose(0, 2, 1).astype(np.int64) & 1) << places).sum(axis=2)
+    numbers = np.array([_directions(dimension) for dimension in range(dimensions)])
+    shifts = np.arange(_BITS)[::-1]
+    bits = numbers[:, :, None] >> shifts & 1  # dimension, number, bit from the highest on
+    # product of each number and a random lower triangular matrix of bits (Matousek 1998), modulo two
+    scrambled = ((bits @ lower.transpose(0, 2, 1).astype(np.int64) & 1) << shifts).sum(axis=2)
     points = np.empty((count, dimensions), dtype=np.int64)
     points[0] = shift
-    for k in range(count.bit_length() - 1):  # Gray code: the second half is the first from its end on, one number apart
+    for k in range(
+        count.bit_length() - 1
+    ):  # Gray code: the second half is the reversed first half with one number added
         points[1 << k : 2 << k] = points[: 1 << k][::-1] ^ scrambled[:, k]
     return points / 2.0**_BITS
 

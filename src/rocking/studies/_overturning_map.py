@@ -1,4 +1,4 @@
-"""Overturning maps: how a body ends over any two parameters of it and its motion."""
+"""Overturning maps: outcome of a body over two parameters of body and motion."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def overturning_map(  # noqa: PLR0913 - every one of them is a question that users ask
+def overturning_map(  # noqa: PLR0913 - users set every one of them
     body: Body,
     motion: Motion,
     x: Axis | tuple[str, Any],
@@ -34,23 +34,23 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     refine: int | None = None,
     **settings: Any,
 ) -> "xr.Dataset":
-    """Return how a body ends over two parameters.
+    """Return the outcome of a body over two parameters.
 
-    Restitution models are evaluated anew for every body that the axes make. A pulse or record is stretched in time
-    exactly, without resampling it.
+    Restitution models are evaluated for every body on the axes. A pulse or record is stretched in time exactly,
+    without resampling.
 
     Parameters
     ----------
     body : Body
-        The body, as it is where the axes do not change it.
+        The body; axes replace its values.
     motion : GroundMotion, Pulse or mapping
-        The motion, or its components as for `simulate`, as it is where the axes do not change it.
+        The motion, or its components as for `simulate`; axes replace its values.
     x, y : Axis or (str, array_like)
         Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
         duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
         restitution, friction, initial_rotation [rad], initial_angular_velocity [rad/s]; in space azimuth [rad].
     restitution : as for `simulate`
-        Not used where it is an axis.
+        Ignored if restitution is an axis.
     gravity : float
         Acceleration of gravity [m/s2].
     threads : int, optional
@@ -58,8 +58,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     progress : callable, optional
         Called with the number of histories done since the last call.
     refine : int, optional
-        Levels of refinement along the boundaries between modes, each of half the spacing of the one before; see
-        `refined_map`.
+        Number of refinements along the boundaries between modes; each one halves the spacing; see `refined_map`.
     **settings
         Fields of `Settings`, and ``engine``; with ``friction`` (or as an axis) the body may slide, hop and fly, and
         the restitution may be None, as for `simulate`.
@@ -69,8 +68,8 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     xarray.Dataset
         Over the two axes (y first): outcome, mode, peak_rotation, peak_ratio, impacts, side, overturning_time,
         status, error, with units. With `refine` also ``refined_mode`` and ``refined_peak_ratio`` over ``point``, all
-        points that were computed, with ``refined_x`` and ``refined_y``. A cell that could not be computed has mode -3
-        and a status that says why; it touches no other.
+        computed points, with ``refined_x`` and ``refined_y``. A cell that could not be computed has mode -3 and a
+        status with the reason; it does not affect other cells.
 
     Raises
     ------
@@ -85,8 +84,8 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     >>> import rocking as rk
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> ratios = np.linspace(1.0, 6.0, 11)
-    >>> found = overturning_map(block, pulse, ("frequency_ratio", ratios), ("amplitude_ratio", ratios), 0.9)
-    >>> found["mode"].sel(frequency_ratio=1.0, amplitude_ratio=[1.0, 3.0]).values.tolist()
+    >>> outcomes = overturning_map(block, pulse, ("frequency_ratio", ratios), ("amplitude_ratio", ratios), 0.9)
+    >>> outcomes["mode"].sel(frequency_ratio=1.0, amplitude_ratio=[1.0, 3.0]).values.tolist()
     [-2, 0]
     """
     extra("xarray", "overturning_map")
@@ -97,18 +96,18 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
 
 @dataclass(frozen=True, eq=False)
 class MapArrays:
-    """An overturning map as arrays: a dataset is made only when it is returned or written."""
+    """An overturning map as arrays; a dataset is created only for return or export."""
 
     axes: tuple[Axis, Axis]  # x, y
-    variables: dict[str, np.ndarray]  # results over y and x; with names that begin with refined_, over the points
-    attributes: dict[str, Any]  # provenance, as of the dataset
+    variables: dict[str, np.ndarray]  # results over y and x; over the points for names with prefix refined_
+    attributes: dict[str, Any]  # provenance of the dataset
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.variables[name]
 
     @property
     def points(self) -> int | None:
-        """How many points a refined map has; None if it is not."""
+        """Number of points of a refined map; None without refinement."""
         return len(self["refined_mode"]) if "refined_mode" in self.variables else None
 
     def to_xarray(self) -> "xr.Dataset":
@@ -133,7 +132,7 @@ class MapArrays:
 def map_arrays(
     *subject: Any, progress: Callable[[int], None] | None = None, refine: int | None = None, **options: Any
 ) -> MapArrays:
-    """Return an overturning map as arrays; parameters as of `overturning_map`, which stand as in `Plane.of`."""
+    """Return an overturning map as arrays; parameters as for `overturning_map`, in the order of `Plane.of`."""
     plane = Plane.of(*subject, **options)
     results, work = plane.answers(*plane.mesh(), progress=progress)
     shape = (plane.y.values.size, plane.x.values.size)
@@ -145,5 +144,5 @@ def map_arrays(
             "refined_x": points.x, "refined_y": points.y, "refined_mode": points.modes,
             "refined_peak_ratio": points.peak_ratio,
         }  # fmt: skip
-    stated = {**plane.attributes(work), "contact": contact_words(results["lost_contact"])}
-    return MapArrays((plane.x, plane.y), variables, stated)
+    attributes = {**plane.attributes(work), "contact": contact_words(results["lost_contact"])}
+    return MapArrays((plane.x, plane.y), variables, attributes)

@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation of blocks over their size, for several slendernesses and motions."""
+"""Rocking spectra: peak rotation of blocks over their size, for slenderness angles and motions."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -38,7 +38,7 @@ def rocking_spectrum(
 ) -> "xr.Dataset":
     """Return the peak rotation of blocks under motions.
 
-    Of another body, plane or in space, a map over ``semi_diagonal`` shows all sizes.
+    For other bodies, plane or 3D, use a map over ``semi_diagonal``.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def rocking_spectrum(
     slenderness_angles : array_like
         alpha, between 0 and pi/2 [rad].
     periods : array_like
-        2 pi / p [s], which with p^2 = 3 g / (4 R) sets the size of a block.
+        2 pi / p [s]; p^2 = 3 g / (4 R) defines the size of a block.
     restitution : as for `simulate`
         Evaluated for every block.
     gravity : float
@@ -63,8 +63,8 @@ def rocking_spectrum(
     -------
     xarray.Dataset
         Over ``motion, slenderness_angle, period``: outcome, mode, peak_rotation, peak_ratio and more, with units;
-        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-], which is missing where a law changes
-        it from impact to impact. Where a block overturned the peak is a quarter turn.
+        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-], which is missing for a law with a
+        coefficient per impact. The peak of an overturned block is pi/2.
 
     Raises
     ------
@@ -76,8 +76,8 @@ def rocking_spectrum(
     Examples
     --------
     >>> import rocking as rk
-    >>> found = rocking_spectrum(rk.pulses.sine(amplitude=2.0, period=0.8), [0.15, 0.3], [1.0, 2.0, 4.0, 8.0], 0.9)
-    >>> dict(found.sizes), found["mode"].sel(slenderness_angle=0.3).values.tolist()
+    >>> spectrum = rocking_spectrum(rk.pulses.sine(amplitude=2.0, period=0.8), [0.15, 0.3], [1.0, 2.0, 4.0, 8.0], 0.9)
+    >>> dict(spectrum.sizes), spectrum["mode"].sel(slenderness_angle=0.3).values.tolist()
     ({'motion': 1, 'slenderness_angle': 2, 'period': 4}, [[-2, -2, -2, -2]])
     """
     extra("xarray", "rocking_spectrum")
@@ -126,7 +126,7 @@ def spectrum_study(
     if len(restitutions) > 1:
         dims["restitution"] = len(restitutions)
         coordinates["restitution"] = labels_along("restitution", restitutions, "restitution")
-    # a law changes it from impact to impact: there is no one coefficient to tell
+    # no single coefficient exists for a law with a coefficient per impact
     coefficient = np.where(isinstance(product.law, ConstantRestitution), product.sides["r_right"], np.nan)
     coefficient = coefficient.reshape([*dims.values()][1:])
     coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(dims)[1:])

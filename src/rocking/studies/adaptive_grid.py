@@ -1,4 +1,4 @@
-"""A grid between the values of two axes, ever finer, computed only where the mode changes."""
+"""Adaptive grid between the values of two axes, refined only along changes of the mode."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Plane:
     def __post_init__(self) -> None:
         if self.x.sets == self.y.sets:
             raise InvalidValueError(
-                "x and y must set different things, got {x} and {y}: both set {sets}", x=self.x.name, y=self.y.name,
+                "x and y must set different parameters, got {x} and {y}: both set {sets}", x=self.x.name, y=self.y.name,
                 sets=self.x.sets,
             )  # fmt: skip
         for axis, other in ((self.x, self.y), (self.y, self.x)):
@@ -39,7 +39,7 @@ class Plane:
     def of(
         cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any = DEFAULT_RESTITUTION, **options: Any
     ) -> "Plane":
-        """Return a plane from what a user gives; options: gravity [m/s2], threads, engine and fields of `Settings`."""
+        """Return a plane from user input; options: gravity [m/s2], threads, engine and fields of `Settings`."""
         threads, engine = options.pop("threads", None), options.pop("engine", "auto")
         axes = axis_of(x), axis_of(y)
         options |= friction_beside(axes, options.get("friction"))
@@ -47,14 +47,14 @@ class Plane:
         return cls(Question(body, motion, restitution, settings, threads, engine), *axes)
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
-        """Return what was computed from what and how, as plain values."""
-        stated = self.question.attributes(work) | {"motion": varied_name(self.question.motion, (self.x, self.y))}
+        """Return inputs, settings and work of the computation, as plain values."""
+        attributes = self.question.attributes(work) | {"motion": varied_name(self.question.motion, (self.x, self.y))}
         if "friction" in {self.x.name, self.y.name}:
-            del stated["setting_friction"]
-        return stated
+            del attributes["setting_friction"]
+        return attributes
 
     def case(self, x: FloatArray, y: FloatArray) -> Case:
-        """Return the variations at some points: bodies first, then restitution, time, amplitude and velocity."""
+        """Return the variations at points: bodies first, then restitution, time, amplitude and velocity."""
         case = Case.of(self.question, x.size)
         steps = sorted([(self.x, x), (self.y, y)], key=lambda step: step[0].stage)
         for axis, values in steps:
@@ -69,7 +69,7 @@ class Plane:
     def answers(
         self, x: FloatArray, y: FloatArray, stream: Any = None, progress: Callable[[int], None] | None = None
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return what happens at some points."""
+        """Return the results at points."""
         case = self.case(x, y)
         return self.question.run(case.values, case.stretch, stream, progress)
 
@@ -79,20 +79,20 @@ class Plane:
         return x.ravel(), y.ravel()
 
 
-MOST_LEVELS = 12  # a spacing 4096 times finer: a boundary is better bisected than refined beyond it
+MOST_LEVELS = 12  # spacing ratio 4096; for a finer boundary use bisection
 Label = Callable[[IntArray], Any]
 
-# cells whose corners are looked at together: what is looked at takes many times the room of what is known
+# number of cells processed together: intermediate arrays need several times the memory of the results
 _PIECE = 1 << 17
 
 
 class AdaptiveGrid:
-    """Points between the values of two axes, numbered in steps of the finest level, and what is known of them."""
+    """Points between the values of two axes, numbered in steps of the finest level, with their results."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
         levels = checks.whole("levels of refinement", levels, 0, MOST_LEVELS)
         if plane.question.law.kind == 2:
-            raise InvalidValueError("a restitution drawn at random has no boundary to refine; sample it instead")
+            raise InvalidValueError("a random restitution has no boundary to refine; sample it instead")
         self.plane, self.levels, self.progress = plane, levels, progress
         self.step = 1 << levels
         self.columns = (plane.x.values.size - 1) * self.step + 1
@@ -102,21 +102,21 @@ class AdaptiveGrid:
         self.peaks: FloatArray = np.empty(0)
 
     def coordinates(self, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of grid points; those of the axes' own values to the last bit."""
+        """Return the coordinates of grid points; bit-exact for the values of the axes."""
         return self._between(self.plane.x, i), self._between(self.plane.y, j)
 
-    def _between(self, axis: Axis, places: IntArray) -> FloatArray:
-        whole, part = places >> self.levels, (places & (self.step - 1)) / self.step
-        above = np.minimum(whole + 1, axis.values.size - 1)
-        return np.asarray(axis.values[whole] + part * (axis.values[above] - axis.values[whole]))
+    def _between(self, axis: Axis, indices: IntArray) -> FloatArray:
+        cells, fraction = indices >> self.levels, (indices & (self.step - 1)) / self.step
+        above = np.minimum(cells + 1, axis.values.size - 1)
+        return np.asarray(axis.values[cells] + fraction * (axis.values[above] - axis.values[cells]))
 
     def base(self) -> IntArray:
-        """Return the numbers (row times columns plus column) of the axes' own values, increasing."""
+        """Return the indices (row times columns plus column) of the values of the axes, increasing."""
         i, j = np.arange(0, self.columns, self.step), np.arange(0, self.rows, self.step)
         return np.asarray((j[:, None] * self.columns + i).ravel())
 
     def compute(self, keys: IntArray) -> None:
-        """Compute those of some points that are not known, in one batch."""
+        """Compute the unknown ones of the points, in one batch."""
         new = absent(keys, self.keys)
         if not new.size:
             return
@@ -126,17 +126,17 @@ class AdaptiveGrid:
         self.learn(new, results["mode"], results["peak_ratio"])
 
     def learn(self, keys: IntArray, modes: IntArray, peaks: FloatArray) -> None:
-        """Take in the modes and relative peaks [-] of new points."""
+        """Add the modes and relative peaks [-] of new points."""
         if not self.keys.size:
             self.keys, self.modes, self.peaks = keys, modes, peaks
             return
-        places = np.searchsorted(self.keys, keys)
-        self.keys = np.insert(self.keys, places, keys)
-        self.modes = np.insert(self.modes, places, modes)
-        self.peaks = np.insert(self.peaks, places, peaks)
+        positions = np.searchsorted(self.keys, keys)
+        self.keys = np.insert(self.keys, positions, keys)
+        self.modes = np.insert(self.modes, positions, modes)
+        self.peaks = np.insert(self.peaks, positions, peaks)
 
     def modes_at(self, i: IntArray, j: IntArray) -> IntArray:
-        """Return the modes of points, computing those that are not known."""
+        """Return the modes of points; unknown ones are computed."""
         keys = j * self.columns + i
         self.compute(keys.ravel())
         return np.asarray(self.modes[np.searchsorted(self.keys, keys)])
@@ -146,10 +146,10 @@ class AdaptiveGrid:
         return self.modes_at(*_corners(i, j, step))
 
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
-        """Subdivide cells whose corners differ, level by level, and return columns and rows of the last that do."""
+        """Subdivide cells with different corners, level by level; return columns and rows of the last such cells."""
         self.compute(self.base())
         across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
-        j, i = (place * self.step for place in np.divmod(np.arange(across * up), max(across, 1)))
+        j, i = (index * self.step for index in np.divmod(np.arange(across * up), max(across, 1)))
         i, j = self._differing(label, i, j, self.step)
         for level in range(1, self.levels + 1):
             half = self.step >> level  # Eq. 185
@@ -159,7 +159,7 @@ class AdaptiveGrid:
         return i, j
 
     def _differing(self, label: Label, i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
-        """Return the cells whose corners differ; corners that are not known are computed in one batch."""
+        """Return the cells with different corners; unknown corners are computed in one batch."""
         pieces = [slice(first, first + _PIECE) for first in range(0, i.size, _PIECE)]
         new, mixed = [np.empty(0, np.int64)], [np.empty(0, np.bool_)]
         for piece in pieces:
@@ -173,18 +173,18 @@ class AdaptiveGrid:
         return i[kept], j[kept]
 
 
-def absent(keys: IntArray, known: IntArray) -> IntArray:
-    """Return those numbers that are not among others: `numpy.setdiff1d` where the others are sorted already."""
-    if known.size:
-        places = np.searchsorted(known, keys)
-        keys = keys[known[np.minimum(places, known.size - 1)] != keys]
+def absent(keys: IntArray, existing: IntArray) -> IntArray:
+    """Return the keys that are not among existing ones: `numpy.setdiff1d` for sorted existing keys."""
+    if existing.size:
+        places = np.searchsorted(existing, keys)
+        keys = keys[existing[np.minimum(places, existing.size - 1)] != keys]
     keys = np.sort(keys)
     return keys[np.append(True, keys[1:] != keys[:-1])] if keys.size else keys
 
 
-def merged(known: IntArray, new: IntArray) -> IntArray:
-    """Return two sets of numbers, increasing, as one."""
-    return np.insert(known, np.searchsorted(known, new), new)
+def merged(existing: IntArray, new: IntArray) -> IntArray:
+    """Return the union of two sets of increasing keys."""
+    return np.insert(existing, np.searchsorted(existing, new), new)
 
 
 def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
@@ -194,7 +194,7 @@ def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
 
 
 def verdicts(modes: IntArray) -> BoolArray:
-    """Return whether modes are of overturning; failed ones are not, and for the caller to set aside.
+    """Return True for modes of overturning; callers must exclude failed points.
 
     >>> verdicts(np.array([-3, -2, -1, 0, 2])).tolist()
     [False, False, False, True, True]
@@ -208,27 +208,27 @@ class RefinedMap:
 
     x: FloatArray  # x, y: coordinates of all points, in the units of the axes
     y: FloatArray
-    modes: IntArray  # how each ended: -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts
+    modes: IntArray  # -3 failed, -2 no uplift, -1 no overturning, n >= 0 overturned after n impacts
     peak_ratio: FloatArray  # peak rotation over the slenderness angle [-]
-    base: BoolArray  # whether a point is one of the map before refinement
+    base: BoolArray  # True for points of the map before refinement
 
 
 def refined(grid: AdaptiveGrid, modes: IntArray, peaks: FloatArray) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
-    """Return a map that is known, refined on a grid of which nothing is known yet, and its mixed finest cells."""
-    # the map's own points come first, in its order; the cells, whose corners differ, are where `outlines` begins
+    """Return the refinement of a computed map on a new grid, and its finest cells with different corners."""
+    # the points of the map come first, in their order; `outlines` starts from the cells with different corners
     first = grid.base()
     grid.learn(first, np.asarray(modes, dtype=np.int64).ravel(), np.asarray(peaks, dtype=np.float64).ravel())
     cells = grid.finest(lambda modes: modes)
     own = np.zeros(grid.keys.size, dtype=np.bool_)
     own[np.searchsorted(grid.keys, first)] = True
-    places = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # the map's own first
-    x, y = np.empty(places.size), np.empty(places.size)
-    for start in range(0, places.size, _PIECE):  # on the way coordinates take many times their room
-        part = slice(start, start + _PIECE)
-        keys = grid.keys[places[part]]
-        x[part], y[part] = grid.coordinates(keys % grid.columns, keys // grid.columns)
-    base = np.arange(places.size) < first.size
-    return RefinedMap(x, y, grid.modes[places], grid.peaks[places], base), cells
+    order = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # points of the map first
+    x, y = np.empty(order.size), np.empty(order.size)
+    for start in range(0, order.size, _PIECE):  # intermediate arrays of coordinates need much memory
+        rows = slice(start, start + _PIECE)
+        keys = grid.keys[order[rows]]
+        x[rows], y[rows] = grid.coordinates(keys % grid.columns, keys // grid.columns)
+    base = np.arange(order.size) < first.size
+    return RefinedMap(x, y, grid.modes[order], grid.peaks[order], base), cells
 
 
 def refined_map(
@@ -245,22 +245,22 @@ def refined_map(
 ) -> RefinedMap:
     """Return the points of an overturning map that is refined along the boundaries between modes.
 
-    Cells whose corners have different modes are cut into four, level by level, and only new points are computed. What
-    is narrower than a cell and touches no corner of it is not seen.
+    Cells with different modes at their corners are divided into four, level by level, and only new points are
+    computed. Regions that are narrower than a cell and contain no corner are not detected.
 
     Parameters
     ----------
     body, motion, x, y, restitution
-        As for `rocking.overturning_map`; the restitution not one drawn at random.
+        As for `rocking.overturning_map`; the restitution must not be random.
     levels : int
-        Levels of refinement; each halves the spacing [-].
+        Number of refinements; each one halves the spacing [-].
     gravity, progress, **options
         As for `rocking.overturning_map`.
 
     Returns
     -------
     RefinedMap
-        All points; the map's own first, x varying fastest.
+        All points; those of the map first, with x varying fastest.
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     results, _ = plane.answers(*plane.mesh(), progress=progress)

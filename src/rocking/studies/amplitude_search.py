@@ -1,4 +1,4 @@
-"""Amplitudes of many bodies, sampled, zoomed where something may hide, and bracketed: always in one batch a round."""
+"""Search of amplitudes of many bodies: samples, bisection of suspicious intervals, brackets; one batch per round."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -11,9 +11,9 @@ from rocking.outcome import lost_contact
 from rocking.studies.question import FAILED
 
 Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
-"""Takes sides and scales, and the numbers of the bodies; returns mode, side, peak_ratio and overturning_time."""
+"""Function of sides, scales and body indices; returns mode, side, peak_ratio and overturning_time."""
 
-# halvings after which neighbouring doubles have met, and the relative width at which a hunt is given up
+# number of bisections to neighbouring doubles, and relative width at which a hunt ends
 _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
 
 
@@ -21,26 +21,26 @@ _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
 class Samples:
     """Histories of many bodies at many scales, sorted by body and scale."""
 
-    body: IntArray  # number of the body
+    body: IntArray  # index of the body
     scale: FloatArray  # factor on the motion [-]
-    mode: IntArray  # how it ended
+    mode: IntArray  # mode of the history
     side: IntArray  # side to which it overturned
     peak: FloatArray  # peak rotation over the slenderness angle [-]
-    time: FloatArray  # time of overturning, NaN where it did not [s]
-    lost: FloatArray  # 1 where the ground would have to pull, NaN where that is not known [-]
+    time: FloatArray  # time of overturning, NaN without overturning [s]
+    lost: FloatArray  # 1 for a tensile contact force, NaN if not computed [-]
 
     def joined(self, other: "Samples") -> "Samples":
-        """Return these and others, sorted."""
+        """Return both sets of samples, sorted."""
         both = Samples(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
         return both.where(np.lexsort((both.scale, both.body)))
 
     def where(self, keep: BoolArray | IntArray) -> "Samples":
-        """Return some of them."""
+        """Return a subset of the samples."""
         return Samples(*(getattr(self, f.name)[keep] for f in fields(self)))
 
     @property
     def good(self) -> "Samples":
-        """Those that have a result."""
+        """Samples with a result."""
         return self.where(self.mode != FAILED)
 
     @property
@@ -49,15 +49,15 @@ class Samples:
 
     @property
     def same_body(self) -> BoolArray:
-        """Whether each is of the same body as the next."""
+        """True for samples of the same body as the next sample."""
         return np.asarray(self.body[1:] == self.body[:-1])
 
 
 @dataclass
 class ScaleBrackets:
-    """Pairs of scales between which something changes."""
+    """Pairs of scales with a change between them."""
 
-    body: IntArray  # number of the body
+    body: IntArray  # index of the body
     ends: FloatArray  # scales below and above [-]; shape (n, 2)
     modes: IntArray  # modes there; shape (n, 2)
 
@@ -69,25 +69,25 @@ class ScaleBrackets:
         return cls(samples.body[low], ends, np.stack([samples.mode[low], samples.mode[high]], axis=1))
 
     def wide(self, tolerance: float) -> IntArray:
-        """Return which are wider than a relative width [-]."""
+        """Return the indices of brackets wider than a relative width [-]."""
         (low, high), middle = self.ends.T, self.ends.mean(axis=1)
         return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))  # Eq. 184
 
     def move(self, rows: IntArray, upper: BoolArray, middle: Samples) -> None:
-        """Put one end of some brackets into their middles."""
+        """Move one end of brackets to their middles."""
         end = upper.astype(np.int64)
         self.ends[rows, end], self.modes[rows, end] = middle.scale, middle.mode
 
 
 class AmplitudeSearch:
-    """Histories of some bodies, each under a motion of its own or all under one, at more and more scales."""
+    """Histories of bodies at an increasing number of scales, each body under one motion."""
 
     def __init__(self, run: Run, sides: dict[str, FloatArray], scales: FloatArray) -> None:
         self.run, self.sides = run, sides
         self.samples = self.compute(np.repeat(np.arange(len(scales)), scales.shape[1]), scales.ravel())
 
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
-        """Return histories at factors on the motion [-]; random numbers of a body are the same at every factor."""
+        """Return histories at scale factors [-]; the random numbers of a body do not depend on the factor."""
         values = {name: array[body] for name, array in self.sides.items()}
         results = self.run({**values, "scale": scale}, body)
         names = ("mode", "side", "peak_ratio", "overturning_time")
@@ -95,34 +95,34 @@ class AmplitudeSearch:
         return Samples(body, scale, mode, side, peak, time, lost_contact(results))
 
     def zoom(self) -> None:
-        """Halve the intervals in which a change of verdict may hide between ends that agree."""
+        """Bisect the intervals between equal verdicts that may contain a change."""
         s = self.samples.good
-        wanted = suspicious(s)
+        selected = suspicious(s)
         middle = 0.5 * (s.scale[:-1] + s.scale[1:])
-        self.samples = self.samples.joined(self.compute(s.body[:-1][wanted], middle[wanted]))
+        self.samples = self.samples.joined(self.compute(s.body[:-1][selected], middle[selected]))
 
     def hunt(self) -> None:
-        """Look for survival between neighbours that overturn differently: one must pass it to get to the other."""
-        # each such pair is bisected between its own two ways of overturning until a survivor is met; of a third way the
-        # nearest is followed
+        """Search scales without overturning between neighbours with different modes of overturning."""
+        # each pair is bisected between its two modes of overturning until a scale without overturning is found; a third
+        # mode replaces the nearest one
         s = self.samples.good
         ways = 2 * s.mode + (s.side > 0)
         changes = s.same_body & s.falls[1:] & s.falls[:-1] & (ways[1:] != ways[:-1])
         pairs, lower = ScaleBrackets.between(s, changes), ways[:-1][changes]
-        lost = np.zeros(lower.size, dtype=np.bool_)
+        done = np.zeros(lower.size, dtype=np.bool_)
         for _ in range(_MOST_ROUNDS):
             rows = pairs.wide(_GIVEN_UP)
-            rows = rows[~lost[rows]]
+            rows = rows[~done[rows]]
             if not rows.size:
                 break
             middle = self.compute(pairs.body[rows], pairs.ends[rows].mean(axis=1))
-            lost[rows[~middle.falls]] = True
+            done[rows[~middle.falls]] = True
             self.samples = self.samples.joined(middle.where(~middle.falls))
             pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
 
     def brackets(self, tolerance: float) -> ScaleBrackets:
-        """Return all changes of verdict between neighbouring samples, bisected together to a relative width [-]."""
-        # one whose middle failed stays as wide as it was
+        """Return brackets of all changes of verdict, bisected together to a relative width [-]."""
+        # a bracket with a failed middle keeps its width
         s = self.samples.good
         brackets = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
         stuck = np.zeros(brackets.body.size, dtype=np.bool_)
@@ -140,9 +140,9 @@ class AmplitudeSearch:
 
 
 def suspicious(s: Samples) -> BoolArray:
-    """Return in which intervals between neighbouring samples of equal verdict another may hide."""
-    # where the peak of survivors, carried on as steeply as next to it, passes the top; next to a largest peak of
-    # survivors; next to a longest time of overturning
+    """Return True for intervals between equal verdicts that may contain another verdict."""
+    # where the extrapolated peak without overturning exceeds 1; next to a largest peak without overturning; next to a
+    # longest time of overturning
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)
     steps = np.where(same, np.abs(np.diff(peak)), np.nan)
@@ -153,22 +153,22 @@ def suspicious(s: Samples) -> BoolArray:
 
 
 def _beside_largest(values: FloatArray, same: BoolArray) -> BoolArray:
-    """Return which intervals touch a local maximum among neighbours that are numbers."""
+    """Return True for intervals next to a local maximum among finite neighbours."""
     with np.errstate(invalid="ignore"):
         rise, fall = same & (values[1:] > values[:-1]), same & (values[:-1] > values[1:])
-        known = same & np.isfinite(values[1:]) & np.isfinite(values[:-1])
-    left = np.append(True, rise | ~known)  # nothing higher on the left
-    right = np.append(fall | ~known, True)
+        is_finite = same & np.isfinite(values[1:]) & np.isfinite(values[:-1])
+    left = np.append(True, rise | ~is_finite)  # no higher value on the left
+    right = np.append(fall | ~is_finite, True)
     top = left & right & np.isfinite(values)
-    return np.asarray(known & (top[1:] | top[:-1]))
+    return np.asarray(is_finite & (top[1:] | top[:-1]))
 
 
-# where the points of a round lie between those of the others, and how many rounds without news are enough
+# offsets of the points of each round, and number of rounds without a change that ends the search
 _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 
 def below_minimum(samples: Samples) -> dict[int, FloatArray]:
-    """Return by body the scales up to the first that overturns, if that is not the lowest sampled."""
+    """Return the scales of each body up to the first with overturning, if it is not the lowest one."""
     bodies, start = np.unique(samples.body, return_index=True)
     below = {}
     for body, first, last in zip(bodies.tolist(), start, np.append(start, samples.body.size)[1:], strict=True):
@@ -179,19 +179,23 @@ def below_minimum(samples: Samples) -> dict[int, FloatArray]:
 
 
 def search_below(scan: AmplitudeSearch, points: int) -> None:
-    """Sample below the least amplitude that overturns until it holds."""
-    # A round spreads points over the range up to the first sample that overturns. A body is done when two rounds in a
-    # row have found nothing that overturns below the survivors next to that sample, or after four.
-    held: dict[int, int] = {}
+    """Sample below the smallest overturning amplitude until it does not change."""
+    # The points of a round cover the range up to the first sample with overturning. A body is done after two
+    # consecutive rounds without overturning below the sample next to it, or after four rounds.
+    unchanged: dict[int, int] = {}
     for shift in _SHIFTS:
-        known = {k: each for k, each in below_minimum(scan.samples.good).items() if held.get(k, 0) < _ENOUGH}
-        if not known:
+        active = {
+            k: scales_below
+            for k, scales_below in below_minimum(scan.samples.good).items()
+            if unchanged.get(k, 0) < _ENOUGH
+        }
+        if not active:
             return
-        share = (np.arange(points) + shift) / points
-        scales = np.concatenate([s[0] * (s[-1] / s[0]) ** share for s in known.values()])
-        new = scan.compute(np.repeat(np.array(list(known)), points), scales)
+        fractions = (np.arange(points) + shift) / points
+        scales = np.concatenate([s[0] * (s[-1] / s[0]) ** fractions for s in active.values()])
+        new = scan.compute(np.repeat(np.array(list(active)), points), scales)
         scan.samples = scan.samples.joined(new)
-        least = np.full(1 + max(known), -np.inf)
-        least[list(known)] = [s[-2] for s in known.values()]
-        news = set(np.unique(new.body[new.falls & (new.scale < least[new.body])]).tolist())
-        held |= {k: 0 if k in news else held.get(k, 0) + 1 for k in known}
+        limits = np.full(1 + max(active), -np.inf)
+        limits[list(active)] = [s[-2] for s in active.values()]
+        improved = set(np.unique(new.body[new.falls & (new.scale < limits[new.body])]).tolist())
+        unchanged |= {k: 0 if k in improved else unchanged.get(k, 0) + 1 for k in active}

@@ -1,4 +1,4 @@
-"""An axis of a map: a parameter of the body or the motion, its values, and how it changes a case."""
+"""An axis of a map: a parameter of the body or the motion, its values, and its effect on a case."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -23,24 +23,24 @@ BODY, RESTITUTION, TIME, AMPLITUDE, VELOCITY = range(5)  # stages in which axes 
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A parameter of a map; called with values it returns itself with them.
+    """A parameter of a map; a call with values returns the axis with these values.
 
     Values increase, are finite and within the range of the axis.
     """
 
     name: str
     unit: str
-    words: str  # what it means
-    sets: str  # what it decides; two axes of a map cannot decide the same thing
-    stage: int  # when it is applied
-    # what a value for each variation changes in a case
+    words: str  # meaning
+    sets: str  # parameter that the axis sets; two axes of a map must set different parameters
+    stage: int  # order of application
+    # changes of a case for the values of its variations
     changes: Callable[[Case, FloatArray], dict[str, Any]] = field(repr=False)
-    # refuses a question that has no such parameter
+    # check that refuses a question without this parameter
     check_kind: Callable[["Axis", Question], object] | None = field(default=None, repr=False)
     low: float = 0.0
     high: float = 1e9
     low_is_allowed: bool = False
-    usual: tuple[float, float] = (1.0, 2.0)  # first and last value that a form proposes
+    usual: tuple[float, float] = (1.0, 2.0)  # default first and last value of a form
     values: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __call__(self, values: Any) -> "Axis":
@@ -54,7 +54,10 @@ class Axis:
         if bad.size:
             bracket = "[" if self.low_is_allowed else "("
             raise InvalidValueError(
-                ("{name} must be in {bracket}{low:g}, {high:g}] {unit}, got {size:g} at index {index}; wrong unit?"),
+                (
+                    "{name} must be in {bracket}{low:g}, {high:g}] {unit}, got {size:g} at index {index}. Check the "
+                    "unit."
+                ),
                 name=self.name,
                 bracket=bracket,
                 low=self.low,
@@ -68,26 +71,26 @@ class Axis:
         return replace(self, values=row)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Travel as name and values: functions of a table cannot be pickled."""
+        """Pickle name and values: functions cannot be pickled."""
         return (axis_of, ((self.name, self.values),)) if self.values.size else (_without_values, (self.name,))
 
     def applied(self, case: Case, values: FloatArray) -> Case:
-        """Return a case with this parameter changed, to a value for each of its variations."""
+        """Return a case with this parameter set to a value for each variation."""
         return replace(case, **self.changes(case, values))
 
     def check(self, question: Question) -> None:
-        """Refuse a question that has no such parameter."""
+        """Refuse a question without this parameter."""
         if self.stage == TIME:
             question.check_stretching(self.name)
         if self.stage in {AMPLITUDE, VELOCITY} and not question.motion.peak > 0.0:
             raise InvalidValueError(
-                "the amplitude of {motion!r} cannot be set: it is zero throughout", motion=question.motion.name
+                "the amplitude of {motion!r} cannot be set: the motion is zero", motion=question.motion.name
             )
         if self.check_kind is not None:
             self.check_kind(self, question)
 
     def check_beside(self, other: "Axis") -> None:
-        """Refuse another axis whose values this one cannot go with."""
+        """Refuse another axis with incompatible values."""
         if self.name == "pgv" and other.name == "scale":
             _refuse_zero(other.values)
 
@@ -101,7 +104,7 @@ _SAMPLES = 4096
 
 
 def main_period(motion: Motion) -> float:
-    """Return the period T_p of a pulse; of a sum of sinusoids that of the first [s]."""
+    """Return the period T_p of a pulse, or of the first one in a sum of sinusoids [s]."""
     motion = leading(motion)
     if isinstance(motion, Ricker):
         return motion.period
@@ -109,7 +112,7 @@ def main_period(motion: Motion) -> float:
     if frequency == 0.0:
         raise InvalidValueError(
             "the period of a pulse cannot vary for {motion!r}, which has none", motion=motion.name,
-            hint="the axes scale, pga, pgv and duration take any motion",
+            hint="Use scale, pga, pgv or duration for this motion.",
         )  # fmt: skip
     return 2.0 * math.pi / frequency
 
@@ -121,11 +124,11 @@ def peak_velocity(motion: Motion) -> float:
         return peak_ground_velocity(motion)
     times = np.linspace(0.0, motion.duration, _SAMPLES + 1)
     signs = np.sign(motion.acceleration_inside(times))
-    places = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
-    low, high = times[places], times[places + 1]
+    crossings = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
+    low, high = times[crossings], times[crossings + 1]
     for _ in range(60):  # to the zeros of the acceleration
         middle = 0.5 * (low + high)
-        left = np.sign(motion.acceleration_inside(middle)) == signs[places]
+        left = np.sign(motion.acceleration_inside(middle)) == signs[crossings]
         low, high = np.where(left, middle, low), np.where(left, high, middle)
     return float(np.abs(motion.velocity(np.concatenate([times, low]))).max())
 
@@ -143,8 +146,8 @@ def _restitution(case: Case, values: FloatArray) -> dict[str, Any]:
     if not isinstance(body, Body):
         return {"sides": {**case.sides, "r_right": values, "r_left": values}}
     inertia = [body.side(foot).moment_of_inertia for foot in FEET]
-    most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
-    allowed = np.where(values <= most, values, np.nan)
+    largest = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
+    allowed = np.where(values <= largest, values, np.nan)
     return {"sides": {**case.sides, "r_right": allowed, "r_left": allowed}}
 
 
@@ -166,9 +169,7 @@ def _velocity(case: Case, values: FloatArray) -> dict[str, Any]:
 
 def _refuse_zero(scales: FloatArray) -> None:
     if not np.all(scales):
-        raise InvalidValueError(
-            "pgv cannot be set where the scale is 0: a motion scaled to nothing has no velocity; leave 0 out"
-        )
+        raise InvalidValueError("pgv cannot be set for scale 0. Remove 0 from the scales.")
 
 
 def _check_block(axis: Axis, question: Question) -> None:
@@ -181,13 +182,13 @@ def _check_block(axis: Axis, question: Question) -> None:
 def _check_law(axis: Axis, question: Question) -> None:
     if not isinstance(question.law, ConstantRestitution):
         raise InvalidValueError(
-            "{axis} is an axis: leave the law of impact out, got {law}", axis=axis.name, law=type(question.law).__name__
+            "{axis} is an axis. Remove the impact law, got {law}.", axis=axis.name, law=type(question.law).__name__
         )
 
 
 def _check_friction(_: Axis, question: Question) -> None:
     if "friction" not in question.settings.stated:
-        raise InvalidValueError("friction is an axis of bodies that may slide: their settings need a friction")
+        raise InvalidValueError("the axis friction needs a friction in the settings")
 
 
 def _check_in_plane(axis: Axis, question: Question) -> None:
@@ -200,12 +201,12 @@ def _check_in_plane(axis: Axis, question: Question) -> None:
 def _check_in_space(axis: Axis, question: Question) -> None:
     if isinstance(question.body, Body):
         raise InvalidValueError(
-            "{axis} varies only for a body in space, got {value}", parameter="body", value=question.body, axis=axis.name
+            "{axis} varies only for a 3D body, got {value}", parameter="body", value=question.body, axis=axis.name
         )
 
 
 def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
-    """Return the name of a motion without the strength and the period that axes vary."""
+    """Return the name of a motion without amplitude and period if axes vary them."""
     motion = leading(motion)
     if not isinstance(motion, Pulse):
         return str(motion.name)
@@ -215,12 +216,12 @@ def varied_name(motion: Any, axes: Sequence[Axis]) -> str:
 
 
 def friction_beside(axes: Sequence[Axis], stated: float | None) -> dict[str, float]:
-    """Return the friction that settings need beside an axis of friction; stated: what they have of their own [-]."""
+    """Return the friction of settings with an axis of friction; stated: their own friction [-]."""
     values = next((axis.values for axis in axes if axis.name == "friction"), None)
     if values is None:
         return {}
     if stated is not None:
-        raise InvalidValueError("friction is an axis: leave friction out of the settings")
+        raise InvalidValueError("friction is an axis. Remove friction from the settings.")
     return {"friction": float(values[-1])}
 
 
@@ -254,7 +255,7 @@ _ALL = (
     ),
     Axis(
         "pgv", "m/s",
-        "peak ground velocity, by scaling the motion, or by stretching its time where the other axis scales it",
+        "peak ground velocity, by scaling the motion, or by stretching its time if the other axis scales it",
         "the velocity of the motion", VELOCITY, _velocity, high=1e6, usual=(0.1, 2.0),
     ),
     Axis("period", "s", "period T_p of the pulse", _TIME, TIME, _period, _check_period, usual=(0.2, 3.0)),
@@ -287,7 +288,7 @@ _ALL = (
         low_is_allowed=True,
     ),
     Axis(
-        "azimuth", "rad", "angle from x towards y by which the horizontal motion of a body in space is turned",
+        "azimuth", "rad", "angle of the horizontal motion of a 3D body, from x towards y",
         "azimuth", RESTITUTION, lambda case, values: {"sides": {**case.sides, "azimuth": values}}, _check_in_space,
         high=2.0 * np.pi, low_is_allowed=True,
     ),
@@ -305,12 +306,12 @@ _ALL = (
 
 
 def axes() -> dict[str, Axis]:
-    """Return every axis by name, without values.
+    """Return all axes by name, without values.
 
     Returns
     -------
     dict of str to Axis
-        Name to axis; called with values it is the axis of a map.
+        Axes by name; a call with values gives an axis of a map.
 
     Examples
     --------
@@ -325,20 +326,20 @@ def _without_values(name: str) -> Axis:
 
 
 def axis_of(axis: Any) -> Axis:
-    """Return an axis, or the one of a name and values; one without values is refused."""
+    """Return an axis with values, or the axis of a name and values."""
     if isinstance(axis, Axis):
         if not axis.values.size:
             raise InvalidValueError(
-                "the axis {axis} has no values: call it with them, in {unit}", axis=axis.name, unit=axis.unit
+                "the axis {axis} has no values. Call it with values in {unit}.", axis=axis.name, unit=axis.unit
             )
         return axis
     if not isinstance(axis, Sequence) or isinstance(axis, str) or len(axis) != 2 or not isinstance(axis[0], str):
         raise InvalidValueError('an axis is written as ("scale", values), got {value}', parameter="axis", value=axis)
-    known = axes()
-    name = checks.spelling(axis[0], known)
-    if name not in known:
+    all_axes = axes()
+    name = checks.spelling(axis[0], all_axes)
+    if name not in all_axes:
         raise InvalidValueError(
-            "no axis named {value}; there are {names}", parameter="axis", value=name, names=", ".join(sorted(known)),
-            hint=checks.nearest(name, known),
+            "Unknown axis {value}. Axes are {names}.", parameter="axis", value=name, names=", ".join(sorted(all_axes)),
+            hint=checks.nearest(name, all_axes),
         )  # fmt: skip
-    return known[name](axis[1])
+    return all_axes[name](axis[1])

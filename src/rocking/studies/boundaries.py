@@ -1,4 +1,4 @@
-"""The boundary of overturning in the plane of two parameters, as polylines whose vertices are bisected."""
+"""Boundary of overturning in the plane of two parameters, as polylines with bisected vertices."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,30 +19,29 @@ from rocking.studies.question import FAILED
 
 Inside = Callable[[IntArray], BoolArray]
 
-# beyond this many halvings neighbouring doubles have met
+# number of bisections to neighbouring doubles
 _MOST_ROUNDS = 60
 
 
 @dataclass(frozen=True, eq=False)
 class Polyline:
-    """A stretch of the boundary of a region."""
+    """A polyline of the boundary of a region."""
 
-    # vertices x, y, in the units of the axes, each on an edge of the grid; the first is repeated at the end if the
-    # polyline is closed
+    # vertices x, y on edges of the grid, in the units of the axes; a closed polyline ends with its first vertex
     points: FloatArray
-    # at each vertex the modes outside and inside the region: -2 not lifted, -1 survived, n >= 0 overturned after n
+    # modes outside and inside the region at each vertex: -2 no uplift, -1 no overturning, n >= 0 overturned after n
     # impacts
     modes: IntArray
-    region: str  # what lies inside: ``overturned``, or ``overturned after n impacts``
+    region: str  # region inside: ``overturned``, or ``overturned after n impacts``
     axes: tuple[str, str]  # names of the axes
 
     @property
     def closed(self) -> bool:
-        """Whether it ends where it starts."""
+        """True if the last vertex is the first one."""
         return len(self.points) > 2 and bool((self.points[0] == self.points[-1]).all())
 
 
-def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
+def boundary(  # noqa: PLR0913 - users set every one of them
     body: Body,
     motion: Motion,
     x: Axis | tuple[str, Any],
@@ -56,24 +55,22 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     progress: Callable[[int], None] | None = None,
     **options: Any,
 ) -> list[Polyline]:
-    """Return where overturning begins and ends in the plane of two parameters.
+    """Return the boundary of overturning in the plane of two parameters.
 
-    The grid of the axes, refined where asked, is marched cell by cell; the boundary crosses every edge whose ends
-    differ, once, at a point found by bisection along the edge, and is followed from cell to cell. An edge that it
-    crosses twice is not seen: what is narrower than a cell may be missed, and of a thin strip of survival between two
-    ways of overturning only pieces may be outlined. In a cell with opposite corners
-    overturned (a saddle) the centre is computed: if it overturns too the overturned corners are joined, else they are
-    parted.
+    The boundary crosses every edge of the grid with different ends once, at a point from bisection, and continues from
+    cell to cell. Two crossings of one edge are not detected: regions narrower than a cell may be missed, and a narrow
+    strip without overturning between two modes may appear in pieces. In a cell with opposite overturned corners (a
+    saddle) the centre is computed: if it overturns, the overturned corners are connected, else separated.
 
     Parameters
     ----------
     body, motion, x, y, restitution
-        As for `rocking.overturning_map`; axes of at least two values, a restitution that is not drawn at random.
+        As for `rocking.overturning_map`; axes of at least two values, no random restitution.
     by : {"verdict", "mode"}
-        Whether to outline all that overturns, or what overturns after each number of impacts for itself; the line
-        between two modes then comes twice.
+        Outline all overturning, or overturning by the number of impacts; then the line between two modes appears
+        twice.
     levels : int
-        Levels of refinement before marching; each halves the spacing [-].
+        Number of refinements of the grid; each one halves the spacing [-].
     tolerance : float
         Width of the last bracket along an edge, over the coordinate [-].
     gravity, progress, **options
@@ -82,7 +79,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     Returns
     -------
     list of Polyline
-        Empty if nothing changes. Cells with a corner that failed are left out.
+        The boundary; empty without overturning. Cells with a failed corner are omitted.
 
     Raises
     ------
@@ -100,12 +97,12 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     tolerance = checked(plane, by, tolerance)
     grid = AdaptiveGrid(plane, levels, progress)
-    # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
+    # always refined by mode: a narrow strip without overturning lies between two modes before its corners show it
     return outlines(grid, grid.finest(lambda modes: modes), by, tolerance)
 
 
 def checked(plane: Plane, by: str, tolerance: float) -> float:
-    """Refuse what a boundary cannot be asked with; return the width of the last brackets over the coordinate [-]."""
+    """Check the options of a boundary; return the relative width of the last brackets [-]."""
     if by not in {"verdict", "mode"}:
         raise InvalidValueError(parameter="by", allowed='"verdict" or "mode"', value=by)
     for axis in (plane.x, plane.y):
@@ -117,25 +114,25 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
 
 
 def outlines(grid: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
-    """Return the boundary on a grid that has been refined, to a width over the coordinate [-]."""
+    """Return the boundary on a refined grid, to a relative width [-]."""
     if by == "verdict":
         return _outlined(grid, verdicts, "overturned", tolerance, seeds)
-    lines: list[Polyline] = []
+    polylines: list[Polyline] = []
     for n in np.unique(grid.modes[grid.modes >= 0]).tolist():
-        words = "overturned" if n == UNCOUNTED else f"overturned after {n} impacts"
-        lines += _outlined(grid, partial(np.equal, n), words, tolerance, seeds)
-    return lines
+        region = "overturned" if n == UNCOUNTED else f"overturned after {n} impacts"
+        polylines += _outlined(grid, partial(np.equal, n), region, tolerance, seeds)
+    return polylines
 
 
 def _outlined(
     grid: AdaptiveGrid, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
 ) -> list[Polyline]:
-    """Return the outline of a region, followed from some cells."""
+    """Return the outline of a region, from seed cells."""
     i, j = _cells_passed(grid, inside, seeds)
     if not i.size:
         return []
     corners = inside(grid.corners(i, j, 1))
-    centre = np.zeros(i.size, dtype=np.bool_)  # whether the centre of a saddle is inside
+    centre = np.zeros(i.size, dtype=np.bool_)  # True if the centre of a saddle is inside
     saddle = crossed_edges(corners).all(axis=1)
     if saddle.any():
         ends = grid.coordinates(i[saddle], j[saddle]), grid.coordinates(i[saddle] + 1, j[saddle] + 1)
@@ -144,35 +141,35 @@ def _outlined(
     joined = segments(corners, edge_numbers(i, j, grid.columns), centre)
     numbers, names = np.unique(joined), (grid.plane.x.name, grid.plane.y.name)
     points, modes = bisected(grid, inside, numbers, tolerance)
-    places = [np.searchsorted(numbers, chain) for chain in chains(joined)]
-    return [Polyline(points[each], modes[each], region, names) for each in places]
+    lines = [np.searchsorted(numbers, chain) for chain in chains(joined)]
+    return [Polyline(points[vertices], modes[vertices], region, names) for vertices in lines]
 
 
 def _cells_passed(grid: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
-    """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
+    """Return all finest cells on the boundary, including cells that the refinement does not reach."""
     i, j = seeds
-    known, seen = np.empty(0, np.int64), np.empty(0, np.int64)
-    new = absent(j * grid.columns + i, seen)
+    boundary_cells, visited = np.empty(0, np.int64), np.empty(0, np.int64)
+    new = absent(j * grid.columns + i, visited)
     while new.size:
         i, j = new % grid.columns, new // grid.columns
         corners = grid.corners(i, j, 1)
         good = (corners != FAILED).all(axis=1)
         i, j, crossed = i[good], j[good], crossed_edges(inside(corners[good]))
-        seen = merged(seen, new)
+        visited = merged(visited, new)
         passed = crossed.any(axis=1)
         i, j, crossed = i[passed], j[passed], crossed[passed]
-        known = merged(known, j * grid.columns + i)
+        boundary_cells = merged(boundary_cells, j * grid.columns + i)
         cell, edge = np.nonzero(crossed)
-        right, up = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)]).T  # to what is below, right, above, left
+        right, up = np.array([(0, -1), (1, 0), (0, 1), (-1, 0)]).T  # to the cells below, right, above, left
         i, j = i[cell] + right[edge], j[cell] + up[edge]
         within = (i >= 0) & (j >= 0) & (i < grid.columns - 1) & (j < grid.rows - 1)
-        new = absent(j[within] * grid.columns + i[within], seen)
-    return known % grid.columns, known // grid.columns
+        new = absent(j[within] * grid.columns + i[within], visited)
+    return boundary_cells % grid.columns, boundary_cells // grid.columns
 
 
 def bisected(grid: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
-    """Return where the boundary of a region crosses edges of a grid, and the modes outside and inside, of each."""
-    # one batch for each halving
+    """Return the crossings of the boundary of a region with edges of a grid, and the modes outside and inside."""
+    # one batch per bisection
     upright = numbers % 2 == 1
     i, j = (numbers // 2) % grid.columns, (numbers // 2) // grid.columns
     ends = [(i, j), (i + ~upright, j + upright)]
@@ -199,20 +196,20 @@ _ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
 
 
 def crossed_edges(inside: BoolArray) -> BoolArray:
-    """Return which edges of cells have one end inside and one outside."""
+    """Return True for edges of cells with one end inside and one outside."""
     return np.stack([inside[:, a] != inside[:, b] for a, b in _ENDS], axis=1)
 
 
 def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
-    """Return the numbers of the edges of cells: twice that of the left or lower end, plus one if upright."""
-    here = 2 * (j * columns + i)
-    return np.stack([here, here + 3, here + 2 * columns, here + 1], axis=1)
+    """Return the indices of the edges of cells: twice that of the left or lower end, plus one if vertical."""
+    lowest = 2 * (j * columns + i)
+    return np.stack([lowest, lowest + 3, lowest + 2 * columns, lowest + 1], axis=1)
 
 
 def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
-    """Return which crossed edges a boundary joins within each cell, as numbers of the edges at both ends."""
-    # a saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
-    # is inside, else the outside ones
+    """Return the segments of a boundary in each cell, as indices of the crossed edges at both ends."""
+    # the centre of a saddle, with opposite inside corners, decides: the inside corners are connected if the centre is
+    # inside, else the outside corners
     crossed = crossed_edges(inside)
     count = crossed.sum(axis=1)
     plain = edges[count == 2][crossed[count == 2]].reshape(-1, 2)
@@ -225,25 +222,25 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
 
 
 def chains(joined: IntArray) -> list[list[int]]:
-    """Return the polylines that segments make, open ones first, closed ones with the first edge again at the end."""
+    """Return the polylines of segments: open ones first, closed ones with the first edge repeated at the end."""
     neighbours: dict[int, list[int]] = {}
     for a, b in joined.tolist():
         neighbours.setdefault(a, []).append(b)
         neighbours.setdefault(b, []).append(a)
     starts = [edge for edge, near in neighbours.items() if len(near) == 1]
-    seen: set[int] = set()
-    lines = [_chain_from(start, neighbours, seen) for start in (*starts, *neighbours) if start not in seen]
+    visited: set[int] = set()
+    lines = [_chain_from(start, neighbours, visited) for start in (*starts, *neighbours) if start not in visited]
     return [chain for chain in lines if len(chain) > 1]
 
 
-def _chain_from(start: int, neighbours: dict[int, list[int]], seen: set[int]) -> list[int]:
-    chain, here = [start], start
-    seen.add(start)
+def _chain_from(start: int, neighbours: dict[int, list[int]], visited: set[int]) -> list[int]:
+    chain, last = [start], start
+    visited.add(start)
     while True:
-        here = next((edge for edge in neighbours[here] if edge not in seen), here)
-        if here in seen:
+        last = next((edge for edge in neighbours[last] if edge not in visited), last)
+        if last in visited:
             break
-        seen.add(here)
-        chain.append(here)
-    closed = len(chain) > 2 and start in neighbours[here]
+        visited.add(last)
+        chain.append(last)
+    closed = len(chain) > 2 and start in neighbours[last]
     return [*chain, start] if closed else chain

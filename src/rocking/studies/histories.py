@@ -1,4 +1,4 @@
-"""Histories of a study: what is computed, in an order that never changes, in pieces that any worker can do alone."""
+"""Histories of a study in a fixed order, in pieces that workers compute independently."""
 
 import hashlib
 import json
@@ -24,31 +24,31 @@ from rocking.motions.segments import Segments
 from rocking.studies.motion_sets import MotionSet
 
 _ROWS_AT_ONCE = 32768
-MOTIONS_AT_ONCE = 128  # motions made from a seed that are laid out at a time
+MOTIONS_AT_ONCE = 128  # number of generated motions prepared together
 
 MOTIONS_KEPT = 128 << 20
-"""Room for motions that are kept for the next piece, where histories of one motion do not stand together [bytes]."""
+"""Memory for motions kept for the next piece, if the histories of a motion are not consecutive [bytes]."""
 
-LARGEST_CHUNK = 1 << 22  # a chunk is held in memory as a whole: 0.3 GB
+LARGEST_CHUNK = 1 << 22  # a chunk is kept in memory: 0.3 GB
 
 
 @dataclass(frozen=True, eq=False)
 class Histories(ABC):
     """Independent histories, numbered 0 to count - 1.
 
-    A piece of them can be computed anywhere, in any order: a history's result depends on its number alone. All fields
-    can be pickled.
+    Pieces can be computed anywhere, in any order: the result of a history depends on its index only. All fields can
+    be pickled.
 
     Parameters
     ----------
     motions : MotionSet
         The motions.
     law : ImpactLaw
-        How the coefficient changes from impact to impact.
+        Law of the coefficient per impact.
     settings : Settings
-        How to integrate.
+        Settings of the integration.
     engine : {"auto", "fast", "reference"}
-        Which engine.
+        Name of the engine.
     """
 
     motions: MotionSet
@@ -63,7 +63,7 @@ class Histories(ABC):
 
     @property
     def together(self) -> int:
-        """Histories of one motion that stand in a row, from a multiple of this number on: the best places to cut."""
+        """Number of consecutive histories of one motion; multiples of this number are the best cuts."""
         return 1
 
     @property
@@ -73,41 +73,41 @@ class Histories(ABC):
 
     @property
     def parts(self) -> "tuple[Histories, ...]":
-        """What they are joined from, each of one law and engine: themselves alone."""
+        """Parts of joined histories, each with one law and engine; here one."""
         return (self,)
 
     @abstractmethod
     def rows(self, first: int, last: int) -> Rows:
-        """Return what makes the histories from a first up to but not including a last one.
+        """Return the inputs of the histories from a first up to but not including a last one.
 
         Parameters
         ----------
         first, last : int
-            Numbers of histories.
+            Indices of histories.
 
         Returns
         -------
         Rows
-            The rows; the stream of a history is its number.
+            The rows; the stream of a history is its index.
         """
 
     @abstractmethod
     def content(self) -> dict[str, Any]:
-        """Return what beside motions, law and settings makes these histories these, as plain values.
+        """Return the identity of the histories except motions, law and settings, as plain values.
 
         Returns
         -------
         dict
-            Numbers, words, lists and dictionaries only; arrays as their SHA-256.
+            Numbers, texts, lists and dictionaries only; arrays as SHA-256.
         """
 
     def description(self) -> dict[str, Any]:
-        """Return what makes these histories these, as plain values.
+        """Return the identity of the histories, as plain values.
 
         Returns
         -------
         dict
-            Two studies that describe themselves alike have the same results.
+            Studies with equal descriptions have equal results.
         """
         return {
             "histories": type(self).__name__,
@@ -121,12 +121,12 @@ class Histories(ABC):
         }
 
     def key(self, described: dict[str, Any] | None = None) -> str:
-        """Return the name of these histories.
+        """Return the key of these histories.
 
         Parameters
         ----------
         described : dict, optional
-            Their `description`, if it is at hand: it takes a hash of every array.
+            Their `description`, to avoid hashing every array again.
 
         Returns
         -------
@@ -136,35 +136,37 @@ class Histories(ABC):
         Raises
         ------
         InvalidValueError
-            If the description holds anything but plain values.
+            If the description contains other than plain values.
         """
         content = self.description() if described is None else described
         try:
             text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
         except (TypeError, ValueError) as error:
-            why = f"what makes histories must be finite numbers, words, lists and dictionaries of words: {error}"
-            raise InvalidValueError(why) from error
+            message = (
+                f"the description of histories must contain finite numbers, texts, lists and dictionaries: {error}"
+            )
+            raise InvalidValueError(message) from error
         return hashlib.sha256(text.encode()).hexdigest()
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
-        """Return the results of some histories.
+        """Return the results of a range of histories.
 
         Parameters
         ----------
         first, last : int
-            Numbers: from the first up to but not including the last.
+            Indices: from the first up to but not including the last.
         threads : int, optional
             Threads of the fast engine; the results do not depend on them.
 
         Returns
         -------
         dict of str to ndarray
-            The keys of `columns`, one entry a history.
+            The keys of `columns`, one entry per history.
 
         Raises
         ------
         InvalidValueError
-            If the numbers are not of histories.
+            If the indices are out of range.
         """
         checked_range(first, last, self.count)
         if self.motions.in_memory:
@@ -177,56 +179,57 @@ class Histories(ABC):
         return Batch(motions, self.law, self.settings, None, self.engine)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave the motions as the engine lays them out behind: they are made again where they are needed."""
+        """Exclude the prepared motions: they are generated again when needed."""
         return {name: value for name, value in self.__dict__.items() if name not in {"_batch", "_kept"}}
 
     @cached_property
     def _kept(self) -> dict[int, Segments]:
-        """Motions that were made for an earlier piece, the oldest first."""
+        """Motions of earlier pieces, the oldest first."""
         return {}
 
     def _forget(self) -> None:
-        """Forget the oldest motions: all but the last where those of the next piece are others, or there is no room."""
+        """Remove the oldest motions; keep only the last one if the next piece needs others, or memory is short."""
         scattered = self.together == 1 and self.count > len(self.motions)
         room = MOTIONS_KEPT if scattered else 0
         for number in list(self._kept)[-2::-1]:
-            kept = self._kept.get(number)  # threads of a worker share them
-            if kept is not None:
-                room -= sum(part.nbytes for part in (kept.horizontal, kept.vertical) if part is not None)
+            segments = self._kept.get(number)  # common to the threads of a worker
+            if segments is not None:
+                arrays = (segments.horizontal, segments.vertical)
+                room -= sum(array.nbytes for array in arrays if array is not None)
             if room < 0:
                 self._kept.pop(number, None)
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
-        """Run with motions that are made for some histories and forgotten after them: never many at once."""
+        """Run with motions that are generated for a few histories and removed afterwards."""
         results = empty_results(last - first)
         for start in range(first, last, _ROWS_AT_ONCE):
             rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
-            wanted, places = np.unique(rows.motion, return_inverse=True)
-            for low in range(0, len(wanted), MOTIONS_AT_ONCE):
-                some = wanted[low : low + MOTIONS_AT_ONCE]
-                chosen = np.flatnonzero((places >= low) & (places < low + len(some)))
+            motions, inverse = np.unique(rows.motion, return_inverse=True)
+            for low in range(0, len(motions), MOTIONS_AT_ONCE):
+                group = motions[low : low + MOTIONS_AT_ONCE]
+                selected = np.flatnonzero((inverse >= low) & (inverse < low + len(group)))
                 local = Rows(
-                    {name: rows.values[name][chosen] for name in ROWS}, places[chosen].astype(np.int64) - low,
-                    rows.stream[chosen],
+                    {name: rows.values[name][selected] for name in ROWS}, inverse[selected].astype(np.int64) - low,
+                    rows.stream[selected],
                 )  # fmt: skip
-                batch = Batch(self._laid_out(some.tolist()), self.law, self.settings, threads, self.engine)
+                batch = Batch(self._prepared(group.tolist()), self.law, self.settings, threads, self.engine)
                 for name, values in batch.run(len(local), local.part)[0].items():
-                    results[name][start - first + chosen] = values
+                    results[name][start - first + selected] = values
         return results
 
-    def _laid_out(self, wanted: list[int]) -> list[Segments]:
-        """Return some motions, made unless they are kept; the newest stand last."""
-        every = []
-        for number in wanted:
+    def _prepared(self, numbers: list[int]) -> list[Segments]:
+        """Return motions from memory or generated; the newest are kept last."""
+        motions = []
+        for number in numbers:
             segments = self._kept.pop(number, None) or self.motions[number].segments()
             self._kept[number] = segments
-            every.append(segments)
+            motions.append(segments)
         self._forget()
-        return every
+        return motions
 
 
 def checked_range(first: int, last: int, count: int) -> None:
-    """Refuse numbers that are not of histories."""
+    """Refuse indices out of range."""
     if not 0 <= first <= last <= count:
         raise InvalidValueError(
             "{parameter} must be within [0, {count}], got {first} to {last}", parameter="histories", count=count,
@@ -237,7 +240,7 @@ def checked_range(first: int, last: int, count: int) -> None:
 def results_of(
     histories: Histories, *, threads: int | None = None, progress: Callable[[int], None] | None = None
 ) -> Arrays:
-    """Return the results of all histories, computed piece by piece so that progress can be told."""
+    """Return the results of all histories, computed in pieces with calls of progress."""
     check_progress(progress)
     results = empty_results(histories.count, histories.columns)
     for first in range(0, histories.count, PIECE):
@@ -251,23 +254,23 @@ def results_of(
 
 @dataclass(frozen=True, eq=False)
 class HistoryTable(Histories):
-    """Histories given one by one.
+    """Table of histories.
 
     Parameters
     ----------
     motions : MotionSet
         The motions.
     motion : ndarray of int
-        Number of each history's motion.
+        Index of the motion of each history.
     values : dict of str to ndarray
-        The keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
+        The keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry per history.
     law, settings, engine
         As for `Histories`.
 
     Raises
     ------
     InvalidValueError
-        If the arrays do not fit one another.
+        If the arrays have different lengths.
     """
 
     motion: np.ndarray
@@ -275,9 +278,9 @@ class HistoryTable(Histories):
 
     def __post_init__(self) -> None:
         count = max((np.size(v) for v in [self.motion, *self.values.values()]), default=0)
-        whole = Rows.of(count, self.motion, **self.values)
-        values = {name: _own(array, self.values.get(name)) for name, array in whole.values.items()}
-        object.__setattr__(self, "motion", _own(whole.motion, self.motion))
+        rows = Rows.of(count, self.motion, **self.values)
+        values = {name: _own(array, self.values.get(name)) for name, array in rows.values.items()}
+        object.__setattr__(self, "motion", _own(rows.motion, self.motion))
         object.__setattr__(self, "values", values)
 
     @property
@@ -286,15 +289,15 @@ class HistoryTable(Histories):
         return int(self.motion.size)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows."""
+        """Return a range of the rows."""
         values = {name: array[first:last] for name, array in self.values.items()}
         return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays, of friction and azimuth where they are told."""
-        usual = {name for name in ("friction", "azimuth") if np.isnan(self.values[name]).all()}
-        told = {name: array for name, array in self.values.items() if name not in usual}
-        return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in told.items()}
+        """Return the hashes of the arrays; of friction and azimuth only if they are set."""
+        unset = {name for name in ("friction", "azimuth") if np.isnan(self.values[name]).all()}
+        arrays = {name: array for name, array in self.values.items() if name not in unset}
+        return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in arrays.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -306,11 +309,11 @@ class Product(Histories):
     motions : MotionSet
         The motions.
     sides : dict of str to ndarray, shape (bodies, restitutions) or (motions, bodies, restitutions)
-        The same under every motion, or for each its own: alpha_right, alpha_left [rad], p_right, p_left [rad/s],
-        r_right, r_left [-]; and q_right, q_left (m R^2 / I_O), without which the forces of the ground are not known
-        [-]; and share_right, share_left, of the probability of a law that draws, 1 if not given [-].
+        For all motions, or per motion: alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-].
+        Optional: q_right, q_left (m R^2 / I_O) for the ground forces [-], and share_right, share_left, probability
+        fractions of a random law, default 1 [-].
     scales : ndarray, shape (scales,) or (motions, scales)
-        Factors on the motions, the same for all or for each its own [-].
+        Scale factors for all motions, or per motion [-].
     law, settings, engine
         As for `Histories`.
     """
@@ -359,7 +362,7 @@ class Product(Histories):
         return self.count // len(self.motions)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows."""
+        """Return a range of the rows."""
         numbers = np.arange(first, last, dtype=np.int64)
         motion, body, scale, restitution = np.unravel_index(numbers, self.shape)
         factor = self.scales[scale] if self.scales.ndim == 1 else self.scales[motion, scale]
@@ -375,9 +378,9 @@ class Product(Histories):
 
 @dataclass(frozen=True, eq=False)
 class JoinedHistories(Histories):
-    """Histories of several kinds, one after another: each part has a law, an engine and motions of its own."""
+    """Consecutive histories of several kinds: each part has its own law, engine and motions."""
 
-    joined: tuple[Histories, ...]  # whose motions are made of the common ones
+    joined: tuple[Histories, ...]  # parts with motions from the common set
 
     @property
     def parts(self) -> tuple[Histories, ...]:
@@ -387,52 +390,52 @@ class JoinedHistories(Histories):
     @property
     def count(self) -> int:
         """Number of histories of all parts."""
-        return sum(part.count for part in self.parts)
+        return sum(histories.count for histories in self.parts)
 
     def _within(self, first: int, last: int) -> Iterator[tuple[Histories, int, int]]:
-        """Yield the parts of which some histories are, and which of their own these are."""
-        for part in self.parts:
-            if first < part.count and last > 0:
-                yield part, max(first, 0), min(last, part.count)
-            first, last = first - part.count, last - part.count
+        """Yield the parts with histories in the range, and their ranges."""
+        for histories in self.parts:
+            if first < histories.count and last > 0:
+                yield histories, max(first, 0), min(last, histories.count)
+            first, last = first - histories.count, last - histories.count
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows; their motions are those of the parts."""
-        pieces = [part.rows(low, high) for part, low, high in self._within(first, last)]
-        values = {name: np.concatenate([np.empty(0), *(each.values[name] for each in pieces)]) for name in ROWS}
-        motion = np.concatenate([np.empty(0, np.int64), *(each.motion for each in pieces)])
+        """Return a range of the rows; their motions are those of the parts."""
+        pieces = [histories.rows(low, high) for histories, low, high in self._within(first, last)]
+        values = {name: np.concatenate([np.empty(0), *(piece.values[name] for piece in pieces)]) for name in ROWS}
+        motion = np.concatenate([np.empty(0, np.int64), *(piece.motion for piece in pieces)])
         return Rows(values, motion, np.arange(first, last, dtype=np.int64))
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
-        """Return the results of some histories, part by part."""
+        """Return the results of a range of histories, part by part."""
         checked_range(first, last, self.count)
         results, done = empty_results(last - first), 0
-        for part, low, high in self._within(first, last):
-            for name, values in part.run(low, high, threads=threads).items():
+        for histories, low, high in self._within(first, last):
+            for name, values in histories.run(low, high, threads=threads).items():
                 results[name][done : done + high - low] = values
             done += high - low
-            if high == part.count:  # its motions as the engine lays them out: of one part at a time there is room
-                part.__dict__.pop("_batch", None)
+            if high == histories.count:  # keep the prepared motions of one part only
+                histories.__dict__.pop("_batch", None)
         return results
 
     def content(self) -> dict[str, Any]:
-        """Return how many parts there are, and the hash of what makes them."""
+        """Return the number of parts, and the hash of their identity."""
         parts = [
-            {"count": part.count, "content": part.content(), "law": described_law(part.law)} | part.settings.identity
-            for part in self.parts
+            {"count": item.count, "content": item.content(), "law": described_law(item.law)} | item.settings.identity
+            for item in self.parts
         ]
-        motions = [each.description() for each in dict.fromkeys(part.motions for part in self.parts)]
+        motions = [motion_set.description() for motion_set in dict.fromkeys(item.motions for item in self.parts)]
         text = json.dumps([parts, motions], sort_keys=True, allow_nan=False)
         return {"parts": len(parts), "sha256": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def _own(array: np.ndarray, original: object) -> np.ndarray:
-    """Return the array, read-only, and as a copy where it is the caller's: what has been named must not change."""
+    """Return the array read-only, as a copy if it is the caller's: hashed arrays must not change."""
     mine = array.copy() if np.may_share_memory(array, np.asarray(original)) else array
     mine.setflags(write=False)
     return mine
 
 
 def described_law(law: ImpactLaw) -> dict[str, Any]:
-    """Return what makes a law of impact this law: its class, and what it says of itself."""
+    """Return the identity of an impact law: its class and its content."""
     return {"law": type(law).__name__, "class": full_name(type(law)), "content": law.content()}

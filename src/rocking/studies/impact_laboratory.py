@@ -1,4 +1,4 @@
-"""The bed that a study varies, and the coefficients that emerge from it."""
+"""Parameter studies of a contact bed, with the resulting coefficients of restitution."""
 
 import inspect
 import math
@@ -37,18 +37,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """A homogeneous block on a bed of Kelvin-Voigt points: the setting from which a study starts."""
+    """A homogeneous block on a bed of Kelvin-Voigt points: the start of a study."""
 
     slenderness: float = 2.0  # h/b [-]
     width: float = 0.2  # width of the base [m]
     density: float = 2400.0  # density of the block [kg/m3]
     points: int = 41  # contact points
-    # sqrt(k / m) / (2 pi) of the whole bed [Hz]; not used where `modulus_over_thickness` is given
+    # sqrt(k / m) / (2 pi) of the bed [Hz]; not used with `modulus_over_thickness`
     frequency: float = 400.0
     damping: float = 1.0  # damping ratio zeta of the whole bed [-]
     # elastic modulus of the layer over its thickness, per metre of depth of the block [Pa/m]
     modulus_over_thickness: float | None = None
-    release: float = 0.5  # rotation from which the block falls, over its slenderness angle [-]
+    release: float = 0.5  # initial rotation over the slenderness angle [-]
     friction: BaseFriction = field(default_factory=Sticking)  # by default the base cannot slide
     profile: tuple[float, ...] = ()  # heights of the points over the base line, none for a flat base [m]
     tolerance: float = 1e-9  # relative error of a step [-]
@@ -65,12 +65,12 @@ class Laboratory:
             )  # fmt: skip
 
     def but(self, **changes: Any) -> "Laboratory":
-        """Return the same laboratory with something changed."""
+        """Return a copy of the laboratory with changed fields."""
         return replace(self, **changes)
 
     @property
     def layered(self) -> "Laboratory":
-        """The same on a bed that is a layer, of 1 GPa/m where none is given."""
+        """The laboratory on a layer; default 1 GPa/m."""
         return self if self.modulus_over_thickness is not None else self.but(modulus_over_thickness=1e9)
 
     @property
@@ -79,7 +79,7 @@ class Laboratory:
 
     @property
     def stiffness(self) -> float:
-        """Stiffness of the whole bed: E A / t where a layer is given, m (2 pi f)^2 otherwise [N/m]."""
+        """Stiffness of the bed: E A / t for a layer, m (2 pi f)^2 otherwise [N/m]."""
         if self.modulus_over_thickness is not None:
             return self.modulus_over_thickness * self.width  # Eq. 115
         return self.block.mass * (2.0 * math.pi * self.frequency) ** 2
@@ -102,8 +102,8 @@ def hardness_of(setup: Setup) -> float:
 
 
 def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
-    """Return the coefficients of restitution of laboratories; NaN where an impact failed."""
-    return bed_impacts([each.setup for each in laboratories], threads=threads).coefficient
+    """Return the coefficients of restitution of laboratories; NaN for failed impacts."""
+    return bed_impacts([laboratory.setup for laboratory in laboratories], threads=threads).coefficient
 
 
 Shape = Literal["convex", "concave", "tilted", "random"]
@@ -111,16 +111,15 @@ SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
 
 
 def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
-    """Return heights [m] of contact points over the base line, apart by an amplitude [m].
+    """Return heights of contact points over the base line, within an amplitude [m].
 
-    A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or independent
-    uniform heights from the seed.
+    A convex or concave parabola, a slope with the new foot up, or independent uniform heights from the seed.
 
     >>> profile("concave", 0.001, 3)
     (0.0, 0.001, 0.0)
     """
     amplitude = checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
-    count, start = whole("points", points, 2), whole("seed", seed, 0)
+    count, start = checked_integer("points", points, 2), checked_integer("seed", seed, 0)
     s = np.linspace(-1.0, 1.0, count)
     match checks.one_of("shape", shape, SHAPES):
         case "concave":
@@ -134,46 +133,46 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     return tuple(heights.tolist())
 
 
-def whole(name: str, value: Any, least: int) -> int:
-    """Return a number that counts something, and is not below the least.
+def checked_integer(name: str, value: Any, minimum: int) -> int:
+    """Return a checked integer of at least the minimum.
 
-    >>> whole("points", 41.0, 2)
+    >>> checked_integer("points", 41.0, 2)
     41
     """
     result = checks.number(name, value)
-    if result != int(result) or result < least:
+    if result != int(result) or result < minimum:
         raise InvalidValueError(
-            parameter=name, allowed=f"a whole number of at least {least}", value=result,
-            hint="it counts, and is not rounded",
+            parameter=name, allowed=f"a whole number of at least {minimum}", value=result,
+            hint="It is not rounded.",
         )  # fmt: skip
     return int(result)
 
 
-# what a study varies: its unit, and the laboratory with a value of it
+# parameters of studies: unit, and function that sets a value
 STUDIES: dict[str, tuple[str, Callable[..., Laboratory]]] = {
     "slenderness": ("1", lambda lab, x: lab.but(slenderness=x)),
-    "points": ("1", lambda lab, x: lab.but(points=whole("points", x, 2))),
+    "points": ("1", lambda lab, x: lab.but(points=checked_integer("points", x, 2))),
     "damping": ("1", lambda lab, x: lab.but(damping=x)),
     "modulus_over_thickness": ("Pa/m", lambda lab, x: lab.but(modulus_over_thickness=x)),
     "friction": ("1", lambda lab, x: lab.but(friction=Coulomb(x))),
-    "release": ("1", lambda lab, x: lab.but(release=x)),  # and so the landing velocity
-    "density": ("kg/m3", lambda lab, x: lab.but(density=x)),  # on one layer: mass alone, the size stays
+    "release": ("1", lambda lab, x: lab.but(release=x)),  # sets the landing velocity
+    "density": ("kg/m3", lambda lab, x: lab.but(density=x)),  # on one layer: mass only, with constant size
     "width": ("m", lambda lab, x: lab.but(width=x)),  # blocks of one shape and density on one layer
     "amplitude": ("m", lambda lab, x, shape, seed=0: lab.but(profile=profile(shape, x, lab.points, seed=seed))),
     "seed": ("1", lambda lab, x, amplitude: lab.but(profile=profile("random", amplitude, lab.points, seed=x))),
 }
 _ON_A_LAYER = {"density", "width"}
 
-# long names of what studies find; a name that is not here says it all
+# long names of results; other names need none
 _WORDS = {
     "coefficient": "theta_dot after over theta_dot before, by the next peak",
-    "coefficient_by_energy": "the same by the energy at the end, hops counted",
+    "coefficient_by_energy": "ratio of velocities by the energy at the end, including hops",
     "hardness": "landing speed of the new foot times sqrt(k / m) over gravity",
-    "landing_velocity": "theta_dot of rigid rocking as it reaches the base",
-    "peak_force": "greatest force of the bed",
+    "landing_velocity": "theta_dot of rigid rocking at the landing",
+    "peak_force": "largest force of the bed",
     "bed_loss": "energy lost in compression",
     "friction_loss": "energy lost in friction",
-    "contacts": "how often the body came into contact: hops are one less",
+    "contacts": "number of contacts: hops plus one",
     "audit": "energy at the end plus losses minus energy at the start, over the energy before the impact",
 }
 
@@ -181,10 +180,10 @@ _WORDS = {
 def study(
     varied: str, values: Any, laboratory: Laboratory | None = None, *, threads: int = 1, **options: Any
 ) -> "xr.Dataset":
-    """Return what emerges as one thing of `STUDIES` changes; NaN where an impact failed.
+    """Return the results for one varied parameter of `STUDIES`; NaN for failed impacts.
 
-    Options: ``shape`` of uneven bases by ``"amplitude"``, with ``seed`` where that is random; ``amplitude`` of random
-    ones by ``"seed"``. Other studies have none.
+    Options: ``shape`` of uneven bases for ``"amplitude"``, with ``seed`` for random ones; ``amplitude`` of random bases
+    for ``"seed"``. Other studies have none.
 
     >>> study("slenderness", [2.0, 4.0]).coefficient.round(2).values.tolist()
     [0.84, 0.96]
@@ -205,7 +204,7 @@ def study(
     impacts = bed_impacts(setups, threads=threads)
     results = {
         "coefficient": ("1", impacts.coefficient),
-        "coefficient_by_energy": ("1", np.array([each.by_energy for each in impacts.emergent])),
+        "coefficient_by_energy": ("1", np.array([impact.by_energy for impact in impacts.emergent])),
         "hardness": ("1", np.array([hardness_of(setup) for setup in setups])),
         "landing_velocity": ("rad/s", np.array([setup.landing_velocity for setup in setups])),
         "peak_force": ("N", impacts.results["peak_force"]),
@@ -218,16 +217,16 @@ def study(
 
 
 def _check_options(varied: str, options: Mapping[str, Any]) -> None:
-    """Refuse options that a study does not have, and one that it needs and was not given."""
-    _, _, *known = inspect.signature(STUDIES[varied][1]).parameters.values()
-    names = [option.name for option in known]
+    """Refuse unknown options of a study, and missing required ones."""
+    _, _, *parameters = inspect.signature(STUDIES[varied][1]).parameters.values()
+    names = [option.name for option in parameters]
     for name in options:
         if name not in names:
             raise InvalidValueError(
                 "the study of {study} has {options}, got {option}", study=varied, option=name,
                 options=f"the options {', '.join(names)}" if names else "no options",
             )  # fmt: skip
-    for option in known:
+    for option in parameters:
         if option.default is option.empty and option.name not in options:
             raise InvalidValueError("the study of {study} needs {option}", study=varied, option=option.name)
 
@@ -235,7 +234,7 @@ def _check_options(varied: str, options: Mapping[str, Any]) -> None:
 def _labelled(
     varied: str, row: FloatArray, results: Mapping[str, tuple[str, FloatArray]], start: Laboratory
 ) -> "xr.Dataset":
-    """Return results over what was varied, and what they were computed from and with."""
+    """Return results over the varied parameter, with the inputs as attributes."""
     about = {name: Quantity(name, unit, _WORDS.get(name, "")).attributes for name, (unit, _) in results.items()}
     labelled: xr.Dataset = extra("xarray", "the impact laboratory").Dataset(
         {name: (varied, values, about[name]) for name, (_, values) in results.items()},
@@ -251,9 +250,9 @@ def _labelled(
 
 
 def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
-    """Return r of blocks of one shape that grow [m], on a flat and on a hollow base, beside KED."""
-    # on a flat base of one layer neither r nor KED depends on the size (`study` of the width); what can change with
-    # size is a length that does not grow: here a hollow of fixed height [m] under the base
+    """Return r of blocks of one shape by width [m], on a flat and on a hollow base, and of KED."""
+    # on a flat base of one layer neither r nor KED depends on the size (`study` of the width); a constant length causes
+    # a size effect: here a hollow of fixed height [m] under the base
     start = (laboratory or Laboratory()).layered
     row = np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
@@ -263,25 +262,26 @@ def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | 
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
-    """A sequence of coefficients and the orders that it shows."""
+    """A sequence of coefficients with its orders of convergence."""
 
     at: FloatArray  # contact intervals, or tolerances [-]
-    coefficient: FloatArray  # r there [-]
+    coefficient: FloatArray  # coefficients of restitution [-]
     error: FloatArray  # distance from the limit [-]
-    order: FloatArray  # between neighbours: power of the spacing with which the error falls [-]
-    limit: float  # r it tends to: extrapolated, or of the finest step [-]
+    order: FloatArray  # order of convergence between neighbours [-]
+    limit: float  # limit of r: extrapolated, or of the finest step [-]
 
 
 def points_convergence(
     counts: Sequence[int] = (11, 21, 41, 81, 161), *, slenderness: float = 2.0, limit: float | None = None
 ) -> Convergence:
-    """Return how the viscous bed converges with its points, each count with twice the intervals of the one before."""
-    # Dashpots without springs absorb an impact in one contact: no hop hides the order, near 2 for half shares at the
-    # ends. The limit is the exact r; by default extrapolated from the last two with order 2.
+    """Return the convergence of the viscous bed with its points; each count doubles the number of intervals."""
+    # Dashpots without springs absorb an impact in one contact, so that no hop disturbs the order, near 2 for half
+    # weights at the ends. The limit is the exact r; default: extrapolated from the last two with order 2.
     intervals = np.array(counts, dtype=np.float64) - 1.0
     if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
         raise InvalidValueError(
-            "{parameter} must be three or more with doubled intervals: 11, 21, 41; got {counts}", parameter="counts",
+            "{parameter} must be three or more with doubled intervals, such as 11, 21, 41; got {counts}",
+            parameter="counts",
             counts=counts,
         )  # fmt: skip
     block = Laboratory(slenderness=slenderness).block
@@ -319,7 +319,7 @@ def bed_speed_law(
 ) -> SpeedRestitution:
     """Return r(speed) of a body on a bed of given frequency sqrt(k / m) / (2 pi) [Hz], for `simulate`.
 
-    A speed stands for a hardness, v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r keeps its last value.
+    The hardness is v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r is constant.
 
     >>> from rocking import Block
     >>> law = bed_speed_law(Block(width=0.2, height=0.4), 400.0)
@@ -330,19 +330,19 @@ def bed_speed_law(
     left, right = body.local_feet
     hardness = np.geomspace(*HARDNESS, 41)
     hardness[[0, -1]] = HARDNESS
-    r = [ContactBedModel(points, damping, each).coefficient(body, foot) for each in hardness.tolist()]
+    r = [ContactBedModel(points, damping, value).coefficient(body, foot) for value in hardness.tolist()]
     return SpeedRestitution(hardness / (rate * (right - left)), np.minimum(r, 1.0))
 
 
 def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
-    """Return where an impulse acts that gives a coefficient, from angular momentum about its position [-]."""
+    """Return the impulse position of a coefficient, from angular momentum about the position [-]."""
     gyration = 1.0 / flatness - 1.0
     arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))  # Eq. 4
     return np.asarray(arm + offset)
 
 
 def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
-    """Return coefficients of cases (flatness, offset, damping, hardness), resolved in time, by the next peak."""
+    """Return coefficients of cases (flatness, offset, damping, hardness) from time integration, by the next peak."""
     impacts = [
         ScaledImpact(flatness, offset, points, damping, hardness)
         for flatness, offset, damping, hardness in cases.tolist()
@@ -367,5 +367,5 @@ def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None
 
 
 def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
-    """Return the positions as they are shipped: whole multiples of `bed_table.STEP`."""
+    """Return the stored positions: integer multiples of `bed_table.STEP`."""
     return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))

@@ -1,4 +1,4 @@
-"""Safe islands: where a body survives although a weaker motion, or all that surrounds it on the map, overturns it."""
+"""Safe islands: regions of a map without overturning, surrounded by overturning or above it."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Island:
-    """A connected region of survival that has no part where the body is not even lifted."""
+    """A connected region without overturning that contains no point without uplift."""
 
     label: int  # its number in `Islands.labels`, from 1
     cells: int  # points of the map in it
-    area: float  # its area in the units of the axes; a point stands for half the way to its neighbours
-    x: tuple[float, float]  # x, y: least and greatest coordinates
+    area: float  # area in the units of the axes; each point covers half the distance to its neighbours
+    x: tuple[float, float]  # x, y: smallest and largest coordinates
     y: tuple[float, float]
-    # whether overturning surrounds it; otherwise it reaches the edge of the map or a point that failed
+    # True if overturning surrounds it; otherwise it reaches the edge of the map or a failed point
     enclosed: bool
-    # modes of overturning around it: between two of them a strip of survival too thin for the grid may go on
+    # modes of overturning around it: between two modes a strip too thin for the grid may continue
     modes: tuple[int, ...]
-    still_rocking: int  # points at which the body was still rocking at the end of the computation, and may overturn
+    still_rocking: int  # number of points with rocking at the end of the computation; later overturning is possible
 
     @property
     def is_between_modes(self) -> bool:
-        """Whether it lies between two modes of overturning."""
+        """True if it lies between two modes of overturning."""
         return self.enclosed and len(self.modes) > 1
 
 
@@ -49,33 +49,33 @@ class Islands:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """How many islands there are, what the word means, and what is not decided."""
+        """Number of islands, definition, and undecided points, as sentences."""
         if not self.islands:
             return (Message.joined(["No safe islands.", self.definition]),)
         cells = sum(island.cells for island in self.islands)
         facts = {"count": len(self.islands), "cells": cells, "total": self.labels.size}
-        told = [
+        messages = [
             Message.joined([Message("Safe islands: {count}, with {cells} of {total} cells.", facts), self.definition])
         ]
         still = sum(island.still_rocking for island in self.islands)
         if still:
-            told.append(
+            messages.append(
                 Message(
-                    "Cells still rocking at the end of the computation: {still} of {cells}; whether the "
-                    "body overturns later is not decided.",
+                    "Cells still rocking at the end of the computation: {still} of {cells}; later overturning "
+                    "is possible.",
                     {"still": still, "cells": cells},
                 )
             )
         between = sum(island.is_between_modes for island in self.islands)
         if between:
-            told.append(
+            messages.append(
                 Message(
-                    "Islands between two ways to overturn: {between} of {count}; on a finer map they may "
+                    "Islands between two modes of overturning: {between} of {count}; on a finer map they may "
                     "be parts of one strip.",
                     {"between": between, "count": len(self.islands)},
                 )
             )
-        return tuple(told)
+        return tuple(messages)
 
     def __len__(self) -> int:
         return len(self.islands)
@@ -85,28 +85,27 @@ class Islands:
 
 
 def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True) -> Islands:
-    """Return the regions of survival that are apart from the one in which the body is never lifted.
+    """Return the regions without overturning that are not connected to the region without uplift.
 
-    Points of survival are neighbours also diagonally, so that an oblique strip is not cut into pieces by the grid.
+    Diagonal points are neighbours, so that the grid does not divide an oblique strip.
 
     Parameters
     ----------
     overturning : xarray.Dataset
-        As of `overturning_map`.
+        Result of `overturning_map`.
     enclosed : bool
-        Whether to return only those that overturning surrounds within the map. Two ways of overturning are parted by
-        survival, thinner than the grid may be: what lies between them may be a piece of that strip, which the grid has
-        cut (`Island.is_between_modes`).
+        Return only regions that overturning surrounds within the map. A strip without overturning separates two modes
+        of overturning; it may be thinner than the grid, which divides it (`Island.is_between_modes`).
 
     Returns
     -------
     Islands
-        The largest first.
+        The islands, the largest first.
 
     Raises
     ------
     InvalidValueError
-        If it is no map.
+        If the dataset is no map.
 
     Examples
     --------
@@ -115,8 +114,8 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     >>> from rocking.studies._overturning_map import overturning_map
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> x, y = ("frequency_ratio", np.linspace(2.5, 4.0, 7)), ("amplitude_ratio", np.linspace(0.5, 10.0, 39))
-    >>> found = overturning_map(block, pulse, x, y, 0.85)
-    >>> len(safe_islands(found, enclosed=False)), len(safe_islands(found))
+    >>> overturning = overturning_map(block, pulse, x, y, 0.85)
+    >>> len(safe_islands(overturning, enclosed=False)), len(safe_islands(overturning))
     (1, 0)
     """
     modes, x, y, axes = _read(overturning)
@@ -124,13 +123,13 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
     labels = connected((modes < 0) & (modes != FAILED))
     apart = np.arange(labels.max(initial=0) + 1) > 0
     apart[labels[modes == UNLIFTED]] = False
-    near = _grown(modes == FAILED, outside=True)  # on the edge of the map, or beside a failed point
-    areas = np.outer(_shares(y), _shares(x))
+    near = _grown(modes == FAILED, outside=True)  # on the edge of the map, or next to a failed point
+    areas = np.outer(_lengths(y), _lengths(x))
     islands = []
     for label in np.flatnonzero(apart).tolist():
         mask = labels == label
         rows, columns = np.nonzero(mask)
-        free = not bool(near[mask].any())  # all around then overturns: survival would have joined it
+        free = not bool(near[mask].any())  # then all neighbours overturn
         if free or not enclosed:
             ring = np.unique(modes[_grown(mask) & ~mask])
             spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
@@ -143,8 +142,8 @@ def safe_islands(overturning: "xr.Dataset | MapArrays", *, enclosed: bool = True
 
 
 def connected(survived: BoolArray) -> IntArray:
-    """Return the number of the region of each point, from 1 as rows are read, 0 for none; diagonals join."""
-    # `scipy.ndimage.label` numbers them alike; to import it takes as long as a map of 6 by 6
+    """Return the region number of each point, from 1 in row order, 0 for none; diagonal points are connected."""
+    # equal to `scipy.ndimage.label`, whose import takes as long as a map of 6 by 6
     steps = np.diff(survived.astype(np.int8), axis=1, prepend=0, append=0)
     row, first = np.nonzero(steps == 1)  # runs of survival along the rows
     last = np.nonzero(steps == -1)[1] - 1
@@ -155,14 +154,14 @@ def connected(survived: BoolArray) -> IntArray:
             root[run] = run = root[root[run]]
         return run
 
-    width = survived.shape[1] + 1  # runs of the row before that touch: they end and begin in it within one column
-    places = row * width
-    low = np.searchsorted(places + last, places - width + first - 1)
-    high = np.searchsorted(places + first, places - width + last + 1, side="right")
+    width = survived.shape[1] + 1  # runs of the previous row that touch: their ends lie within one column
+    offsets = row * width
+    low = np.searchsorted(offsets + last, offsets - width + first - 1)
+    high = np.searchsorted(offsets + first, offsets - width + last + 1, side="right")
     for run, (start, stop) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
         for other in range(start, stop):
-            one, two = sorted((end(run), end(other)))
-            root[two] = one
+            smaller, larger = sorted((end(run), end(other)))
+            root[larger] = smaller
     _, number = np.unique([end(run) for run in range(row.size)], return_inverse=True)
     labels = np.zeros(survived.shape, dtype=np.int64)
     labels[survived] = np.repeat(number + 1, last - first + 1)
@@ -170,30 +169,30 @@ def connected(survived: BoolArray) -> IntArray:
 
 
 def _grown(mask: BoolArray, *, outside: bool = False) -> BoolArray:
-    """Return the points of a mask and all beside them, diagonally too."""
+    """Return the points of a mask and all their neighbours, including diagonal ones."""
     padded = np.pad(mask, 1, constant_values=outside)
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).any(axis=(2, 3)))
 
 
 def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None) -> "xr.DataArray":
-    """Return where a body survives although it overturns at a smaller value of one axis.
+    """Return the points without overturning above a smaller value of one axis with overturning.
 
     Parameters
     ----------
     overturning : xarray.Dataset
-        As of `overturning_map`.
+        Result of `overturning_map`.
     along : str, optional
-        Name of the axis; y if not given.
+        Name of the axis; default: y.
 
     Returns
     -------
     xarray.DataArray
-        True there: where stronger is not worse.
+        True for points without overturning above overturning.
 
     Raises
     ------
     InvalidValueError
-        If it is no map, or has no such axis.
+        If the dataset is no map, or has no such axis.
     """
     modes, _, _, axes = _read(overturning)
     along = axes[1] if along is None else checks.one_of("along", along, axes)
@@ -205,7 +204,7 @@ def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None)
 
 
 def _has(overturning: Any) -> bool:
-    """Return whether a map tells which bodies were still rocking."""
+    """Return True if a map contains `still_rocking`."""
     return "still_rocking" in (overturning.variables if isinstance(overturning, MapArrays) else overturning)
 
 
@@ -223,7 +222,7 @@ def _read(overturning: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str
     return np.asarray(mode.values), x, y, (along_x, along_y)
 
 
-def _shares(values: FloatArray) -> FloatArray:
-    """Return the length that each value stands for."""
+def _lengths(values: FloatArray) -> FloatArray:
+    """Return the length covered by each value."""
     middles = 0.5 * (values[1:] + values[:-1])
     return np.diff(np.concatenate([values[:1], middles, values[-1:]]))

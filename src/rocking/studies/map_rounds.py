@@ -1,4 +1,4 @@
-"""Histories of overturning maps piece by piece, and their boundaries in rounds."""
+"""Histories of overturning maps in pieces, and their boundaries in rounds."""
 
 import math
 from contextlib import suppress
@@ -23,30 +23,30 @@ from rocking.studies.question import modes_of, peak_ratio, quickened
 from rocking.studies.study_plan import AdaptiveResult, Compute, DelegatedQuestion, Study
 from rocking.tables import PIECE, Column, Table, prefixed, text_array
 
-MOST_POINTS = 10_000_000  # points of a map that is refined: they take less than 2 GiB of memory
+MOST_POINTS = 10_000_000  # largest number of points of a refined map: less than 2 GiB of memory
 _PROBES = 1024
-# later histories over edges and halvings of a line across a map
+# later histories over edges and bisections of a line across a map
 _EDGES = (2.0, 12.0)
 
 
 @dataclass(frozen=True, eq=False)
 class MapHistories(Histories):
-    """Every restitution over the plane of two axes; the restitution changes slowest, x fastest. No size needs memory.
+    """Every restitution over the plane of two axes; the restitution changes slowest, x fastest; not kept in memory.
 
-    The engine runs with the motion as it is, and bodies that are quicker instead of a motion that is slower; `rescaled`
-    turns the times of the results into those of the map.
+    The engine uses the unstretched motion with faster bodies in place of a slower motion; `rescaled` converts the times
+    of the results to those of the map.
     """
 
-    planes: tuple[Plane, ...]  # the same axes, each with another restitution
+    planes: tuple[Plane, ...]  # by restitution, with equal axes
 
     @classmethod
     def of(cls, planes: list[Plane]) -> "MapHistories":
         """Return the histories of a map."""
         question = planes[0].question
-        how: dict[str, Any] = {"law": question.law, "settings": question.settings, "engine": question.engine}
-        histories = cls(MotionList([question.motion]), tuple(planes), **how)
+        options: dict[str, Any] = {"law": question.law, "settings": question.settings, "engine": question.engine}
+        histories = cls(MotionList([question.motion]), tuple(planes), **options)
         for number, plane in enumerate(planes):
-            # a map none of whose bodies can be made is refused as a whole; single cells of others are not
+            # a map without any possible body is refused; single cells without a body are not
             plane.case(*histories._points(histories._probes(number)))
         return histories
 
@@ -61,7 +61,7 @@ class MapHistories(Histories):
         return self.cells * len(self.planes)
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows, as the engine takes them; NaN where there is no such body."""
+        """Return a range of the rows for the engine; NaN for impossible bodies."""
         numbers = np.arange(first, last, dtype=np.int64)
         values, stretch = self._values(numbers)
         return Rows.of(last - first, 0, numbers, **quickened(values, stretch))
@@ -80,7 +80,7 @@ class MapHistories(Histories):
         return {
             "x": {"axis": plane.x.name, "values": hash_of(plane.x.values)},
             "y": {"axis": plane.y.name, "values": hash_of(plane.y.values)},
-            "restitution": [each.question.parameters.label for each in self.planes],
+            "restitution": [item.question.parameters.label for item in self.planes],
             "rows": [hash_of(table) for table in tables],
         }
 
@@ -94,13 +94,13 @@ class MapHistories(Histories):
         return plane.x.values[i], plane.y.values[j]
 
     def _values(self, numbers: np.ndarray) -> tuple[dict[str, FloatArray], FloatArray]:
-        """Return what the engine takes of histories, and how their motion is stretched."""
+        """Return the engine inputs of histories, and the stretch of their motion."""
         values, stretch = {name: np.full(numbers.size, np.nan) for name in sides_of([None])}, np.ones(numbers.size)
         values["scale"] = np.ones(numbers.size)
         for k, plane in enumerate(self.planes):
             own = numbers // self.cells == k
             if own.any():
-                with suppress(InvalidValueError):  # none of these bodies can be made
+                with suppress(InvalidValueError):  # none of these bodies is possible
                     case = plane.case(*self._points(numbers[own]))
                     stretch[own] = case.stretch
                     for name, row in case.values.items():
@@ -110,28 +110,26 @@ class MapHistories(Histories):
 
 @dataclass(frozen=True)
 class MapSearch:
-    """A refined map that somebody else computes, round by round: the map, its levels, the bisections of its edges."""
+    """Rounds of a refined map: the map, its refinements, the bisections of its edges."""
 
     study: Study  # the map before refinement: the first round
     plane: Plane  # the question and its axes
     levels: int  # levels of refinement
-    by: str  # what is outlined
+    by: str  # "verdict" or "mode"
     tolerance: float  # width of the last brackets over the coordinate [-]
-    kept: float = field(default=0.25, init=False)  # halvings of edges are forgotten
+    kept: float = field(default=0.25, init=False)  # bisections of edges are not kept
 
     @classmethod
     def of(cls, study: Study, planes: list[Plane], levels: int, by: str, tolerance: float) -> "MapSearch":
-        """Return the search of a map, checked."""
+        """Return the checked search of a map."""
         if len(planes) > 1:
-            raise InvalidValueError(
-                "map.refine is for one restitution: each has boundaries of its own; make a job of each"
-            )
+            raise InvalidValueError("map.refine accepts one restitution. Use one job per restitution.")
         points = planes[0].x.values.size * planes[0].y.values.size
         if points > MOST_POINTS:
             raise InvalidValueError(
-                "{parameter} is for maps of up to {limit} points, which are in memory together, got {points}",
+                "{parameter} accepts maps of up to {limit} points, got {points}",
                 parameter="map.refine", limit=MOST_POINTS, points=points,
-                hint="take fewer points, and one level more: it halves the spacing",
+                hint="Use fewer points and one more refinement, which halves the spacing.",
             )  # fmt: skip
         with located("map.refine"):
             tolerance = checked(planes[0], by, tolerance)
@@ -150,13 +148,13 @@ class MapSearch:
         return AdaptiveResult((points, lines), tables, {**attributes, "polylines": len(lines)})
 
     def later(self, first: int) -> tuple[int, int]:
-        """Return how many histories later rounds usually have.
+        """Return the usual range of the number of histories of later rounds.
 
-        A line across the map, cut into edges of the finest level, each found, and halved until it is short enough.
+        A line across the map crosses edges of the finest level; each one is located and bisected to the tolerance.
         """
         edges = math.sqrt(first) * 2.0**self.levels
-        each = edges * (2.0 + max(0.0, -math.log2(self.tolerance * edges)))
-        return int(_EDGES[0] * each), int(_EDGES[1] * each)
+        histories = edges * (2.0 + max(0.0, -math.log2(self.tolerance * edges)))
+        return int(_EDGES[0] * histories), int(_EDGES[1] * histories)
 
     def _base(self, results: Arrays) -> tuple[IntArray, FloatArray]:
         """Return modes and relative peaks of the map."""
@@ -191,7 +189,7 @@ def _vertices(lines: list[Polyline], plane: Plane) -> Table:
     regions = text_array([line.region for line in lines for _ in line.points])
     columns = {
         "line": Column(np.repeat(np.arange(len(lines)), sizes), "1", "number of the polyline"),
-        "region": Column(regions, "1", "what lies inside"),
+        "region": Column(regions, "1", "region inside"),
         "closed": Column(closed, "1", "1 if the polyline ends where it starts"),
         x.name: Column(points[:, 0], x.unit, x.words, "x"),
         y.name: Column(points[:, 1], y.unit, y.words, "y"),

@@ -1,4 +1,4 @@
-"""Minimum overturning acceleration: every amplitude at which a body begins or ceases to overturn under a motion."""
+"""Minimum overturning acceleration: all amplitudes at which overturning under a motion begins or ends."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -26,71 +26,75 @@ from rocking.studies.question import FAILED, Question
 
 Interval = tuple[float, float]
 
-_FEW = 3  # as many stretches are printed one by one
+_FEW = 3  # largest number of intervals printed separately
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Transitions:
-    """Where a body under a motion of growing amplitude begins and ceases to overturn.
+    """Amplitudes of a motion at which overturning of a body begins and ends.
 
-    Every stretch of amplitudes, overturning or surviving, that is wider than `resolution` has been sampled. Narrower
-    ones have been looked for where the peak rotation comes close to the top, has a maximum, overturning takes
-    longest, or the way of overturning changes; that is a search, not a proof. Under a record thinner stretches may lie
-    anywhere: below the minimum it has been searched again and again, to `resolution_below`.
+    All intervals of amplitudes wider than `resolution` have been sampled. Narrower intervals are searched near peak
+    rotations close to overturning, at maxima of the peak rotation and of the overturning time, and between modes of
+    overturning. This is a search, not a proof. Under a record narrower intervals are possible everywhere; below the
+    minimum the search continues to `resolution_below`.
     """
 
     acceleration: FloatArray  # peak ground accelerations of the transitions, increasing [m/s2]
-    ratio: FloatArray  # the same over `uplift_acceleration` [-]
-    scale: FloatArray  # the same as factors on the motion [-]
-    # how the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts
+    ratio: FloatArray  # accelerations over `uplift_acceleration` [-]
+    scale: FloatArray  # scale factors of the motion [-]
+    # modes below and above: -2 no uplift, -1 no overturning, n >= 0 overturned after n impacts
     modes: IntArray
     width: FloatArray  # widths of the brackets; the transitions are their middles [m/s2]
-    min_pga: float  # min_pga, max_pga: range that was searched [m/s2]
+    min_pga: float  # min_pga, max_pga: range of the search [m/s2]
     max_pga: float
-    # ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]
+    # ground acceleration of uplift: g tan alpha, or g alpha in the linear equations [m/s2]
     uplift_acceleration: float
     resolution: float  # relative spacing of the first samples [-]
-    starts_overturned: bool  # whether the smallest acceleration overturns already
-    # samples, failed: histories that were computed, and those that have no result; a bracket stays wide where one
-    # failed
+    starts_overturned: bool  # True if the smallest acceleration overturns
+    # samples, failed: numbers of histories, and of histories without a result; a bracket with a failed history stays
+    # wide
     samples: int
     failed: int
     # widest relative gap between samples below the minimum; NaN if there is no minimum [-]
     resolution_below: float = math.nan
-    # 1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-]
+    # 1 for histories with a tensile contact force, 0 for others, NaN without a result [-]
     lost_contact: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def __repr__(self) -> str:
-        stretches = self.overturning_intervals
-        falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in stretches[:_FEW])
-        if len(stretches) > _FEW:  # under a record there may be hundreds
-            falls = f"in {len(stretches)} stretches from {stretches[0][0]:.4g} to {stretches[-1][1]:.4g}"
+        intervals = self.overturning_intervals
+        falls = " and ".join(f"from {low:.4g} to {high:.4g}" for low, high in intervals[:_FEW])
+        if len(intervals) > _FEW:  # up to hundreds under a record
+            falls = f"in {len(intervals)} intervals from {intervals[0][0]:.4g} to {intervals[-1][1]:.4g}"
         searched = (
             f"searched from {self.min_pga:.4g} to {self.max_pga:.4g} m/s2 with a resolution of {self.resolution:.2%}"
         )
-        return f"<Transitions: overturns {falls} m/s2; {searched}>" if falls else f"<Transitions: stands; {searched}>"
+        return (
+            f"<Transitions: overturns {falls} m/s2; {searched}>"
+            if falls
+            else f"<Transitions: does not overturn; {searched}>"
+        )
 
     def __len__(self) -> int:
         return int(self.acceleration.size)
 
     @property
     def contact(self) -> str:
-        """In how many of the histories the ground would have to pull, as a sentence; empty if in none."""
+        """Number of histories with a tensile contact force, as a sentence; empty if 0."""
         return contact_words(self.lost_contact)
 
     @property
     def minimum(self) -> float | None:
-        """Least acceleration that overturns, of those sampled; under a record thinner stretches may lie below [m/s2].
+        """Smallest sampled overturning acceleration; under a record narrower intervals may lie below [m/s2].
 
-        None if none in the range overturns, or the smallest does already.
+        None if no acceleration in the range overturns, or if the smallest one does.
         """
         return None if self.starts_overturned or not len(self) else float(self.acceleration[0])
 
     @property
     def certain(self) -> float | None:
-        """Acceleration above which all that were sampled overturn; under a record thinner gaps may lie above [m/s2].
+        """Acceleration above which all samples overturn; under a record narrower gaps may lie above [m/s2].
 
-        None if the body survives the largest.
+        None if the largest acceleration does not overturn.
         """
         if not len(self):
             return self.min_pga if self.starts_overturned else None
@@ -98,29 +102,29 @@ class Transitions:
 
     @property
     def safe_intervals(self) -> tuple[Interval, ...]:
-        """Stretches of the range in which the body survives, the first up to the minimum [m/s2]."""
-        return self._stretches(overturned=False)
+        """Intervals of the range without overturning, the first up to the minimum [m/s2]."""
+        return self._intervals(overturned=False)
 
     @property
     def overturning_intervals(self) -> tuple[Interval, ...]:
-        """Stretches of the range in which the body overturns [m/s2]."""
-        return self._stretches(overturned=True)
+        """Intervals of the range with overturning [m/s2]."""
+        return self._intervals(overturned=True)
 
-    def _stretches(self, *, overturned: bool) -> tuple[Interval, ...]:
+    def _intervals(self, *, overturned: bool) -> tuple[Interval, ...]:
         ends = [self.min_pga, *self.acceleration.tolist(), self.max_pga]
         falls = [self.starts_overturned, *(self.modes[:, 1] >= 0).tolist()]
         pairs = pairwise(ends)
         return tuple(pair for pair, fall in zip(pairs, falls, strict=True) if fall == overturned)
 
 
-# range searched over the acceleration that lifts the body, and how far below it where a vertical part lightens it
+# range of the search over the acceleration of uplift; lower start with a vertical component
 _FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
 _MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How closely to look."""
+    """Density of the search."""
 
     samples: int = 400  # first samples, in equal ratios [-]
     bisections: int = 4  # number of bisections of suspicious intervals, from 0 to 12 [-]
@@ -134,32 +138,32 @@ class Effort:
 
 @dataclass(frozen=True)
 class Cases:
-    """Bodies whose transitions are looked for together, each under a motion."""
+    """Bodies of a common search, each under a motion."""
 
     sides: dict[str, FloatArray]  # sides of the bodies, as of `sides_of` [rad, rad/s, -]
-    peak: FloatArray  # peak acceleration of the motion of each [m/s2]
-    uplift: FloatArray  # acceleration that lifts each [m/s2]
-    low: FloatArray  # low, high: accelerations between which to look [m/s2]
+    peak: FloatArray  # peak acceleration of the motion, by body [m/s2]
+    uplift: FloatArray  # acceleration of uplift, by body [m/s2]
+    low: FloatArray  # low, high: range of the search [m/s2]
     high: FloatArray
-    record: bool  # whether the motions are records, under which thin stretches may hide below the minimum
+    record: bool  # True for records, with possible narrow intervals below the minimum
 
     @classmethod
     def of(
         cls, motion: Motion, sides: dict[str, FloatArray], settings: Settings, min_pga: float | None,
         max_pga: float | None,
     ) -> "Cases":  # fmt: skip
-        """Return the cases of some bodies under one motion, to be looked for between peak accelerations [m/s2]."""
+        """Return the cases of bodies under one motion, with a range of peak accelerations [m/s2]."""
         if not motion.peak > 0.0:
             raise InvalidValueError(
                 "{parameter} must have a peak above zero to be scaled, got {motion!r}", parameter="motion",
                 motion=motion.name,
             )  # fmt: skip
-        both = np.stack([sides["alpha_right"], sides["alpha_left"]])
-        lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
-        uplift, record = lifts.min(axis=0), isinstance(motion, GroundMotion)
-        # other components may lift a body in space before the one that is scaled does
-        light = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None
-        low, high = (_FROM_VERTICAL if light else _FROM) * uplift, _TO * lifts.max(axis=0)
+        angles = np.stack([sides["alpha_right"], sides["alpha_left"]])
+        uplift_by_side = settings.gravity * (angles if settings.linear else np.tan(angles))  # Eq. 25
+        uplift, record = uplift_by_side.min(axis=0), isinstance(motion, GroundMotion)
+        # other components may lift a 3D body before the scaled one
+        lower_start = not mechanics_of(settings).in_plane or getattr(motion, "vertical", None) is not None
+        low, high = (_FROM_VERTICAL if lower_start else _FROM) * uplift, _TO * uplift_by_side.max(axis=0)
         if min_pga is not None:
             low = np.full_like(low, checks.positive("min_pga", min_pga, "m/s2"))
         if max_pga is not None:
@@ -177,19 +181,19 @@ class Cases:
         return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, record)
 
     @classmethod
-    def joined(cls, parts: Sequence["Cases"]) -> "Cases":
-        sides = {name: np.concatenate([each.sides[name] for each in parts]) for name in parts[0].sides}
+    def joined(cls, groups: Sequence["Cases"]) -> "Cases":
+        sides = {name: np.concatenate([group.sides[name] for group in groups]) for name in groups[0].sides}
         names = ("peak", "uplift", "low", "high")
-        arrays = {name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
-        return cls(sides, **arrays, record=parts[0].record)
+        arrays = {name: np.concatenate([getattr(group, name) for group in groups]) for name in names}
+        return cls(sides, **arrays, record=groups[0].record)
 
     def grid(self, samples: int) -> FloatArray:
-        """Return the first factors on the motions, so many for each case, in equal ratios [-]."""
+        """Return the first scale factors of each case, in equal ratios [-]."""
         return np.asarray(geometric(self.low, self.high, samples) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:
-    """Return the transitions of all cases, which are computed together; None where no history could be computed."""
+    """Return the transitions of all cases, computed together; None for cases without a result."""
     scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.samples))
     if cases.record:
         search_below(scan, effort.samples)
@@ -203,20 +207,22 @@ def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[T
     brackets, all_modes, count = scan.brackets(effort.tolerance), scan.samples.mode, cases.uplift.size
     gaps = {k: float(np.max(s[1:] / s[:-1])) - 1.0 for k, s in below_minimum(scan.samples.good).items()}
     # both are sorted by body
-    bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (brackets, scan.samples))
+    bounds, marks = (
+        np.searchsorted(sorted_rows.body, np.arange(count + 1)) for sorted_rows in (brackets, scan.samples)
+    )
     transitions: list[Transitions | None] = []
     for k in range(count):
         own, mine = slice(bounds[k], bounds[k + 1]), slice(marks[k], marks[k + 1])
         modes = all_modes[mine]
-        known = modes != FAILED
-        good = modes[known]
+        has_result = modes != FAILED
+        good = modes[has_result]
         if not good.size:
             transitions.append(None)
             continue
         scale, low, high = brackets.ends[own].mean(axis=1), float(cases.low[k]), float(cases.high[k])
         peak, uplift = float(cases.peak[k]), float(cases.uplift[k])
-        # what is said of the ends of the range is said of the outermost histories that have a result
-        first, last = (scan.samples.scale[mine][known][[0, -1]] * peak).tolist()
+        # the ends of the range are the outermost histories with a result
+        first, last = (scan.samples.scale[mine][has_result][[0, -1]] * peak).tolist()
         transitions.append(
             Transitions(
                 acceleration=scale * peak,
@@ -224,8 +230,8 @@ def _transitions(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[T
                 scale=scale,
                 modes=brackets.modes[own],
                 width=np.diff(brackets.ends[own])[:, 0] * peak,
-                min_pga=low if known[0] else first,
-                max_pga=high if known[-1] else last,
+                min_pga=low if has_result[0] else first,
+                max_pga=high if has_result[-1] else last,
                 uplift_acceleration=uplift,
                 resolution=(high / low) ** (1.0 / (effort.samples - 1)) - 1.0,
                 starts_overturned=bool(good[0] >= 0),
@@ -249,13 +255,12 @@ def minimum_overturning_acceleration(
     tolerance: float = 1e-12,
     **options: Any,
 ) -> Transitions:
-    """Return all peak accelerations at which the verdict changes, not the first alone.
+    """Return all peak accelerations at which overturning begins or ends.
 
-    The motion is scaled over a range of amplitudes in equal ratios; intervals in which a thin stretch may hide are
-    halved several times; then all changes are bisected together. Under long records overturning and survival may be
-    interleaved at all scales: then only what the samples show is listed. Below the least amplitude that overturns
-    a record is sampled in further rounds, of as many samples each, until the minimum has held for two of them or four
-    are done.
+    The motion is scaled over a range of amplitudes in equal ratios. Intervals that may contain narrow changes are
+    bisected several times, then all changes are bisected together. Under long records the changes may be interleaved
+    at all scales; the result contains only the sampled ones. Below the smallest overturning amplitude a record is
+    sampled in up to four more rounds, until two rounds do not change the minimum.
 
     Parameters
     ----------
@@ -264,29 +269,29 @@ def minimum_overturning_acceleration(
     motion : GroundMotion, Pulse or mapping
         The motion, or its components as for `simulate`, of any amplitude above zero.
     restitution : as for `simulate`
-        One that is drawn at random draws the same numbers at every amplitude.
+        A random restitution uses equal samples at every amplitude.
     min_pga, max_pga : float, optional
-        Peak accelerations between which to look [m/s2]; if not given 1 (0.1 with a vertical part) and 50 times
-        the one that lifts the body.
+        Range of peak accelerations; default: 1 (0.1 with a vertical component) and 50 times the acceleration of uplift
+        [m/s2].
     samples : int
-        First samples, in equal ratios, and those of each round below the minimum; nothing wider than their spacing is
-        missed [-].
+        Number of first samples, in equal ratios, and of samples of each round below the minimum. No interval wider
+        than their spacing is missed [-].
     tolerance : float
         Width of the last brackets over the acceleration; 0 for neighbouring doubles [-].
     **options
-        ``bisections`` (number of bisections of suspicious intervals, 0 to 12, else 4), ``gravity`` [m/s2], ``threads``,
-        ``progress`` (called with the number of histories done since the last call), ``engine`` and fields of
-        `Settings`.
+        ``bisections`` (number of bisections of suspicious intervals, 0 to 12, default 4), ``gravity`` [m/s2],
+        ``threads``, ``progress`` (called with the number of histories done since the last call), ``engine`` and fields
+        of `Settings`.
 
     Returns
     -------
     Transitions
-        All of them, in order.
+        The transitions, in increasing order.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the motion is zero throughout.
+        If a value is outside its range, or the motion is zero.
 
     Examples
     --------
@@ -297,20 +302,20 @@ def minimum_overturning_acceleration(
     >>> import rocking as rk
     >>> block = rk.Block.from_angle(0.2, 1.0)
     >>> pulse = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
-    >>> found = minimum_overturning_acceleration(block, pulse, 0.85)
-    >>> found.modes.tolist()
+    >>> transitions = minimum_overturning_acceleration(block, pulse, 0.85)
+    >>> transitions.modes.tolist()
     [[-1, 1], [1, -1], [-1, 0]]
     """
     if isinstance(body, Sequence):
         raise InvalidValueError(
             parameter="body", allowed="one body", value=body,
-            hint="for several bodies there is minimum_overturning_accelerations",
+            hint="Use minimum_overturning_accelerations for several bodies.",
         )  # fmt: skip
     search: dict[str, Any] = {"min_pga": min_pga, "max_pga": max_pga, "samples": samples, "tolerance": tolerance}
     return minimum_overturning_accelerations([body], motion, restitution, **search, **options)[0]
 
 
-def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a question that users ask
+def minimum_overturning_accelerations(  # noqa: PLR0913 - users set every one of them
     bodies: Sequence[Body],
     motion: Motion,
     restitution: Any = DEFAULT_RESTITUTION,
@@ -325,24 +330,24 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     progress: Callable[[int], None] | None = None,
     **settings: Any,
 ) -> tuple[Transitions, ...]:
-    """Return what `minimum_overturning_acceleration` does for many bodies, computed together.
+    """Return the results of `minimum_overturning_acceleration` for many bodies, computed together.
 
     Parameters
     ----------
     bodies : sequence of Body
-        The bodies; the restitution is evaluated for every one.
+        The bodies; the restitution is evaluated for each body.
     motion, restitution, min_pga, max_pga, samples, bisections, tolerance, gravity, threads, progress, **settings
         As for `minimum_overturning_acceleration`.
 
     Returns
     -------
     tuple of Transitions
-        One for each body.
+        Transitions of each body.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or the motion is zero throughout.
+        If a value is outside its range, or the motion is zero.
     """
     several: object = bodies
     if not isinstance(several, Sequence) or not several:
@@ -357,10 +362,10 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
         return question.run(values, np.ones(body.size), body, progress)[0]
 
     transitions = []
-    for k, each in enumerate(searched(cases, effort, run)):
-        if each is None:
+    for k, result in enumerate(searched(cases, effort, run)):
+        if result is None:
             raise InvalidValueError(
-                "no history of body {index} could be computed", index=k, hint="is the range of accelerations too wide?"
+                "no history of body {index} could be computed", index=k, hint="Reduce the range of accelerations."
             )
-        transitions.append(each)
+        transitions.append(result)
     return tuple(transitions)

@@ -1,4 +1,4 @@
-"""The motions of a study, by number: held in memory, or made from a seed when they are needed."""
+"""Motions of a study by index: kept in memory, or generated from a seed when needed."""
 
 import os
 from abc import ABC, abstractmethod
@@ -19,7 +19,7 @@ from rocking.motions.synthetic.families import Family, family
 
 
 class MotionSet(ABC):
-    """Motions by number. The same number is the same motion, to the last bit, whoever asks and when."""
+    """Motions by index. An index always gives a bit-identical motion."""
 
     @abstractmethod
     def __len__(self) -> int: ...
@@ -29,34 +29,34 @@ class MotionSet(ABC):
 
     @abstractmethod
     def description(self) -> dict[str, Any]:
-        """Return what makes these motions these, as plain values: kinds, parameters, seeds, hashes of samples.
+        """Return the identity of the motions as plain values: kinds, parameters, seeds, hashes of samples.
 
         Returns
         -------
         dict
-            For provenance; two sets that describe themselves alike hold the same motions.
+            Provenance; sets with equal descriptions contain equal motions.
         """
 
     @property
     def in_memory(self) -> bool:
-        """Whether the motions are all at hand, so that laying them out once pays."""
+        """True if all motions are in memory, so that the engine prepares them once."""
         return False
 
 
 class MotionList(MotionSet):
-    """Motions that are all at hand.
+    """Motions in memory.
 
     Parameters
     ----------
     motions : GroundMotion, Pulse or mapping, or a sequence of them
         All records or all pulses; also components by axis, as for `simulate`.
     plane : bool
-        Whether they shake plane bodies, which take a component along x and one along z, a record each.
+        True for plane bodies, which need a component along x and one along z, one record each.
 
     Raises
     ------
     InvalidValueError
-        If there is none, or they are of different kinds.
+        If there is no motion, or the motions have different kinds.
 
     Examples
     --------
@@ -67,20 +67,20 @@ class MotionList(MotionSet):
 
     def __init__(self, motions: Any, *, plane: bool = False) -> None:
         single = isinstance(motions, (GroundMotion, Pulse, Components, Mapping))
-        wanted = "{parameter} must be ground motions or pulses, got {given}"
+        text = "{parameter} must be ground motions or pulses, got {given}"
         if not single and (isinstance(motions, (str, os.PathLike)) or not isinstance(motions, Iterable)):
-            raise InvalidValueError(wanted, parameter="motions", value=motions, given=checks.given("motions", motions))
-        found = [together(each, plane=plane) for each in ([motions] if single else motions)]
-        if not found:
-            raise InvalidValueError(wanted, parameter="motions", given="none")
-        for k, item in enumerate(found):
+            raise InvalidValueError(text, parameter="motions", value=motions, given=checks.given("motions", motions))
+        items = [together(motion, plane=plane) for motion in ([motions] if single else motions)]
+        if not items:
+            raise InvalidValueError(text, parameter="motions", given="none")
+        for k, item in enumerate(items):
             if not isinstance(item, (GroundMotion, Pulse, Components)):
                 raise InvalidValueError(
-                    wanted, parameter="motions", value=item, given=checks.given("motions", item, f" at index {k}")
+                    text, parameter="motions", value=item, given=checks.given("motions", item, f" at index {k}")
                 )
-        if len({isinstance(leading(item), Pulse) for item in found}) > 1:
+        if len({isinstance(leading(item), Pulse) for item in items}) > 1:
             raise InvalidValueError("motions of a study must be all records or all pulses; sample the pulses")
-        self._motions: list[Motion] = found
+        self._motions: list[Motion] = items
 
     @classmethod
     def empty(cls) -> "MotionList":
@@ -109,48 +109,47 @@ class MotionList(MotionSet):
 
 
 def digest(motion: Any) -> str:
-    """Return the SHA-256 of what an engine sees of a motion: the step, and the coefficients of both accelerations."""
+    """Return the SHA-256 of a motion for an engine: the step, and the coefficients of both accelerations."""
     import hashlib
 
     import numpy as np
 
     if isinstance(motion, Components):
-        parts = (b"none" if part is None else digest(part).encode() for part in motion.parts)
-        return hashlib.sha256(b" ".join(parts)).hexdigest()
+        digests = (b"none" if component is None else digest(component).encode() for component in motion.parts)
+        return hashlib.sha256(b" ".join(digests)).hexdigest()
     segments = motion.upright_segments() if isinstance(motion, GroundMotion) else motion.segments()
     hashed = hashlib.sha256(np.array([segments.step, segments.degree], "<f8").tobytes())
-    for part in (segments.horizontal, segments.vertical):
-        hashed.update(b"none" if part is None else np.ascontiguousarray(part, "<f8").tobytes())
+    for component in (segments.horizontal, segments.vertical):
+        hashed.update(b"none" if component is None else np.ascontiguousarray(component, "<f8").tobytes())
     return hashed.hexdigest()
 
 
-MOST_MOTIONS = 10_000_000  # no set has more motions: asking for more is a slip
+MOST_MOTIONS = 10_000_000  # largest number of motions of a set
 
 
 class SyntheticSet(MotionSet):
-    """Motions of a family, each made when it is asked for.
+    """Motions of a family, each generated on access.
 
-    A motion depends on the family, the seed and its number alone: a larger set begins with the motions of a smaller
-    one.
+    A motion depends on the family, the seed and its index only: a larger set begins with the motions of a smaller set.
 
     Parameters
     ----------
     which : str or Family
-        The family: a name of `rocking.motions.synthetic.families.families`, or one of your own.
+        The family: a name of `rocking.motions.synthetic.families.families`, or a user-defined family.
     count : int
-        How many motions [-].
+        Number of motions [-].
     seed : int
         Seed of the set, at least 0 [-].
     time_step : float, optional
-        Step between samples; that of the family if not given [s].
+        Time step of the samples; default: that of the family [s].
     **level : float
-        To what each motion is scaled: one measure that grows with it, by name, such as ``pga=3.0``; none if not given
-        [unit of the measure].
+        Level of the scaled motions: one measure that grows with the motion, by name, such as ``pga=3.0``; default:
+        unscaled [unit of the measure].
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, several levels are given, or no factor changes the measure.
+        If a value is outside its range, there are several levels, or scaling does not change the measure.
 
     Examples
     --------
@@ -170,14 +169,14 @@ class SyntheticSet(MotionSet):
     ) -> None:
         self.family = family(which)
         self.count, self.seed = checks.whole("count", count, 1, MOST_MOTIONS), checks.whole("seed", seed)
-        given = {name: value for name, value in level.items() if value is not None}
-        if len(given) > 1:
-            raise InvalidValueError("motions can be scaled to {measures}, not to both", measures=" or to ".join(given))
+        levels = {name: value for name, value in level.items() if value is not None}
+        if len(levels) > 1:
+            raise InvalidValueError("motions can be scaled to {measures}, not to both", measures=" or to ".join(levels))
         self.level: dict[str, float] = {}
-        for name, value in given.items():
-            one = measure(name)
-            one.check_grows()
-            self.level[one.name] = checks.positive(one.name, value, one.unit)
+        for name, value in levels.items():
+            im = measure(name)
+            im.check_grows()
+            self.level[im.name] = checks.positive(im.name, value, im.unit)
         step = self.family.time_step if time_step is None else time_step
         self.time_step = checks.positive("time_step", step, "s")
 
@@ -185,22 +184,24 @@ class SyntheticSet(MotionSet):
         return self.count
 
     def __getitem__(self, index: int) -> GroundMotion:
-        place = index + self.count if index < 0 else index
-        if not 0 <= place < self.count:
+        position = index + self.count if index < 0 else index
+        if not 0 <= position < self.count:
             raise IndexError(f"motions are numbered 0 to {self.count - 1}, got {index}")
-        motion = self.family.motion(self.seed, int(place), self.time_step)
+        motion = self.family.motion(self.seed, int(position), self.time_step)
         for name, value in self.level.items():
             motion = scaled_to(motion, name, value)
         return motion
 
     def description(self) -> dict[str, Any]:
-        """Return family, distributions as drawn, seed, level, and hashes of the first and last motion."""
+        """Return family, distributions, seed, level, and hashes of the first and last motion."""
         first, last = self._ends
         return {
             "kind": "synthetic",
             "family": self.family.name,
             "generator": self.family.generator,
-            "distributions": [[name, _told(name, each)] for name, each in self.family.distributions.items()],
+            "distributions": [
+                [name, _described(name, distribution)] for name, distribution in self.family.distributions.items()
+            ],
             "make": _named(self.family.make),
             "origin": self.family.origin,
             "count": self.count,
@@ -214,26 +215,26 @@ class SyntheticSet(MotionSet):
 
     @cached_property
     def _ends(self) -> tuple[str, str]:
-        """Hashes of the first and the last motion, which show what the code of the family makes."""
+        """Hashes of the first and the last motion, which identify the code of the family."""
         return digest(self[0]), digest(self[-1])
 
 
 def _named(make: Callable[..., GroundMotion]) -> str:
-    """Return the name of a function; one without a name, or which holds other values, does not say what it makes."""
+    """Return the name of a function; refuse functions without a name or with bound values."""
     name = getattr(make, "__qualname__", "")
-    held = getattr(make, "__closure__", None) or (getattr(make, "__self__", None) is not None)
-    if not name or "<lambda>" in name or held:
+    has_values = getattr(make, "__closure__", None) or (getattr(make, "__self__", None) is not None)
+    if not name or "<lambda>" in name or has_values:
         raise InvalidValueError(
-            "make of a family must be a function with a name that holds no other values, got {value}: a lambda, a "
-            "partial, a method or a closure does not say which motions it makes", parameter="make", value=make,
+            "make of a family must be a named function without bound values, got {value}: a lambda, a partial, a "
+            "method or a closure does not identify its motions", parameter="make", value=make,
         )  # fmt: skip
     return f"{make.__module__}.{name}"
 
 
-def _told(name: str, distribution: Distribution) -> str:
+def _described(name: str, distribution: Distribution) -> str:
     if type(distribution).__repr__ is object.__repr__:
         raise InvalidValueError(
-            "distribution {parameter} must say what makes it by repr(), as a dataclass does, got {value}",
+            "distribution {parameter} must contain its parameters in repr(), as a dataclass does, got {value}",
             parameter=name, value=distribution,
         )  # fmt: skip
     return f"{full_name(type(distribution))}: {distribution!r}"

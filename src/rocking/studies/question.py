@@ -1,4 +1,4 @@
-"""What a study asks beside its axes: one body, one motion, its restitution and settings; and variations of them."""
+"""Question of a study: one body, one motion, restitution and settings; and their variations."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -30,19 +30,19 @@ from rocking.restitution.from_file import origin_of
 from rocking.version import SOFTWARE
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3
-"""Modes beside the number of impacts before overturning: never lifted; rocked and stayed standing; no result."""
+"""Modes other than the number of impacts before overturning: no uplift; rocking without overturning; no result."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """One body under one motion, to be varied."""
+    """One body under one motion, subject to variations."""
 
-    body: Any  # a plane body, or one in space
-    motion: Any  # of a body in space components by axis too, as for `simulate`
+    body: Any  # a plane or 3D body
+    motion: Any  # or components by axis, as for `simulate`
     restitution: Any = DEFAULT_RESTITUTION  # as for `simulate`
-    settings: Settings = field(default_factory=PlaneSettings)  # how to integrate
+    settings: Settings = field(default_factory=PlaneSettings)  # settings of the integration
     threads: int | None = None  # threads of the fast engine; the results do not depend on them
-    engine: str = "auto"  # which engine
+    engine: str = "auto"  # name of the engine
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "motion", together(self.motion, plane=isinstance(self.body, Body)))
@@ -51,21 +51,21 @@ class Question:
 
     @cached_property
     def parameters(self) -> RockingParameters:
-        """The body as it is, before any axis changes it."""
+        """Parameters of the unchanged body."""
         return self.parameters_of(self.body)
 
     @property
     def law(self) -> ImpactLaw:
-        """How the coefficient changes from impact to impact."""
+        """Law of the coefficient per impact."""
         return self.parameters.law
 
     @cached_property
     def batch(self) -> Batch:
-        """The motion as the engine lays it out."""
+        """The motion prepared for the engine."""
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
     def parameters_of(self, body: Body) -> RockingParameters:
-        """Return another body with the same restitution, evaluated for it."""
+        """Return the parameters of another body, with the restitution evaluated for it."""
         return mechanics_of(self.settings).parameters(body, self.restitution, self.settings)
 
     def run(
@@ -75,8 +75,8 @@ class Question:
         stream: Any = None,
         progress: Callable[[int], None] | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return the results of many variations, their modes and relative peaks [-] with them."""
-        # values: sides, scale and what else varies, by the names of `batch.ROWS`, one entry a history
+        """Return the results of variations, including modes and relative peaks [-]."""
+        # values: sides, scale and other varied inputs, by the names of `batch.ROWS`, one entry per history
         count = stretch.size
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")
@@ -90,15 +90,15 @@ class Question:
         return results, work
 
     def check_stretching(self, name: str) -> None:
-        """Refuse to stretch time where the restitution would notice."""
+        """Refuse to stretch time for a restitution that depends on the speed."""
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 "{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
-                "in rad/s, got {law}", name=name, law=type(self.law).__name__, hint="vary scale and size instead",
+                "in rad/s, got {law}", name=name, law=type(self.law).__name__, hint="Vary scale and size.",
             )  # fmt: skip
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
-        """Return what was computed from what and how, as plain values."""
+        """Return inputs, settings and work of the computation, as plain values."""
         motion = self.motion
         return {
             "software": SOFTWARE,
@@ -116,39 +116,39 @@ class Question:
 
 @dataclass(frozen=True)
 class Case:
-    """Variations of a question, one entry each; every axis returns it with something changed."""
+    """Variations of a question, one entry each; axes return changed copies."""
 
-    question: Question  # what is varied
-    count: int  # how many variations
-    scale: FloatArray  # factor on the motion [-]
-    stretch: FloatArray  # factor on its time [-]
+    question: Question  # the unvaried question
+    count: int  # number of variations
+    scale: FloatArray  # scale factor of the motion [-]
+    stretch: FloatArray  # factor on the time of the motion [-]
     # dimensions that vary, by the names of `changed_body` [m, rad]
     geometry: Mapping[str, FloatArray] = field(default_factory=dict)
-    # alpha, p and r, right and left, once the bodies are known [rad, rad/s, -]
+    # alpha, p and r, right and left, of the final bodies [rad, rad/s, -]
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
-    amplitude_is_set: bool = False  # whether an axis has set the amplitude, so that the velocity must set the time
+    amplitude_is_set: bool = False  # True if an axis has set the amplitude, so that the velocity sets the time
 
     @classmethod
     def of(cls, question: Question, count: int) -> "Case":
-        """Return variations that do not vary yet."""
+        """Return equal copies of a question as variations."""
         return cls(question, count, np.ones(count), np.ones(count))
 
     def settled(self) -> "Case":
-        """Return the case with its bodies made and the restitution evaluated for each; NaN where there is none."""
+        """Return the case with the bodies and their restitution; NaN for impossible bodies."""
         names = sorted(self.geometry)
         if not names:
-            rows, places = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
+            rows, inverse = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
         else:
-            rows, places = np.unique(np.stack([self.geometry[n] for n in names], axis=-1), axis=0, return_inverse=True)
+            rows, inverse = np.unique(np.stack([self.geometry[n] for n in names], axis=-1), axis=0, return_inverse=True)
         table = sides_of(self._parameters([dict(zip(names, row.tolist(), strict=True)) for row in rows]))
-        return replace(self, sides={name: values[places.ravel()] for name, values in table.items()})
+        return replace(self, sides={name: values[inverse.ravel()] for name, values in table.items()})
 
     def _parameters(self, dimensions: list[dict[str, float]]) -> list[RockingParameters | None]:
         parameters: list[RockingParameters | None] = []
         refused: InvalidValueError | None = None
-        for each in dimensions:
+        for sizes in dimensions:
             try:
-                parameters.append(self.question.parameters_of(changed_body(self.question.body, each)))
+                parameters.append(self.question.parameters_of(changed_body(self.question.body, sizes)))
             except InvalidValueError as error:
                 parameters.append(None)
                 refused = error
@@ -169,14 +169,14 @@ class Case:
 
     @property
     def uplift_acceleration(self) -> FloatArray:
-        """Ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]."""
+        """Ground acceleration of uplift: g tan alpha, or g alpha in the linear equations [m/s2]."""
         settings = self.question.settings
         alpha = self.slenderness_angle
         return settings.gravity * (alpha if settings.linear else np.tan(alpha))  # Eq. 25
 
     @property
     def values(self) -> dict[str, FloatArray]:
-        """What the engine is told of each variation."""
+        """Engine inputs of each variation."""
         return {**self.sides, "scale": self.scale}
 
 
@@ -184,16 +184,16 @@ _RATES = {"p_right", "p_left", "velocity"}
 
 
 def quickened(values: Mapping[str, FloatArray], stretch: FloatArray) -> dict[str, FloatArray]:
-    """Return the values of bodies to which the motion does what the motion stretched in time does to those at hand.
+    """Return bodies whose response to the motion equals that of the given bodies to the stretched motion.
 
-    A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p s,
-    all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
+    A motion stretched in time by s has the same effect on a body of frequency parameter p as the motion itself on a
+    body of p s, with all times multiplied by s. One motion replaces all stretched ones without approximation.
     """
     return {name: row * stretch if name in _RATES else row for name, row in values.items()}  # Eq. 179
 
 
 def reference_side(body: Body) -> str:
-    """Return the side that the ground lifts the body about first: the less stocky one, the right one if equal."""
+    """Return the side of first uplift: the more slender one, the right one if equal."""
     return "left" if body.side("left").slenderness_angle < body.side("right").slenderness_angle else "right"
 
 
@@ -206,7 +206,7 @@ def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
     if not isinstance(body, Body):
         if set(parameters) != {"semi_diagonal"}:
             raise InvalidValueError(
-                "of a body in space only the semi-diagonal varies, got {names}", names=", ".join(parameters)
+                "only the semi-diagonal of a 3D body varies, got {names}", names=", ".join(parameters)
             )
         return body.scaled(size=parameters["semi_diagonal"] / SpatialBody.of(body).size)
     if set(parameters) == {"semi_diagonal"}:
@@ -218,8 +218,8 @@ def changed_body(body: Any, parameters: Mapping[str, float]) -> Any:
         )
     if body.known is not None or not body.stands_on_corners:
         raise InvalidValueError(
-            "slenderness, width and height vary only for a homogeneous Block on its corners: leave centre, "
-            "moment_of_inertia and feet out, or vary the semi-diagonal"
+            "slenderness, width and height vary only for a homogeneous Block on its corners. Remove centre, "
+            "moment_of_inertia and feet, or vary the semi-diagonal."
         )
     width, height = _dimensions(body, parameters)
     return Block(width=width, height=height, depth=body.depth, density=body.density)
@@ -236,11 +236,11 @@ def _dimensions(block: Block, dimensions: Mapping[str, float]) -> tuple[float, f
         size = 2.0 * (block.semi_diagonal if diagonal is None else diagonal)
         return size * math.sin(alpha), size * math.cos(alpha)
     if diagonal is not None:
-        known = next((side for side in (height, width) if side is not None), 0.0)
-        square = 4.0 * diagonal**2 - known**2
+        fixed = next((side for side in (height, width) if side is not None), 0.0)
+        square = 4.0 * diagonal**2 - fixed**2
         if square <= 0.0:
             raise InvalidValueError(
-                "no block of semi-diagonal {diagonal:g} m has a side of {side:g} m", diagonal=diagonal, side=known
+                "no block of semi-diagonal {diagonal:g} m has a side of {side:g} m", diagonal=diagonal, side=fixed
             )
         other = math.sqrt(square)
         return (width, other) if width is not None else (other, dimensions["height"])
@@ -248,7 +248,7 @@ def _dimensions(block: Block, dimensions: Mapping[str, float]) -> tuple[float, f
 
 
 def modes_of(results: Arrays) -> np.ndarray:
-    """Return -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
+    """Return -3 failed, -2 no uplift, -1 rocking without overturning, n >= 0 overturned after n impacts.
 
     >>> modes_of({"outcome": np.array([0, 1, 2, 3]), "impacts": np.array([0, 3, 1, 0])}).tolist()
     [-2, -1, 1, -3]
@@ -258,10 +258,10 @@ def modes_of(results: Arrays) -> np.ndarray:
         Outcome.OVERTURNED: results["impacts"], Outcome.NO_UPLIFT: UNLIFTED, Outcome.SLID: UNLIFTED,
         Outcome.FAILED: FAILED,
     }  # fmt: skip
-    chosen = np.select([outcome == each.code for each in modes], list(modes.values()), SURVIVED)
-    return np.asarray(chosen, dtype=np.int64)
+    selected = np.select([outcome == kind.code for kind in modes], list(modes.values()), SURVIVED)
+    return np.asarray(selected, dtype=np.int64)
 
 
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
-    """Return the peak rotation over the slenderness angle of its side; beyond one is not overturning [-]."""
+    """Return the peak rotation over the slenderness angle of its side; above 1 is not overturning [-]."""
     return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)  # Eq. 181

@@ -1,4 +1,4 @@
-"""How far bodies are from overturning, and what to do: anchors, a wider base, a lower centre, isolators."""
+"""Margins of bodies to overturning, and retrofit measures: anchors, wider base, lower centre, isolators."""
 
 import math
 import warnings
@@ -24,16 +24,16 @@ from rocking.studies.fragility.subject import Responses, Subject
 from rocking.studies.histories import Histories, Product, results_of
 from rocking.studies.motion_sets import MotionList
 
-POINTS, REACH, MARGIN_HALVINGS = 64, 50.0, 6
-"""Levels at which the least that overturns is looked for, up to so many times what lifts, and halvings of its place."""
+POINTS, REACH, MARGIN_BISECTIONS = 64, 50.0, 6
+"""Search of the smallest overturning factor: number of levels, highest level over uplift, number of bisections."""
 
 
 @dataclass(frozen=True, eq=False)
 class Margins:
-    """Histories of one body under all motions, of both ways round where these differ."""
+    """Histories of one body under all motions, for both polarities if these differ."""
 
-    least_each: FloatArray  # least factor that overturns, by way round (as it stands, mirrored) and motion [-]
-    fell_each: FloatArray  # 1 where it overturns, NaN without a result, by way round, motion and level
+    min_factors_by_polarity: FloatArray  # smallest overturning factor, by polarity and motion [-]
+    overturned_by_polarity: FloatArray  # 1 if overturned, NaN without a result, by polarity, motion and level
     factors: FloatArray  # by motion and level [-]
     label: str  # of the restitution
 
@@ -42,33 +42,33 @@ class Margins:
         cls, body: Body, motions: MotionList, restitution: Any, measure: Any, levels: FloatArray | None,
         options: dict[str, Any],
     ) -> "Margins":  # fmt: skip
-        """Return the margins of a body; levels: of the measure, the motions as they are if none."""
+        """Return the margins of a body at levels of the measure, or under the motions as recorded."""
         ground = {name: value for name, value in options.items() if name not in {"threads", "progress"}}
-        subjects = [Subject.of(*each, measure, ground) for each in ways_round(body, motions, restitution)]
-        one = subjects[0]
-        factors = np.ones((len(motions), 1)) if levels is None else measure.factors(one.intensities, levels)
+        subjects = [Subject.of(*case, measure, ground) for case in polarities(body, motions, restitution)]
+        intensities = subjects[0].intensities
+        factors = np.ones((len(motions), 1)) if levels is None else measure.factors(intensities, levels)
 
         def overturned(subject: Subject, histories: Histories, shape: tuple[int, ...]) -> FloatArray:
             arrays = results_of(histories, threads=options.get("threads"), progress=options.get("progress"))
             return Responses.of(arrays, subject.parameters, shape).overturned
 
-        fell = [overturned(each, each.product(factors), factors.shape) for each in subjects]
-        least = [_least_factor(each, overturned) for each in subjects]
-        return cls(np.array(least), np.array(fell), factors, one.parameters.label)
+        fallen = [overturned(subject, subject.product(factors), factors.shape) for subject in subjects]
+        min_factors = [_min_factor(subject, overturned) for subject in subjects]
+        return cls(np.array(min_factors), np.array(fallen), factors, subjects[0].parameters.label)
 
     @property
-    def least(self) -> FloatArray:
-        """Least factor on each motion that overturns; infinite if none did, NaN without a result [-]."""
-        return np.asarray(np.minimum.reduce(self.least_each))
+    def min_factors(self) -> FloatArray:
+        """Smallest overturning factor of each motion; infinite if none overturns, NaN without a result [-]."""
+        return np.asarray(np.minimum.reduce(self.min_factors_by_polarity))
 
     @property
     def overturned(self) -> FloatArray:
-        """1 where it overturns, of either way round, by motion and level; NaN without a result."""
-        return np.asarray(np.maximum.reduce(self.fell_each))
+        """1 if overturned in one of both polarities, by motion and level; NaN without a result."""
+        return np.asarray(np.maximum.reduce(self.overturned_by_polarity))
 
 
-def ways_round(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, Any, Any]]:
-    """Return a body with its motions and restitution, and mirrored with the same where that differs."""
+def polarities(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, Any, Any]]:
+    """Return a body with its motions and restitution, and mirrored if that differs."""
     swapped, differ = restitution, not body.is_symmetric
     if isinstance(restitution, Mapping) and {"left", "right"} <= set(restitution):
         swapped = {"left": restitution["right"], "right": restitution["left"]}
@@ -78,83 +78,84 @@ def ways_round(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, A
     return [(body, motions, restitution), (body.mirrored(), motions, swapped)]
 
 
-def _least_factor(
+def _min_factor(
     subject: Subject, overturned: Callable[[Subject, Histories, tuple[int, ...]], FloatArray]
 ) -> FloatArray:
-    """Return the least factor on each motion that was found to overturn; infinite if none, NaN without a result."""
-    peaks, lifts = measure_of("pga").values(subject.motions, subject.scale), subject.scale.threshold
-    light = not subject.are_horizontal
-    grid = np.geomspace((0.1 if light else 1.0) * lifts, highest(lifts), POINTS) / peaks[:, None]
-    return first_to_fall(
+    """Return the smallest overturning factor of each motion; infinite if none, NaN without a result."""
+    peaks, uplift = measure_of("pga").values(subject.motions, subject.scale), subject.scale.threshold
+    lowest = uplift if subject.are_horizontal else 0.1 * uplift
+    grid = np.geomspace(lowest, highest_acceleration(uplift), POINTS) / peaks[:, None]
+    return find_min_factors(
         grid, lambda rows, factors: overturned(subject, subject.table(rows, factors), factors.shape), POINTS
     )
 
 
-def highest(lifts: float, reach: float = REACH) -> float:
-    """Return up to which acceleration it is looked for what overturns, of that which lifts [m/s2]."""
-    return min(reach * lifts, max(plausibility.LARGEST_PGA, 4.0 * lifts))
+def highest_acceleration(uplift: float, reach: float = REACH) -> float:
+    """Return the highest acceleration of the search from the acceleration of uplift [m/s2]."""
+    return min(reach * uplift, max(plausibility.LARGEST_PGA, 4.0 * uplift))
 
 
-def first_to_fall(
-    grid: FloatArray, overturned: Callable[[IntArray, FloatArray], FloatArray], together: int
+def find_min_factors(
+    grid: FloatArray, overturned: Callable[[IntArray, FloatArray], FloatArray], batch: int
 ) -> FloatArray:
-    """Return the least factor that was found to overturn; infinite if none did, NaN without a result.
+    """Return the smallest overturning factor of each row; infinite if none, NaN without a result.
 
-    grid: factors of each row, upwards; overturned: says it of numbers of rows, each with its factor; together: so many
-    factors are tried at once of the rows of which none overturned yet.
+    grid: increasing factors of each row; overturned: function of row indices and factors; batch: number of factors
+    computed together for the rows without overturning.
     """
     count, points = grid.shape
-    fell = np.zeros(grid.shape)
-    for begin in range(0, points, together):
-        part = slice(begin, begin + together)
-        some = np.flatnonzero(~(fell == 1.0).any(axis=1))
-        if some.size:
-            tried = grid[some, part]
-            numbers = np.repeat(some, tried.shape[1])
-            fell[some, part] = overturned(numbers, tried.ravel()).reshape(tried.shape)
-    first = np.argmax(fell == 1.0, axis=1)
+    fallen = np.zeros(grid.shape)
+    for begin in range(0, points, batch):
+        columns = slice(begin, begin + batch)
+        upright = np.flatnonzero(~(fallen == 1.0).any(axis=1))
+        if upright.size:
+            factors = grid[upright, columns]
+            indices = np.repeat(upright, factors.shape[1])
+            fallen[upright, columns] = overturned(indices, factors.ravel()).reshape(factors.shape)
+    first = np.argmax(fallen == 1.0, axis=1)
     rows = np.arange(count)
-    found = np.where(fell[rows, first] == 1.0, grid[rows, first], np.inf)
-    low, high = grid[rows, np.maximum(first - 1, 0)], found
-    some = np.flatnonzero(np.isfinite(found) & (first > 0))
-    for _ in range(MARGIN_HALVINGS if some.size else 0):
-        middle = np.sqrt(low[some] * high[some])
-        falls = overturned(some, middle) == 1.0
-        high[some], low[some] = np.where(falls, middle, high[some]), np.where(falls, low[some], middle)
-    high[some] = np.sqrt(low[some] * high[some])
-    before = np.where(np.isfinite(found), first, points)[:, None] > np.arange(points)
-    return np.where((np.isnan(fell) & before).any(axis=1), np.nan, high)
+    min_factors = np.where(fallen[rows, first] == 1.0, grid[rows, first], np.inf)
+    low, high = grid[rows, np.maximum(first - 1, 0)], min_factors
+    bracketed = np.flatnonzero(np.isfinite(min_factors) & (first > 0))
+    for _ in range(MARGIN_BISECTIONS if bracketed.size else 0):
+        middle = np.sqrt(low[bracketed] * high[bracketed])
+        falls = overturned(bracketed, middle) == 1.0
+        high[bracketed] = np.where(falls, middle, high[bracketed])
+        low[bracketed] = np.where(falls, low[bracketed], middle)
+    high[bracketed] = np.sqrt(low[bracketed] * high[bracketed])
+    before = np.where(np.isfinite(min_factors), first, points)[:, None] > np.arange(points)
+    return np.where((np.isnan(fallen) & before).any(axis=1), np.nan, high)
 
 
 CALIBRATED = "calibrated"
 
-STEPS, HALVINGS = 32, 5
-"""Changes that are tried up to the one that keeps a body from lifting, and halvings of the place found."""
+STEPS, BISECTIONS = 32, 5
+"""Number of changes up to the change without uplift, and number of bisections."""
 
-SHARES = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
-"""Of the factor, at which each change is tried before the margin of the one that is found is looked for."""
+FACTOR_RATIOS = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
+"""Ratios of the factor for the check of each change, before the margin of the result is computed."""
 
 PERIODS, DAMPING = np.round(np.geomspace(0.5, 6.0, 40), 2), 0.1
-"""Of the isolators that are looked at: periods, such as can be said in three digits [s], and damping ratio [-]."""
+"""Candidate isolators: periods with three digits [s], and damping ratio [-]."""
 
 ASSUMED = (
-    "Anchors: body, anchors and floor are rigid, so that nothing lifts and nothing is amplified; the anchors of one "
-    "edge pull straight down, with the other edge as the pivot; shear without help of friction; no safety factor.",
-    "Wider base, lower centre: mass and moment of inertia about the centre stay as they are; a wider base reaches out "
+    "Anchors: body, anchors and floor are rigid, without uplift and amplification. The anchors of one edge pull "
+    "vertically, with the other edge as the pivot. Shear without friction. No safety factor.",
+    "Wider base, lower centre: mass and moment of inertia about the centre do not change. A wider base extends "
     "equally on both sides.",
-    f"Isolators: linear, {100 * DAMPING:g} % of critical damping, in horizontal directions alone, the body rigid on "
-    "them; vertical motion passes through and is taken with its peaks throughout.",
+    f"Isolators: linear, {100 * DAMPING:g} % of critical damping, horizontal only, with a rigid body. Vertical motion "
+    "is transmitted; its largest downward acceleration is used throughout.",
 )
-"""What the remedies take for granted."""
+"""Assumptions of the measures."""
 
 
 def millimetres(length: float) -> int:
-    """Return a length that is demanded in whole millimetres, never less than it is."""
+    """Return a required length in whole millimetres, rounded up."""
     return math.ceil(1e3 * length - 1e-9)
 
 
 def rounded_up(value: float) -> float:
-    """Return what is demanded in three digits, never less than it is.
+    """Return a required value with three digits, rounded up.
 
     >>> rounded_up(2588.96), rounded_up(0.062), rounded_up(0.0)
     (2590.0, 0.062, 0.0)
@@ -165,37 +166,39 @@ def rounded_up(value: float) -> float:
 
 @dataclass(frozen=True)
 class LengthChange:
-    """How far a length must be changed."""
+    """Required change of a length."""
 
-    # with which no history overturns any more: the least from which on all that were tried stand, in whole
-    # millimetres; 0 where it stands as it is [m]
-    stands: float
-    lifts_not: float  # with which it does not even lift, in closed form [m]
-    why_not: str = ""  # why none was looked for; empty if one was
+    # smallest change above which no computed history overturns, in whole millimetres; 0 if none is needed [m]
+    length_no_overturning: float
+    length_no_uplift: float  # change without uplift, in closed form [m]
+    reason: str = ""  # reason of a missing search; empty after a search
 
 
 @dataclass(frozen=True)
 class Remedies:
-    """What would keep a body standing under motions times a factor."""
+    """Measures that prevent overturning under scaled motions."""
 
-    margin: float  # the factor on the motions [-]
-    # force that anchors along the left and the right edge must hold, that of the whole edge; 0 where it does not lift
-    # [N]
+    margin: float  # scale factor of the motions [-]
+    # total force of the anchors along the left and the right edge; 0 without uplift [N]
     tension: dict[str, float]
     shear: float  # horizontal force on all anchors [N]
-    # wider, lower: how far each side of the base must reach out, and how far the centre of mass must come down
+    # wider, lower: extension of the base on each side, and lowering of the centre of mass
     wider: LengthChange
     lower: LengthChange
-    # least period from which on no longer one lets it lift [s], and the displacement that it takes [m]; None if there
-    # is none up to 6 s
+    # smallest isolator period above which no uplift occurs [s], and the isolator displacement [m]; None if none up to
+    # 6 s
     isolation: tuple[float, float] | None
 
     def answer(self) -> Answer:
         """Return forces of anchors, changes of lengths, and isolation."""
         period, displacement = (None, None) if self.isolation is None else self.isolation
         lengths = {
-            name: {"no_overturning": each.stands, "no_uplift": each.lifts_not, "reason": each.why_not}
-            for name, each in (("wider", self.wider), ("lower", self.lower))
+            name: {
+                "no_overturning": change.length_no_overturning,
+                "no_uplift": change.length_no_uplift,
+                "reason": change.reason,
+            }  # fmt: skip
+            for name, change in (("wider", self.wider), ("lower", self.lower))
         }
         return Answer({
             "margin": self.margin, "tension": self.tension, "shear": self.shear, **lengths,
@@ -204,43 +207,47 @@ class Remedies:
 
     @property
     def needed(self) -> bool:
-        """Whether it lifts at all."""
+        """True if uplift occurs."""
         return any(force > 0.0 for force in self.tension.values())
 
 
-def parts_of(motion: GroundMotion) -> tuple[FloatArray, FloatArray]:
-    """Return the horizontal acceleration without its sign, both ways round being possible, and the one upwards."""
+def accelerations_of(motion: GroundMotion) -> tuple[FloatArray, FloatArray]:
+    """Return the absolute horizontal acceleration, for both polarities, and the upward acceleration."""
     across = np.abs(motion.acceleration)
     return across, np.zeros_like(across) if motion.vertical is None else np.asarray(motion.vertical)
 
 
 def lifting_factor(body: Body, motion: GroundMotion, gravity: float) -> float:
-    """Return the factor on a motion from which on it lifts a body, either way round [-]."""
-    across, up = parts_of(motion)
+    """Return the scale factor of uplift of a body under a motion, both polarities [-]."""
+    across, up = accelerations_of(motion)
     sides = [body.side(foot, gravity) for foot in FEET]
-    least = [s.half_width * gravity / max((across * s.centre_height - up * s.half_width).max(), 1e-300) for s in sides]
-    return float(min(least))  # Eq. 312
+    factors = [
+        s.half_width * gravity / max((across * s.centre_height - up * s.half_width).max(), 1e-300) for s in sides
+    ]
+    return float(min(factors))  # Eq. 312
 
 
 def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> dict[str, float]:
-    """Return the force with which anchors along each edge must hold it down [N]; the pivot is the other edge."""
-    across, up = parts_of(motion)
+    """Return the required force of the anchors along each edge, with the other edge as pivot [N]."""
+    across, up = accelerations_of(motion)
     base = body.feet[1] - body.feet[0]
-    found = {}
+    forces = {}
     for edge, pivot in zip(FEET, FEET[::-1], strict=True):
         side = body.side(pivot, gravity)
         moment = factor * across * side.centre_height - (gravity + factor * up) * side.half_width
-        found[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 313
-    return {str(edge): force for edge, force in found.items()}
+        forces[edge] = max(0.0, body.mass * float(moment.max()) / base)  # Eq. 313
+    return {str(edge): force for edge, force in forces.items()}
 
 
-def still(body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float) -> tuple[float, float]:
-    """Return how far the sides must reach out, and the centre come down, that nothing lifts [m]; infinite if none."""
+def lengths_without_uplift(
+    body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float
+) -> tuple[float, float]:
+    """Return the extension of each side, and the lowering of the centre, without uplift [m]; infinite if none."""
     sides = [body.side(foot, gravity) for foot in FEET]
     narrow, height = min(side.half_width for side in sides), sides[0].centre_height
     ratio = 0.0
     for motion in motions:
-        across, up = parts_of(motion)
+        across, up = accelerations_of(motion)
         weight = gravity + factor * up
         if (weight <= 0.0).any():
             return np.inf, np.inf
@@ -252,43 +259,47 @@ def remedies(
     body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float,
     restitutions: Mapping[str, Any], *, falls: bool,
 ) -> Remedies:  # fmt: skip
-    """Return what would help; restitutions: by name; falls: whether it overturns under some motion times the margin."""
-    both = [tension(body, each, margin, gravity) for each in motions]
-    out, down = still(body, motions, margin, gravity)
-    shear = margin * body.mass * max(float(parts_of(each)[0].max()) for each in motions)
+    """Return the measures; restitutions: by name; falls: True if a motion scaled by the margin overturns the body."""
+    tensions = [tension(body, motion, margin, gravity) for motion in motions]
+    out, down = lengths_without_uplift(body, motions, margin, gravity)
+    shear = margin * body.mass * max(float(accelerations_of(motion)[0].max()) for motion in motions)
     changes = {}
-    for name, most in (("out", out), ("down", down)):
+    for name, no_uplift in (("out", out), ("down", down)):
         try:
-            with warnings.catch_warnings():  # nobody typed how low a centre is that is tried
+            with warnings.catch_warnings():  # warnings on trial bodies do not concern the user
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 landings = Landings(body, restitutions) if falls else None
-                stands = _least(body, motions, margin, gravity, landings, name=name, most=most) if landings else 0.0
-            changes[name] = LengthChange(stands, most)
+                length = (
+                    _min_length(body, motions, margin, gravity, landings, name=name, no_uplift=no_uplift)
+                    if landings
+                    else 0.0
+                )
+            changes[name] = LengthChange(length, no_uplift)
         except GeometryError as error:
-            changes[name] = LengthChange(np.nan, most, str(error))
-    held = {str(edge): max(one[edge] for one in both) for edge in FEET}
-    lifts = any(force > 0.0 for force in held.values())
-    isolated = isolation(body, motions, margin, gravity) if lifts else None
-    return Remedies(margin, held, shear, changes["out"], changes["down"], isolated)
+            changes[name] = LengthChange(np.nan, no_uplift, str(error))
+    forces = {str(edge): max(pair[edge] for pair in tensions) for edge in FEET}
+    has_uplift = any(force > 0.0 for force in forces.values())
+    isolated = isolation(body, motions, margin, gravity) if has_uplift else None
+    return Remedies(margin, forces, shear, changes["out"], changes["down"], isolated)
 
 
 def isolation(body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float) -> tuple[float, float] | None:
-    """Return the least period from which on isolators keep a body from lifting [s], and their displacement [m]."""
+    """Return the smallest period above which isolators prevent uplift [s], and their displacement [m]."""
     slope = min(body.side(foot, gravity).half_width / body.side(foot, gravity).centre_height for foot in FEET)
-    good, far = np.ones(PERIODS.size, bool), np.zeros(PERIODS.size)
+    good, displacement = np.ones(PERIODS.size, bool), np.zeros(PERIODS.size)
     for motion in motions:
-        lightest = gravity + margin * min(float(parts_of(motion)[1].min()), 0.0)
-        found = response_spectrum(motion, PERIODS, DAMPING)
-        good &= margin * found.absolute_acceleration <= slope * lightest
-        far = np.maximum(far, margin * found.displacement)
+        lightest = gravity + margin * min(float(accelerations_of(motion)[1].min()), 0.0)
+        spectrum = response_spectrum(motion, PERIODS, DAMPING)
+        good &= margin * spectrum.absolute_acceleration <= slope * lightest
+        displacement = np.maximum(displacement, margin * spectrum.displacement)
     first = int(np.flatnonzero(~good)[-1]) + 1 if not good.all() else 0
-    return (float(PERIODS[first]), float(far[first])) if first < PERIODS.size else None
+    return (float(PERIODS[first]), float(displacement[first])) if first < PERIODS.size else None
 
 
 def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: float = 0.0) -> Block:
-    """Return a block of the same mass and inertia with feet so far outside, and a centre so far below, as given [m].
+    """Return a block of equal mass and inertia with feet further outside and a lower centre of mass [m].
 
-    With ballast, what lowers the centre is a mass on the ground below it, which is added with its inertia.
+    With ballast, a mass on the ground lowers the centre; its mass and inertia are added.
     """
     left, right = body.feet
     width, x, y = right - left + 2.0 * out, body.centre[0] - left + out, body.centre[1] - body.ground - down
@@ -297,76 +308,79 @@ def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: flo
     mass, inertia = body.mass, body.moment_of_inertia
     if ballast:
         mass, inertia = mass * (y + down) / y, inertia + mass * down * (y + down)
-    gyration = inertia / mass - x * (width - x)  # what of it only height can give
+    gyration = inertia / mass - x * (width - x)  # contribution of the height
     height = max(body.local_box[3], y + 1.01 * max(gyration, y**2) / y)
     return Block(width=width, height=height, depth=1.0, mass=mass, centre=(x, y), moment_of_inertia=inertia)
 
 
 class Landings:
-    """Coefficients of a body that is changed: those it has, moved as far as what gives them says for the change.
+    """Coefficients of a changed body: those of the body, shifted by the change that the restitution model gives.
 
-    What is changed is a block, whose mass lies otherwise than that of the body: unchanged it has the body's own ones.
+    The changed body is a block with a different mass distribution; without a change it has the body's coefficients.
     """
 
     def __init__(self, body: Body, restitutions: Mapping[str, Any]) -> None:
-        self._rules = {name: CALIBRATED if isinstance(each, Mapping) else each for name, each in restitutions.items()}
-        real, same = ({name: self._pair(each, one) for name, each in given.items()}
-                      for given, one in ((restitutions, body), (self._rules, changed(body))))  # fmt: skip
-        self._moved = {name: {foot: real[name][foot] - same[name][foot] for foot in FEET} for name in real}
+        self._rules = {name: CALIBRATED if isinstance(rule, Mapping) else rule for name, rule in restitutions.items()}
+        unchanged = changed(body)
+        actual = {name: self._pair(restitution, body) for name, restitution in restitutions.items()}
+        modelled = {name: self._pair(rule, unchanged) for name, rule in self._rules.items()}
+        self._shifts = {name: {foot: actual[name][foot] - modelled[name][foot] for foot in FEET} for name in actual}
 
     def of(self, body: Body) -> list[dict[str, float]]:
-        """Return the coefficients of a changed body, each at most as large as energy allows."""
-        most = {foot: energy_bound(body, foot) for foot in FEET}
+        """Return the coefficients of a changed body, limited by the energy."""
+        bounds = {foot: energy_bound(body, foot) for foot in FEET}
         return [
-            {foot: min(max(pair[foot] + self._moved[name][foot], 0.0), most[foot]) for foot in FEET}
+            {foot: min(max(pair[foot] + self._shifts[name][foot], 0.0), bounds[foot]) for foot in FEET}
             for name, pair in ((name, self._pair(rule, body)) for name, rule in self._rules.items())
         ]
 
     @staticmethod
     def _pair(restitution: Any, body: Body) -> Mapping[Foot, float]:
-        """Return the coefficients; where the model says none, the largest that energy allows."""
+        """Return the coefficients of a model; if it gives none, the energy bounds."""
         try:
             return coefficients_of(restitution, body)[0]
         except InvalidValueError:
             return {foot: energy_bound(body, foot) for foot in FEET}
 
 
-def _least(
+def _min_length(
     body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings,
-    *, name: str, most: float,
+    *, name: str, no_uplift: float,
 ) -> float:  # fmt: skip
-    """Return the least change from which on all that are tried stand, up to the one that keeps it from lifting [m].
+    """Return the smallest change above which no computed body overturns, up to the change without uplift [m].
 
-    It is a whole number of millimetres, as it is said, and that changed body has a margin above what is asked for.
+    The change is a whole number of millimetres; the margin of the changed body is above the required one.
     """
-    if not np.isfinite(most):
-        raise GeometryError("the vertical motion takes all of its weight: nothing but anchors holds it down")
+    if not np.isfinite(no_uplift):
+        raise GeometryError("the vertical motion exceeds gravity: only anchors prevent uplift")
 
     def falls(lengths: Sequence[float]) -> BoolArray:
-        return overturns([changed(body, **{name: each}) for each in lengths], motions, margin, gravity, landings)
+        return overturns([changed(body, **{name: length}) for length in lengths], motions, margin, gravity, landings)
 
-    grid = np.linspace(0.0, most, STEPS + 1)
+    grid = np.linspace(0.0, no_uplift, STEPS + 1)
     down = np.flatnonzero(falls(grid[:-1].tolist()))
     last = int(down[-1]) if down.size else 0
     low, high = float(grid[last]), float(grid[last + 1])
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if falls([middle])[0] else (low, middle)
     for length in (high, *grid[last + 1 : -1].tolist()):
-        whole = millimetres(length) / 1e3
-        if holds(changed(body, **{name: whole}), motions, margin, gravity, landings):
-            return whole
-    return millimetres(most) / 1e3
+        rounded = millimetres(length) / 1e3
+        if holds(changed(body, **{name: rounded}), motions, margin, gravity, landings):
+            return rounded
+    return millimetres(no_uplift) / 1e3
 
 
 def holds(body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings) -> bool:
-    """Return whether the least factor that overturns a changed body is above the margin, with every restitution."""
-    kept = MotionList(motions)
+    """Return True if the smallest overturning factor of a changed body exceeds the margin with every restitution."""
+    motion_list = MotionList(motions)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PlausibilityWarning)
         for pair in landings.of(body):
-            found = Margins.of(body, kept, pair, "pga", None, {"gravity": gravity})
-            if not (found.least_each > margin).all() or (margin >= 1.0 and (found.fell_each != 0.0).any()):
+            margins = Margins.of(body, motion_list, pair, "pga", None, {"gravity": gravity})
+            if not (margins.min_factors_by_polarity > margin).all():
+                return False
+            if margin >= 1.0 and (margins.overturned_by_polarity != 0.0).any():
                 return False
     return True
 
@@ -374,18 +388,18 @@ def holds(body: Body, motions: Sequence[GroundMotion], margin: float, gravity: f
 def overturns(
     bodies: Sequence[Body], motions: Sequence[GroundMotion], margin: float, gravity: float, landings: Landings
 ) -> BoolArray:
-    """Return which bodies overturn under any motion up to a factor, with any restitution, either way round."""
+    """Return True for bodies that overturn under any motion up to a factor, any restitution and polarity."""
     rows, owner = [], []
-    with warnings.catch_warnings():  # a body that is tried may be as wide as high: nobody typed its coefficients
+    with warnings.catch_warnings():  # warnings on trial bodies, which may be wide, do not concern the user
         warnings.simplefilter("ignore", PlausibilityWarning)
         for k, body in enumerate(bodies):
             for pair in landings.of(body):
-                for one, _, own in ways_round(body, motions, pair):
-                    rows.append(RockingParameters.of_body(one, own, gravity))
+                for variant, _, coefficients in polarities(body, motions, pair):
+                    rows.append(RockingParameters.of_body(variant, coefficients, gravity))
                     owner.append(k)
     sides = {name: values[:, None] for name, values in sides_of(rows).items()}
-    histories = Product(MotionList(motions), sides, margin * SHARES, settings=PlaneSettings(gravity=gravity))
-    fell = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows), SHARES.size) == 1.0
-    found = np.zeros(len(bodies), bool)
-    np.logical_or.at(found, np.array(owner), fell.any(axis=(0, 2)))
-    return found
+    histories = Product(MotionList(motions), sides, margin * FACTOR_RATIOS, settings=PlaneSettings(gravity=gravity))
+    fallen = overturned(results_of(histories)["outcome"]).reshape(len(motions), len(rows), FACTOR_RATIOS.size) == 1.0
+    has_overturned = np.zeros(len(bodies), bool)
+    np.logical_or.at(has_overturned, np.array(owner), fallen.any(axis=(0, 2)))
+    return has_overturned

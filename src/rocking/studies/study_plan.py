@@ -1,4 +1,4 @@
-"""A study as a campaign computes it: histories, their dimensions, the use of their results, and rounds."""
+"""Study of a campaign: histories, dimensions, evaluation of results, and rounds."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -29,20 +29,20 @@ TYPES: dict[str, Any] = {
     name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
     for name in HISTORY
 } | {"mode": np.int64}
-"""Type of what is known of every history."""
+"""Types of the results of a history."""
 
 
 Compute = Callable[[Histories], Arrays]
-"""Computes a round of histories; in a campaign each round is kept, and is not computed again by whoever goes on."""
+"""Function that computes a round of histories; a campaign stores each round and resumes from it."""
 
 
 @dataclass(frozen=True)
 class AdaptiveResult:
-    """The result of an adaptive study: tables of any length, beside or in place of its histories."""
+    """Result of an adaptive study: tables of any length, in addition to its histories or instead of them."""
 
-    value: Any  # what the Python call returns
-    tables: Mapping[str, Table]  # the same as tables, by what `export` calls them
-    attributes: dict[str, Any] = field(default_factory=dict)  # what more is to be said of it, as plain values
+    value: Any  # return value of the Python call
+    tables: Mapping[str, Table]  # tables of the result, by their names in `export`
+    attributes: dict[str, Any] = field(default_factory=dict)  # additional attributes, as plain values
 
 
 class Search(Protocol):
@@ -50,31 +50,31 @@ class Search(Protocol):
 
     @property
     def kept(self) -> float:
-        """Share of its later histories that stays in memory [-]."""
+        """Fraction of its later histories that stays in memory [-]."""
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
-        """Ask for one round of histories after another."""
+        """Request the rounds of histories and return the result."""
 
     def later(self, first: int) -> tuple[int, int]:
-        """Return from and to how many histories later rounds usually have, as jobs of many sizes had them."""
+        """Return the usual range of the number of histories of later rounds, from jobs of many sizes."""
 
 
 @dataclass(frozen=True)
 class Study:
     """Histories over dimensions."""
 
-    histories: Histories  # what is computed, of an adaptive study first; the last dimension changes fastest
+    histories: Histories  # histories (of an adaptive study the first round); the last dimension changes fastest
     dims: dict[str, int]  # length of every dimension, in order
-    coordinates: dict[str, Column]  # what is known along the dimensions: columns with `dims`
-    attributes: dict[str, Any] = field(default_factory=dict)  # what the study is, as plain values
-    exports: tuple[str, ...] = ("histories",)  # what can be written of it; the first unless something else is asked for
-    # takes the results of all histories and returns the fragility analysis of each restitution by label
+    coordinates: dict[str, Column]  # coordinates along the dimensions: columns with `dims`
+    attributes: dict[str, Any] = field(default_factory=dict)  # description of the study, as plain values
+    exports: tuple[str, ...] = ("histories",)  # possible exports; the first is the default
+    # function from the results of all histories to the fragility analysis of each restitution by label
     finish: Callable[[Arrays], dict[str, Any]] | None = None
-    # takes first and last number of histories and their results, and changes those whose unit is not yet the user's
+    # function of first and last index and results, which converts results to the units of the user
     rescale: Callable[[int, int, Arrays], Arrays] | None = None
-    # of an adaptive study: takes what computes a round of histories, and returns the result of all rounds
+    # search of an adaptive study: function from a `Compute` to the result of all rounds
     search: Search | None = None
-    # takes outcome and peak_rotation of all histories and returns the assessment of an inventory
+    # function from outcome and peak_rotation of all histories to the assessment of an inventory
     assess: Callable[[Arrays], Any] | None = None
 
     def __post_init__(self) -> None:
@@ -98,21 +98,21 @@ class Study:
         return TYPES if own is RESULTS else own
 
     def derived(self, first: int, last: int, results: Arrays) -> Arrays:
-        """Return the results of some histories as users know them, with what follows from them."""
+        """Return the results of histories in the units of the user, with derived quantities."""
         if self.types is not TYPES:
             return results
         own = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(own["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
-        whole = {**own, **flags(own), "mode": modes_of(own), "peak_ratio": ratio}
-        return {name: whole[name] for name in HISTORY}
+        all_results = {**own, **flags(own), "mode": modes_of(own), "peak_ratio": ratio}
+        return {name: all_results[name] for name in HISTORY}
 
     def dataset(self, results: Mapping[str, Any]) -> "xr.Dataset":
         """Return results of all histories over the dimensions, with units."""
         xarray: Any = extra("xarray", "a dataset of histories")
         dims = tuple(self.dims)
         data = {name: (dims, values.reshape(self.shape), attributes(name)) for name, values in results.items()}
-        coords = {name: (each.dims, each.values, each.attributes) for name, each in self.coordinates.items()}
+        coords = {name: (column.dims, column.values, column.attributes) for name, column in self.coordinates.items()}
         dataset: xr.Dataset = xarray.Dataset(data, coords, plain_texts(self.attributes))
         return dataset
 
@@ -139,7 +139,7 @@ def labels_along(dim: str, values: Iterable[str], meaning: str) -> Column:
 
 
 def motions_along(motions: MotionSet) -> Column:
-    """Return what the motions are called: by name, or by number where each is made from a seed when it is needed."""
+    """Return the names of the motions, or their indices in a set that is generated from a seed."""
     if isinstance(motions, MotionList):
         return labels_along("motion", (motions[k].name for k in range(len(motions))), "name of the motion")
     return along("motion", np.arange(len(motions)), "1", "number of the motion in its set")
@@ -147,12 +147,12 @@ def motions_along(motions: MotionSet) -> Column:
 
 @dataclass(frozen=True, eq=False)
 class NumberedTable(HistoryTable):
-    """Histories given one by one, the draws of each under a number of its own."""
+    """Table of histories with an index of random numbers for each history."""
 
-    number: IntArray  # number of each history for random coefficients
+    number: IntArray  # index of the random coefficients of each history
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows."""
+        """Return a range of the rows."""
         rows = super().rows(first, last)
         return Rows(rows.values, rows.motion, self.number[first:last])
 
@@ -163,7 +163,7 @@ class NumberedTable(HistoryTable):
 
 @dataclass(frozen=True)
 class DelegatedBatch(Batch):
-    """A batch whose histories somebody else computes, round by round."""
+    """A batch whose histories are computed in rounds by `compute`."""
 
     motion_set: MotionSet = field(kw_only=True)
     compute: Compute = field(kw_only=True)
@@ -175,31 +175,31 @@ class DelegatedBatch(Batch):
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return the results of many histories, NaN of what a round does not keep; nobody counts the steps."""
+        """Return the results of histories, NaN for results that a round does not store; steps are not counted."""
         if not count:
             return super().run(0, rows)
-        every = rows(0, count)
+        all_rows = rows(0, count)
         options: dict[str, Any] = {"law": self.law, "settings": self.settings, "engine": self.engine}
-        table = NumberedTable(self.motion_set, every.motion, every.values, every.stream, **options)
+        table = NumberedTable(self.motion_set, all_rows.motion, all_rows.values, all_rows.stream, **options)
         results = self.compute(sampled(table))
-        # nobody asks for what a round does not keep, and views of one NaN need no room
+        # results that a round does not store are not used; views of one NaN need no memory
         return {name: results.get(name, np.broadcast_to(np.nan, count)) for name in RESULTS}, {}
 
 
 @dataclass(frozen=True)
 class DelegatedQuestion(Question):
-    """A question whose histories somebody else computes: the studies that take questions do not notice."""
+    """A question whose histories are computed by `compute`, for use in any study."""
 
     compute: Compute = field(kw_only=True)
 
     @classmethod
     def of(cls, question: Question, compute: Compute) -> "DelegatedQuestion":
-        """Return the same body, motion, restitution and settings."""
+        """Return a copy of a question with the given function."""
         return cls(**{name: getattr(question, name) for name in question.__dataclass_fields__}, compute=compute)
 
     @cached_property
     def batch(self) -> Batch:
-        """The motion, and who computes."""
+        """Batch of the motion that delegates the computation."""
         return DelegatedBatch(
             [self.motion.segments()], self.law, self.settings, None, self.engine,
             motion_set=MotionList([self.motion]), compute=self.compute,
@@ -207,11 +207,11 @@ class DelegatedQuestion(Question):
 
 
 class _FirstRoundError(Exception):
-    """Stops a study at the first round that it asks for."""
+    """Stops a study at its first round."""
 
 
 def first_round(search: Callable[[Compute], Any]) -> Histories:
-    """Return the histories that a study asks for first; nothing is computed."""
+    """Return the first round of histories of a study without computing it."""
 
     def stop(histories: Histories) -> Arrays:
         raise _FirstRoundError(histories)
@@ -221,4 +221,4 @@ def first_round(search: Callable[[Compute], Any]) -> Histories:
     except _FirstRoundError as error:
         histories: Histories = error.args[0]
         return histories
-    raise InvalidValueError("a study must ask for at least one round")
+    raise InvalidValueError("a study must request at least one round")

@@ -61,12 +61,12 @@ def test_what_helps_is_seen_by_the_search_for_the_margin(seed, monkeypatch):
     def margin(**change):
         body = changed(CABINET, **change)
         (pair,) = Landings(CABINET, {"one": 0.92}).of(body)
-        return Margins.of(body, [motion], pair, "pga", None, {}).least_each.min()
+        return Margins.of(body, [motion], pair, "pga", None, {}).min_factors_by_polarity.min()
 
-    assert margin(out=found.remedies.wider.stands) > 1.0
-    assert margin(down=found.remedies.lower.stands) > 1.0
+    assert margin(out=found.remedies.wider.length_no_overturning) > 1.0
+    assert margin(down=found.remedies.lower.length_no_overturning) > 1.0
     monkeypatch.setattr(rocking.studies.remedies, "holds", lambda *_: True)  # negative control
-    assert margin(out=remedies(CABINET, [motion], 1.0, g, {"one": 0.92}, falls=True).wider.stands) < 0.95
+    assert margin(out=remedies(CABINET, [motion], 1.0, g, {"one": 0.92}, falls=True).wider.length_no_overturning) < 0.95
 
 
 def test_a_body_of_another_shape_keeps_its_coefficients():
@@ -96,7 +96,11 @@ def test_what_is_demanded_is_never_rounded_down():
         asked, said = found.remedies, [re.findall(r"[\d.]+(?= (?:kN|mm|s)\b)", words) for words in found.measures]
         anchors = [*asked.tension.values(), asked.shear]
         exact = [force / 1e3 for force in anchors]
-        exact += [1e3 * getattr(each, name) for each in (asked.wider, asked.lower) for name in ("stands", "lifts_not")]
+        exact += [
+            1e3 * getattr(each, name)
+            for each in (asked.wider, asked.lower)
+            for name in ("length_no_overturning", "length_no_uplift")
+        ]
         exact += [asked.isolation[0], 1e3 * asked.isolation[1]]
         for words, value in zip(map(float, itertools.chain(*said)), filter(None, exact), strict=True):
             assert value * (1.0 - 1e-9) <= words < 1.01 * value + 1.0
@@ -110,7 +114,7 @@ def test_more_margin_asks_for_more():
     one, more = (rk.assess(CABINET, record(6.0), [0.85], count=16, margin=margin).remedies for margin in (1.0, 1.5))
     assert more.tension["left"] - one.tension["left"] == pytest.approx(0.5 * 650.0 * 6.0 * 0.9 / 0.8, rel=1e-3)
     assert more.shear == pytest.approx(1.5 * one.shear)
-    assert more.wider.lifts_not > one.wider.lifts_not
+    assert more.wider.length_no_uplift > one.wider.length_no_uplift
 
 
 def test_two_components_are_turned():
@@ -171,8 +175,10 @@ def test_one_restitution_needs_no_list():
 
 def test_no_history_with_a_result(monkeypatch):
     """Where no history has a result nothing is said but that: no margin, no remedy that would rest on histories."""
-    unknown = SimpleNamespace(fell_each=np.full((2, 1, 1), np.nan), least_each=np.full((2, 1), np.nan))
-    unknown.overturned = unknown.fell_each[0]
+    unknown = SimpleNamespace(
+        overturned_by_polarity=np.full((2, 1, 1), np.nan), min_factors_by_polarity=np.full((2, 1), np.nan)
+    )
+    unknown.overturned = unknown.overturned_by_polarity[0]
     monkeypatch.setattr(Margins, "of", lambda *_: unknown)
     found = rk.assess(CABINET, record(6.0), [0.9], count=8)
     assert found.verdict == "No history has a result; overturning cannot be assessed."

@@ -124,7 +124,7 @@ def test_resurrection_is_said(run, answered):
     assert low["interval"][1] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
     assert high["interval"][0] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
     assert result["resurrected_motions_over_1_percent"] == [0]
-    assert "1 of 1 motion left it standing at levels above one that overturns it" in run(*words, "--details")[1]
+    assert "1 of 1 motion does not overturn the body at levels above a level that does" in run(*words, "--details")[1]
 
 
 def test_cloud(run, answered, motions):
@@ -283,7 +283,7 @@ def test_curves_that_cross_can_be_refused(run, answered, tmp_path):
     code, _, err = run(*refuse, "--output", tmp_path / "n.xml")
     assert code == 2
     assert err.startswith("rocking: curves must not cross")
-    assert "--crossing-curves keep-uplift fits one for all states but rocking" in err
+    assert "--crossing-curves keep-uplift fits one dispersion" in err
     assert list(tmp_path.iterdir()) == []
     assert run(*refuse, "--output", tmp_path / "m.mat")[0] == 0
 
@@ -305,7 +305,7 @@ def test_states_are_chosen(run, answered, tmp_path):
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", "0.2,overturning", "--output", f"p58={file}")
     assert code == 2
     assert "They are kept, since no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
-    assert "leave one out with --limit-states" in err
+    assert "Select fewer states with --limit-states" in err
     for bad in ("falling", "overturned", "0.5,0.2,rocking", "rocking,rocking", ""):
         code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", bad)
         assert code == 2, bad

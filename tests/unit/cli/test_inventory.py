@@ -80,7 +80,7 @@ def test_in_german_with_a_plan(printed, objects):
         "Standfläche auf jeder Seite",
     ):
         assert words in out
-    assert "Stays still" not in out
+    assert "No uplift below" not in out
     english = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=el")
     assert "in the language el, of which there are no words yet" in english
     assert "First measures" in english
@@ -126,7 +126,7 @@ def test_columns_are_said_alike_at_every_door(answered, refuses, tmp_path):
     (tmp_path / "objects.csv").write_text("Ding;Maß 1;Maß 2;Maß 3\nUrne;12,5;20;90\n", encoding="utf-8")
     columns = "Ding=name, Maß 1=width_cm, Maß 2=depth_cm, Maß 3=height_cm"
     few = ("--synthetic", "point-source", "--count", "5")
-    refuses((tmp_path / "objects.csv", "--pga", "0.3g", *few), "the first line must name the columns")
+    refuses((tmp_path / "objects.csv", "--pga", "0.3g", *few), "the first line must contain the columns")
     by_option = answered(tmp_path / "objects.csv", "--map-columns", columns, "--pga", "0.3g", *few)
     table = f'objects = "objects.csv"\npga = "0.3g"\nmap_columns = "{columns}"'
     motions = '[[motions]]\nsynthetic = "point-source"\ncount = 5\nseed = 1'

@@ -195,7 +195,7 @@ def test_zero_motion_has_no_amplitude():
     """What is zero throughout cannot be scaled to anything."""
     still = rk.GroundMotion([0.0, 0.0, 0.0], 0.1)
     for name in ("scale", "pga", "pgv", "amplitude_ratio"):
-        with pytest.raises(InvalidValueError, match="zero throughout"):
+        with pytest.raises(InvalidValueError, match="the motion is zero"):
             case((name, 1.0), ("semi_diagonal", 1.0), motion=still)
 
 
@@ -225,7 +225,7 @@ def test_a_law_of_impact_does_not_multiply_an_axis_of_restitution():
     """Coefficients on an axis are what they say: a law, whose factors would multiply them, is refused."""
     axes = ("restitution", [0.8, 0.9]), ("scale", [1.0])
     for law in (SpeedRestitution([0.0, 1.0], [0.9, 0.7]), rk.dynamics.RandomRestitution.normal(0.9, 0.01, seed=1)):
-        with pytest.raises(InvalidValueError, match="restitution is an axis: leave the law of impact out, got "):
+        with pytest.raises(InvalidValueError, match="restitution is an axis. Remove the impact law, got "):
             Plane.of(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.6), *axes, law, gravity=9.81)
 
 
@@ -233,8 +233,8 @@ def test_a_scale_of_zero_has_no_velocity():
     """A motion scaled to nothing cannot be stretched to a velocity: refused in one sentence, without warnings."""
     axes = ("scale", [-1.0, 0.0, 1.0]), ("pgv", [0.5])
     for x, y in (axes, axes[::-1]):
-        with pytest.raises(InvalidValueError, match="pgv cannot be set where the scale is 0"):
+        with pytest.raises(InvalidValueError, match="pgv cannot be set for scale 0"):
             Plane.of(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.6), x, y, 0.9, gravity=9.81)
     between = Plane.of(BLOCK, PULSE, ("scale", [-1.0, 1.0]), axes[1], 0.9, gravity=9.81)
-    with pytest.raises(InvalidValueError, match="pgv cannot be set where the scale is 0"):
+    with pytest.raises(InvalidValueError, match="pgv cannot be set for scale 0"):
         between.case(np.zeros(1), np.full(1, 0.5))

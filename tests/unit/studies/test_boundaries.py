@@ -210,7 +210,7 @@ def test_words_of_islands():
         "Safe islands: 2, with 3 of 42 cells. A safe island is a region of cells that do not overturn,"
     )
     assert "Cells still rocking at the end of the computation: 1 of 3" in words
-    assert "Islands between two ways to overturn: 1 of 2" in words
+    assert "Islands between two modes of overturning: 1 of 2" in words
     assert [(each.modes, each.is_between_modes, each.still_rocking) for each in safe_islands(found).islands] == [
         ((0, 1), True, 0), ((1,), False, 0),
     ]  # fmt: skip

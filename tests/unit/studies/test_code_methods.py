@@ -138,7 +138,7 @@ def test_the_interval_of_the_median_draws_whole_motions():
 def test_methods_are_chosen_by_name():
     one = compare_code_methods(SMALL, PULSES[0], methods=["ishiyama"], restitution="ked")
     assert [each.name for each in one.methods] == ["ishiyama"]
-    assert one.levels == ("as they are",)
+    assert one.levels == ("as recorded",)
 
 
 @pytest.mark.parametrize("method", CODE_METHODS.values(), ids=list(CODE_METHODS))
@@ -149,9 +149,9 @@ def test_every_method_says_where_it_stands(method):
 
 def test_what_is_refused():
     box = rk.dynamics.SpatialBody.box(width=0.3, depth=0.3, height=1.0)
-    with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
+    with pytest.raises(InvalidValueError, match="code methods need plane bodies"):
         BodySides.of([box])
-    with pytest.raises(InvalidValueError, match="code methods know plane bodies"):
+    with pytest.raises(InvalidValueError, match="code methods need plane bodies"):
         compare_code_methods(box, PULSES, restitution="ked")
     with pytest.raises(InvalidValueError, match="at least one body"):
         compare_code_methods([], PULSES, restitution="ked")
@@ -171,7 +171,7 @@ def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():
     assert np.array_equal(one.overturning, twin.overturning)
     assert one.asymmetric.all()
     assert one.overturning[0] == one.overturning[1]
-    ways = [Margins.of(LARGE, pushes, r, "pga", None, {}).least_each for r in (pair, 0.9)]
+    ways = [Margins.of(LARGE, pushes, r, "pga", None, {}).min_factors_by_polarity for r in (pair, 0.9)]
     assert [len(each) for each in ways] == [2, 1]
     assert ways[0][0][0] != pytest.approx(ways[0][1][0], rel=0.01)
 

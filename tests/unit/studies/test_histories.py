@@ -210,7 +210,7 @@ def test_laws_that_do_not_say_what_makes_them_are_refused():
 def test_contents_that_are_not_plain_are_refused():
     """What a law says of itself must be writable as JSON, without NaN."""
     for value in (np.ones(2), float("inf")):
-        with pytest.raises(InvalidValueError, match="must be finite numbers, words, lists"):
+        with pytest.raises(InvalidValueError, match="must contain finite numbers, texts, lists"):
             product(law=Told(value)).key()
 
 

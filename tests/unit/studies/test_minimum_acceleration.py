@@ -214,7 +214,7 @@ def test_the_properties_say_that_they_hold_among_the_samples():
     """Minimum and certainty of a search are what was sampled, in the words that every reader of the class sees."""
     for words, where in ((Transitions.minimum.__doc__, "below"), (Transitions.certain.__doc__, "above")):
         assert "sampled" in words
-        assert f"under a record thinner {'stretches' if where == 'below' else 'gaps'} may lie {where}" in words
+        assert f"under a record narrower {'intervals' if where == 'below' else 'gaps'} may lie {where}" in words
 
 
 def test_samples_up_to_the_first_fall():
@@ -235,5 +235,5 @@ def test_what_is_printed_says_where_it_overturns():
     low, high = found.overturning_intervals[0]
     assert repr(found).startswith(f"<Transitions: overturns from {low:.4g} to {high:.4g}")
     little = minimum_overturning_acceleration(BLOCK, SINE, "housner", max_pga=1.01 * found.uplift_acceleration)
-    assert repr(little).startswith("<Transitions: stands; searched from ")
+    assert repr(little).startswith("<Transitions: does not overturn; searched from ")
     assert "array" not in repr(found) + repr(rk.simulate(BLOCK, SINE.scaled(3.0), restitution="ked").contact)

@@ -186,7 +186,7 @@ def test_inventories_say_it():
     (heavy,) = (of_heavy := assess([item], Hazard.of_records(HEAVY))).verdicts
     (light,) = (of_light := assess([item], Hazard.of_records(LIGHT))).verdicts
     assert heavy.worse.lost_contact > 0
-    assert f"In {heavy.worse.lost_contact} of them the ground would have to pull" in sentence(heavy, of_heavy)
+    assert f"In {heavy.worse.lost_contact} of them the contact force becomes tensile" in sentence(heavy, of_heavy)
     assert light.worse.lost_contact == 0
     assert "pull" not in sentence(light, of_light)
 

@@ -142,7 +142,7 @@ def test_functions_without_a_name_are_refused():
         return bump(values, held, step)
 
     for make in (lambda v, n, s: bump(v, n, 2.0 * s), partial(bump), closure, Maker(1.0), Maker(1.0).make):
-        with pytest.raises(InvalidValueError, match="must be a function with a name that holds no other values"):
+        with pytest.raises(InvalidValueError, match="must be a named function without bound values"):
             SyntheticSet(own(make), 3, 1).description()
 
     class Silent(Uniform):

@@ -49,7 +49,7 @@ class InventoryTable(JobTable):
     @model_validator(mode="after")
     def _one_level(self) -> "InventoryTable":
         if self.pga is not None and self.pgv is not None:
-            raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
+            raise InvalidValueError("Use pga or pgv, not both.")
         return self
 
 
@@ -79,7 +79,9 @@ class InventoryQuestion(StudyQuestion):
                     hint="how strong it is stands in [inventory]",
                 )  # fmt: skip
         if families and self.inventory.pga is None and self.inventory.pgv is None:
-            raise InvalidValueError('how strong is the shaking? [inventory] needs pga = "0.3g" or pgv = "25cm/s"')
+            raise InvalidValueError(
+                'The intensity level is missing. Add pga = "0.3g" or pgv = "25cm/s" to [inventory].'
+            )
         return self
 
     def read(

@@ -113,7 +113,9 @@ class MapQuestion(BodyQuestion):
                 for restitution in problem.restitutions.values()
             ]
             if len(questions) > 1 and "restitution" in {x.name, y.name}:
-                raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
+                raise InvalidValueError(
+                    "restitution cannot be an axis in a comparison of restitutions; leave one model"
+                )
             planes = [Plane(question, x, y) for question in questions]
             histories = MapHistories.of(planes)
         several = {"restitution": len(planes)} if len(planes) > 1 else {}

@@ -1,4 +1,4 @@
-"""Code methods: how published rules judge a rocking body, and how far that is from what its histories show."""
+"""Code methods: published overturning criteria, compared with histories."""
 
 from rocking.studies.code_methods.comparison import CalledSafe, CodeComparison, compare_code_methods
 from rocking.studies.code_methods.methods import CODE_METHODS, LEFT_OUT

@@ -1,4 +1,4 @@
-"""Code methods beside histories: what each says of bodies, and what then happens to them under a set of motions."""
+"""Compare code methods with histories of bodies under a set of motions."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -22,47 +22,47 @@ from rocking.studies.fragility.subject import checked_levels
 from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.remedies import Margins
 
-MEASURE = "pga/(g tan alpha)"  # of levels, where nobody says another
+MEASURE = "pga/(g tan alpha)"  # default measure of the levels
 REPETITIONS, TAIL = 1000, 0.025
-AT_MOST = 1.0 + 1e-9  # a demand that is all of the capacity passes: the clauses say "at least" [-]
-FACTS = "title", "reference", "domain", "reading", "example", "vertical_motion"  # words of each method
-QUARTERS = 0.16, 0.5, 0.84  # quantiles that give median and scatter [-]
+AT_MOST = 1.0 + 1e-9  # largest demand over capacity of a safe case: the clauses require "at least" [-]
+FACTS = "title", "reference", "domain", "reading", "example", "vertical_motion"  # texts of each method
+QUARTERS = 0.16, 0.5, 0.84  # quantiles of median and scatter [-]
 
 
 @dataclass(frozen=True)
 class Bias:
-    """How a method's capacity compares with the intensity that overturns: method over truth."""
+    """Ratio of the capacity of a method to the overturning intensity of the histories."""
 
-    # median ratio; above 1 the method takes a body for stronger than it is; 0 where a ratio below all others enters [-]
+    # median ratio; above 1 the method is not conservative; 0 if censored ratios enter [-]
     median: float
-    # 95 % interval of the median, by drawing whole motions again; NaN of fewer than five [-]
+    # 95 % interval of the median, by resampling motions; NaN for fewer than five motions [-]
     interval: tuple[float, float]
-    # half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite where too many motions do
-    # not overturn within the range that was searched, NaN of fewer than five motions [-]
+    # half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite if too many motions do not
+    # overturn within the searched range, NaN for fewer than five motions [-]
     scatter: float
-    # count, censored: pairs of a motion and a body, and those of them which no level overturned: their ratio lies
-    # below all others
+    # count, censored: numbers of pairs of a motion and a body, and of pairs without overturning at any level: their
+    # ratio lies below all others
     count: int
     censored: int
 
 
 @dataclass(frozen=True)
 class CalledSafe:
-    """Those that a method calls safe, and how many of them overturn.
+    """Numbers of cases that a method rates safe, and that overturn.
 
     Parameters
     ----------
     total : int
-        Cases whose histories were computed and that lie in the method's domain [-].
+        Number of cases with computed histories in the domain of the method [-].
     safe : int
-        Cases that it calls safe [-].
+        Number of cases rated safe [-].
     overturned : int
-        Cases of these that overturn [-].
+        Number of safe cases that overturn [-].
     ratio : float
-        Median of demand over capacity, above 1 where it does not call the case safe [-].
+        Median of demand over capacity, above 1 for cases not rated safe [-].
     interval : tuple of float, optional
-        95 % interval of the share that overturns; None where nothing is called safe, or of fewer than five motions some
-        are, in some of which it overturns [-].
+        95 % interval of the overturning fraction; None without safe cases, or with partial overturning under fewer than
+        five motions [-].
     """
 
     total: int
@@ -73,13 +73,13 @@ class CalledSafe:
 
     @property
     def share(self) -> float:
-        """Share that overturns of those that are called safe; NaN where there are none [-]."""
+        """Overturning fraction of the cases rated safe; NaN without such cases [-]."""
         return self.overturned / self.safe if self.safe else math.nan
 
 
 @dataclass(frozen=True, eq=False)
 class CodeComparison:
-    """What methods say of bodies under motions, and what histories show.
+    """Capacities of bodies by code methods, with the outcomes of histories.
 
     Parameters
     ----------
@@ -88,23 +88,23 @@ class CodeComparison:
     bodies, motions : tuple of str
         Their names.
     levels : tuple of str
-        What the motions were brought to, in words.
+        Levels of the scaled motions, as text.
     capacity : ndarray, shape (methods, motions, bodies)
-        Factor on each motion up to which a method calls a body safe; NaN outside its domain [-].
+        Limit factor of each motion by method and body; NaN outside the domain [-].
     overturning : ndarray, shape (motions, bodies)
-        Least factor that overturns, of either way round; infinite if none did, NaN without a result [-].
+        Smallest overturning factor, both polarities; infinite if none overturns, NaN without a result [-].
     factors : ndarray, shape (motions, bodies, levels)
-        Factors that bring the motions to the levels [-].
+        Scale factors of the motions at the levels [-].
     overturned : ndarray, shape (motions, bodies, levels)
-        1 where a body overturns at a level, of either way round; NaN without a result [-].
+        1 if a body overturns at a level in one of both polarities; NaN without a result [-].
     asymmetric : ndarray, shape (bodies,)
-        Whether the worse side of a body counts.
+        True for bodies with two polarities.
     restitution : str
-        Of the histories, in words.
+        Restitution of the histories, as text.
     outside : dict of str to str
-        By method, what excludes bodies or motions from its domain; empty where nothing does.
+        Reasons for excluded bodies or motions by method; empty without any.
     vertical : int
-        Number of motions with a vertical part.
+        Number of motions with a vertical component.
     sources : tuple of MotionSummary
         Intensity, source and processing of each motion.
     """
@@ -124,56 +124,55 @@ class CodeComparison:
     sources: tuple[MotionSummary, ...] = ()
 
     def called_safe(self, method: str, body: int | slice = slice(None), level: int | slice = slice(None)) -> CalledSafe:
-        """Return how many a method calls safe, of all bodies and levels or of one, and how many of these overturn.
+        """Return the numbers of safe and of overturned safe cases of a method, for all or one of bodies and levels.
 
         Parameters
         ----------
         method : str
             Name of the method.
         body, level : int, optional
-            Numbers of one body and one level; all together if not given.
+            Indices of one body and one level; default: all together.
 
         Returns
         -------
         CalledSafe
-            The interval is exact for one body at one level, else by drawing whole motions again.
+            Counts and interval; the interval is exact for one body at one level, else from resampled motions.
         """
-        ratio = (self.factors / self.capacity[self._place(method)][:, :, None])[:, body, level]
-        fell = self.overturned[:, body, level]
-        known = np.isfinite(ratio) & ~np.isnan(fell)
-        safe = known & (ratio <= AT_MOST)
-        rows = [np.reshape(each, (len(self.motions), -1)).sum(axis=1) for each in (safe & (fell == 1.0), safe)]
+        ratio = (self.factors / self.capacity[self._index(method)][:, :, None])[:, body, level]
+        fallen = self.overturned[:, body, level]
+        valid = np.isfinite(ratio) & ~np.isnan(fallen)
+        safe = valid & (ratio <= AT_MOST)
+        rows = [np.reshape(flags, (len(self.motions), -1)).sum(axis=1) for flags in (safe & (fallen == 1.0), safe)]
         hits, count = (int(row.sum()) for row in rows)
         interval = None
         alone = isinstance(body, int) and isinstance(level, int)
-        if count and (alone or hits in {0, count}):  # none or all: no draw would show anything else
+        if count and (alone or hits in {0, count}):  # none or all: all samples are equal
             independent = count if alone else int((rows[1] > 0.0).sum())
             interval = share_interval(min(hits, independent), independent)
         elif count and (rows[1] > 0.0).sum() >= LEAST_CLUSTERS:
-            again = np.stack(rows, axis=1)[self._drawn].sum(axis=1)
-            shares = again[:, 0] / np.where(again[:, 1] > 0.0, again[:, 1], np.nan)
-            interval = _ends(shares)
-        middle = float(quantiles(ratio[known], 0.5))
-        return CalledSafe(int(known.sum()), count, hits, middle, interval)
+            resampled = np.stack(rows, axis=1)[self._samples].sum(axis=1)
+            interval = _ends(resampled[:, 0] / np.where(resampled[:, 1] > 0.0, resampled[:, 1], np.nan))
+        middle = float(quantiles(ratio[valid], 0.5))
+        return CalledSafe(int(valid.sum()), count, hits, middle, interval)
 
     def bias(self, method: str, body: int | None = None) -> Bias:
-        """Return how a method's capacity compares with what overturns, of all bodies or of one.
+        """Return the bias of a method for all bodies or one.
 
         Parameters
         ----------
         method : str
             Name of the method.
         body : int, optional
-            Number of the body; all together if not given.
+            Index of the body; default: all together.
 
         Returns
         -------
         Bias
-            Median, interval and scatter; NaN where no pair has both.
+            Median, interval and scatter; NaN without a valid pair.
         """
-        chosen = slice(None) if body is None else slice(body, body + 1)
-        truth = self.overturning[:, chosen]
-        ratio = self.capacity[self._place(method)][:, chosen] / truth  # Eq. 303
+        columns = slice(None) if body is None else slice(body, body + 1)
+        truth = self.overturning[:, columns]
+        ratio = self.capacity[self._index(method)][:, columns] / truth  # Eq. 303
         good = np.isfinite(ratio)
         if not good.any():
             return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)
@@ -182,51 +181,51 @@ class CodeComparison:
         low, middle, high = np.maximum(quantiles(sample.ravel(), QUARTERS), 0.0).tolist()
         interval, scatter = (math.nan, math.nan), math.nan
         if good.any(axis=1).sum() >= LEAST_CLUSTERS:
-            medians = quantiles(sample[self._drawn].reshape(REPETITIONS, -1), 0.5, axis=1)
+            medians = quantiles(sample[self._samples].reshape(REPETITIONS, -1), 0.5, axis=1)
             interval = _ends(np.maximum(medians, 0.0))
             scatter = 0.5 * math.log(high / low) if low > 0.0 else math.inf
         return Bias(middle, interval, scatter, int(good.sum()), int((good & np.isinf(truth)).sum()))
 
     def answer(self) -> Answer:
-        """Return everything that is shown.
+        """Return the complete result.
 
         Returns
         -------
         Answer
-            By method: where it stands, and for every body its bias and what it calls safe at every level.
+            By method: its source, and for every body the bias and the safe cases at every level.
         """
         numbers = range(len(self.bodies))
         return Answer({
             "bodies": list(self.bodies),
             "worse_side_counts": self.asymmetric.tolist(),
             "motions": list(self.motions),
-            "sources": [each.answer() for each in self.sources],
+            "sources": [source.answer() for source in self.sources],
             "levels": list(self.levels),
             "restitution": self.restitution,
             "motions_with_vertical": self.vertical,
             "methods": {
-                one.name: {
-                    **{name: getattr(one, name) for name in FACTS},
-                    "outside": self.outside.get(one.name, ""),
-                    "bias": [vars(self.bias(one.name, k)) for k in numbers],
+                method.name: {
+                    **{name: getattr(method, name) for name in FACTS},
+                    "outside": self.outside.get(method.name, ""),
+                    "bias": [vars(self.bias(method.name, k)) for k in numbers],
                     "called_safe": [
-                        [_facts(self.called_safe(one.name, k, j)) for j in range(len(self.levels))] for k in numbers
+                        [_facts(self.called_safe(method.name, k, j)) for j in range(len(self.levels))] for k in numbers
                     ],
                     "all_bodies": {
-                        "bias": vars(self.bias(one.name)), "called_safe": _facts(self.called_safe(one.name)),
+                        "bias": vars(self.bias(method.name)), "called_safe": _facts(self.called_safe(method.name)),
                     },
                 }
-                for one in self.methods
+                for method in self.methods
             },
         })  # fmt: skip
 
-    def _place(self, method: str) -> int:
-        names = [each.name for each in self.methods]
+    def _index(self, method: str) -> int:
+        names = [known_method.name for known_method in self.methods]
         return names.index(checks.one_of("method", method, names))
 
     @cached_property
-    def _drawn(self) -> IntArray:
-        """Numbers of the motions that are drawn with replacement, one row a repetition."""
+    def _samples(self) -> IntArray:
+        """Indices of motions sampled with replacement, one row per repetition."""
         count = len(self.motions)
         times = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), REPETITIONS)
         return np.repeat(np.tile(np.arange(count), REPETITIONS), times.ravel()).reshape(REPETITIONS, count)
@@ -254,12 +253,12 @@ def compare_code_methods(
     methods: Sequence[str] | None = None,
     **options: Any,
 ) -> CodeComparison:
-    """Say of bodies what code methods say, and compute under the same motions what happens to them.
+    """Compare the capacities of bodies by code methods with their histories under the same motions.
 
-    A body that is not symmetric is judged by its worse side, and its histories are computed both ways round: it
-    overturns where either does. The intensity that overturns is the least factor on each motion that was found to, at
-    64 levels in equal ratios and six halvings, up to 50 times what lifts the body or the largest acceleration that was
-    ever recorded; a thinner stretch below may have been missed.
+    An unsymmetric body is rated by its worse side, and its histories are computed for both polarities; overturning in
+    one polarity counts. The overturning intensity is the smallest overturning factor of each motion, from 64 levels in
+    equal ratios and 6 bisections. The search ends at 50 times uplift or the largest recorded acceleration; a narrow
+    overturning interval below the result may be missed.
 
     Parameters
     ----------
@@ -268,13 +267,13 @@ def compare_code_methods(
     motions : GroundMotion, Pulse, MotionSet or a sequence
         The motions; each method's `vertical_motion` is its treatment of their vertical part.
     restitution : as for `simulate`
-        Of the histories.
+        Restitution of the histories.
     levels : array_like, optional
-        To what every motion is brought; as they are if not given [unit of the measure].
+        Levels of the scaled motions; default: unscaled [unit of the measure].
     im : str or IntensityMeasure
-        The measure of the levels; of ``pga/(g tan alpha)`` 2 is the limit of the Italian linear check.
+        The measure of the levels; the limit of the Italian linear check is 2 in ``pga/(g tan alpha)``.
     methods : sequence of str, optional
-        Names of `CODE_METHODS`; all if not given.
+        Names of `CODE_METHODS`; default: all.
     **options
         ``threads``, ``progress`` (called with the number of histories done since the last call), ``gravity`` [m/s2],
         ``engine``, ``friction`` and other fields of `Settings`.
@@ -287,41 +286,43 @@ def compare_code_methods(
     Raises
     ------
     InvalidValueError
-        If a body is not plane, a motion is zero throughout, or a value is outside its range.
+        If a body is not plane, a motion is zero, or a value is outside its range.
 
     Examples
     --------
     >>> import rocking as rk
     >>> small, large = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8)]
-    >>> found = compare_code_methods([small, large], pulses, "housner", levels=[1.9])
-    >>> [found.called_safe("italian-linear", body, 0).share for body in (0, 1)]
+    >>> comparison = compare_code_methods([small, large], pulses, "housner", levels=[1.9])
+    >>> [comparison.called_safe("italian-linear", body, 0).share for body in (0, 1)]
     [1.0, 0.0]
     """
-    several: list[Any] = list(bodies) if isinstance(bodies, Sequence) else [bodies]
-    if not several:
+    all_bodies: list[Any] = list(bodies) if isinstance(bodies, Sequence) else [bodies]
+    if not all_bodies:
         raise InvalidValueError("bodies must be at least one body, got none")
-    chosen = tuple(CODE_METHODS[checks.one_of("methods", each, list(CODE_METHODS))] for each in methods or CODE_METHODS)
+    selected = tuple(
+        CODE_METHODS[checks.one_of("methods", name, list(CODE_METHODS))] for name in methods or CODE_METHODS
+    )
     gravity = options.get("gravity")
-    sides = BodySides.of(several) if gravity is None else BodySides.of(several, gravity)
-    kept = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
-    shaking, level = Shaking.of(kept), measure_of(im)
+    sides = BodySides.of(all_bodies) if gravity is None else BodySides.of(all_bodies, gravity)
+    motion_list = MotionList([motions[k] for k in range(len(motions))] if isinstance(motions, MotionSet) else motions)
+    shaking, level = Shaking.of(motion_list), measure_of(im)
     at = None if levels is None else checked_levels("levels", levels, level.unit)
-    cases = [Margins.of(body, kept, restitution, level, at, options) for body in several]
+    cases = [Margins.of(body, motion_list, restitution, level, at, options) for body in all_bodies]
     return CodeComparison(
-        methods=chosen,
-        bodies=tuple(map(repr, several)),
+        methods=selected,
+        bodies=tuple(map(repr, all_bodies)),
         motions=tuple(motion.name for motion in shaking.motions),
-        levels=("as they are",)
+        levels=("as recorded",)
         if at is None
         else tuple(f"{level.name} = {value:g} {level.unit}".removesuffix(" -") for value in at),
-        capacity=np.array([each.capacity(sides, shaking) for each in chosen]),
-        overturning=np.stack([each.least for each in cases], axis=1),
-        factors=np.stack([each.factors for each in cases], axis=1),
-        overturned=np.stack([each.overturned for each in cases], axis=1),
-        asymmetric=np.array([len(each.least_each) > 1 for each in cases]),
+        capacity=np.array([method.capacity(sides, shaking) for method in selected]),
+        overturning=np.stack([case.min_factors for case in cases], axis=1),
+        factors=np.stack([case.factors for case in cases], axis=1),
+        overturned=np.stack([case.overturned for case in cases], axis=1),
+        asymmetric=np.array([len(case.min_factors_by_polarity) > 1 for case in cases]),
         restitution=cases[0].label,
-        outside={each.name: each.outside(sides, shaking) for each in chosen},
+        outside={method.name: method.outside(sides, shaking) for method in selected},
         vertical=int(shaking.vertical.sum()),
-        sources=summaries_of(kept),
+        sources=summaries_of(motion_list),
     )

@@ -1,4 +1,4 @@
-"""Code methods as published: what they are told of bodies and motions; what could not be read is in `LEFT_OUT`."""
+"""Published code methods with their inputs; `LEFT_OUT` lists the methods without a readable source."""
 
 import math
 from abc import ABC, abstractmethod
@@ -21,7 +21,7 @@ from rocking.motions.spectrum import response_spectrum
 
 @dataclass(frozen=True)
 class BodySides:
-    """Bodies seen from either foot, one row a body, right and left in a column each."""
+    """Dimensions of bodies about their feet: one row per body, columns right and left."""
 
     half_width: FloatArray  # horizontal distance b from the foot to the centre of mass [m]
     height: FloatArray  # height h of the centre of mass [m]
@@ -30,12 +30,12 @@ class BodySides:
 
     @classmethod
     def of(cls, bodies: Sequence[Body], gravity: float = g) -> "BodySides":
-        """Return what the methods see of plane bodies; gravity: [m/s2]."""
+        """Return the dimensions of plane bodies; gravity: [m/s2]."""
         for body in bodies:
             if not isinstance(body, Body):
                 raise InvalidValueError(
-                    "code methods know plane bodies, got {value}", parameter="body", value=body,
-                    hint="a solid stands in a plane by in_plane(azimuth)",
+                    "code methods need plane bodies, got {value}", parameter="body", value=body,
+                    hint="Use in_plane(azimuth) of a solid.",
                 )  # fmt: skip
         sides = [[body.side(foot, gravity) for foot in FEET[::-1]] for body in bodies]
         names = "half_width", "centre_height", "frequency_parameter"
@@ -60,15 +60,15 @@ class BodySides:
 
     @property
     def symmetric(self) -> BoolArray:
-        """Whether both feet of each body are equally far from its centre."""
+        """True for bodies with feet at equal distances from the centre."""
         right, left = self.half_width.T
         return np.asarray(np.isclose(right, left, rtol=1e-9, atol=0.0))
 
     @property
     def rectangle(self) -> BoolArray:
-        """Whether each body rocks as a rectangle does: symmetric, and about a foot 4/3 m R^2."""
-        like = np.isclose(self.inertia, 4.0 / 3.0 * (1.0 + self.slope**2), rtol=1e-6)
-        return np.asarray(self.symmetric & like.all(axis=1))
+        """True for bodies with the dynamics of a rectangle: symmetric, with 4/3 m R^2 about a foot."""
+        has_inertia = np.isclose(self.inertia, 4.0 / 3.0 * (1.0 + self.slope**2), rtol=1e-6)
+        return np.asarray(self.symmetric & has_inertia.all(axis=1))
 
     @property
     def uplift(self) -> FloatArray:
@@ -78,13 +78,13 @@ class BodySides:
 
 @dataclass(frozen=True)
 class Shaking:
-    """Motions as the methods see them: peaks, and the spectrum of each."""
+    """Motions of the methods, with their peaks and spectra."""
 
     motions: tuple[GroundMotion, ...]
 
     @classmethod
     def of(cls, motions: Any) -> "Shaking":
-        """Return what the methods see of motions: leading components, pulses sampled finely."""
+        """Return the leading components of motions; pulses are sampled finely."""
         return cls(tuple(sampled(leading(motions[k])) for k in range(len(motions))))
 
     def _peaks(self, name: str) -> FloatArray:
@@ -102,9 +102,9 @@ class Shaking:
 
     @cached_property
     def vertical(self) -> BoolArray:
-        """Whether each motion has a vertical part, of shape (motions, 1)."""
-        parts = [getattr(each, "vertical", None) for each in self.motions]
-        return np.array([[part is not None and bool(np.any(part))] for part in parts])
+        """True for motions with a vertical component, of shape (motions, 1)."""
+        components = [getattr(motion, "vertical", None) for motion in self.motions]
+        return np.array([[component is not None and bool(np.any(component))] for component in components])
 
     def uplift_demand(self, slope: FloatArray) -> FloatArray:
         """Return the largest |horizontal| - slope * vertical acceleration of each motion, by slope [m/s2].
@@ -118,8 +118,8 @@ class Shaking:
         return demand
 
     def spectra(self, periods: FloatArray, damping: float) -> FloatArray:
-        """Return pseudo-spectral accelerations of every motion [m/s2] at periods [s] and a damping ratio [-]."""
-        return np.array([response_spectrum(each, periods, damping).pseudo_acceleration for each in self.motions])
+        """Return pseudo-spectral accelerations of all motions [m/s2] at periods [s] and a damping ratio [-]."""
+        return np.array([response_spectrum(motion, periods, damping).pseudo_acceleration for motion in self.motions])
 
 
 class VerticalMotion(Enum):
@@ -132,36 +132,36 @@ class VerticalMotion(Enum):
 
 
 class CodeMethod(ABC):
-    """One published way to tell without a history whether a body overturns.
+    """Base of published overturning criteria, which need no history.
 
-    Its class attributes say where it stands and how sure we are of the reading; a body that is not symmetric is
-    judged on either side, and the worse one counts.
+    Class attributes contain the source and the reliability of the reading. An unsymmetric body is checked on both
+    sides; the worse side decides.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
     reference: ClassVar[str]  # with clause or equation
     domain: ClassVar[str]
-    reading: ClassVar[str]  # how sure we are that this is what the source says
-    example: ClassVar[str] = "none of the source was at hand"  # with what numbers of the source it was compared
+    reading: ClassVar[str]  # reliability of the reading of the source
+    example: ClassVar[str] = "none of the source was at hand"  # numbers for comparison
     vertical: ClassVar[VerticalMotion] = VerticalMotion.NOT_CONSIDERED
-    vertical_rule: ClassVar[str] = ""  # how vertical motion enters, or why not
+    vertical_rule: ClassVar[str] = ""  # rule of vertical motion, or reason of its exclusion
 
     @property
     def vertical_motion(self) -> str:
-        """Treatment of vertical motion with its rule, to be read after the name of the method."""
+        """Treatment of vertical motion with its rule, as continuation of the name of the method."""
         return ": ".join(filter(None, (self.vertical.value, self.vertical_rule)))
 
     @abstractmethod
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion at which the limit is reached, fitting (motions, bodies, 2) [-]."""
+        """Return the scale factor of every motion at the limit, of a shape fitting (motions, bodies, 2) [-]."""
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
         """Return flags of the excluded bodies and motions by the reason, fitting (motions, bodies)."""
         return {}
 
     def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
-        """Return whether a body under a motion is in the domain, of shape (motions, bodies)."""
+        """Return True for motions and bodies in the domain, of shape (motions, bodies)."""
         excluded = np.zeros((len(shaking.motions), len(sides.slope)), dtype=np.bool_)
         for flags in self.exclusions(sides, shaking).values():
             excluded |= flags
@@ -172,7 +172,7 @@ class CodeMethod(ABC):
         return ", ".join(reason for reason, flags in self.exclusions(sides, shaking).items() if np.any(flags))
 
     def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Return the factor on every motion up to which a body is safe, by its worse side; NaN outside the domain."""
+        """Return the limit factor of every motion for the worse side of a body [-]; NaN outside the domain."""
         shape = (len(shaking.motions), *sides.slope.shape)
         worse = np.broadcast_to(self.of_sides(sides, shaking), shape).min(axis=2)
         return np.where(self.holds(sides, shaking), worse, np.nan)
@@ -184,7 +184,7 @@ class StaticOverturning(CodeMethod):
     name = "static"
     title = "static overturning (West)"
     reference = "West's criterion, a = g b/h: equilibrium of moments about the foot"
-    domain = "any body; says when it lifts, so it is safe for every motion"
+    domain = "any body; the limit is uplift, so it is safe for every motion"
     vertical = VerticalMotion.CONSIDERED
     vertical_rule = "the vertical acceleration changes the weight at each sample"
     reading = "certain: it is the equilibrium of moments about the foot"
@@ -262,9 +262,9 @@ class AsceRocking(CodeMethod):
         "capacity is no less than the demand, without the standard's factors of safety"
     )
     reading = (
-        "low: structure and symbols seen at the head of A.2, equations derived here from the energy of the body; "
-        "margins were not read, nor which of several rotations that balance counts: the largest here, as A.1 words it "
-        "for sliding (lowest frequency); if any up to alpha would do, limits would be up to several times as high"
+        "low: structure and symbols from the head of A.2, equations derived here from the energy of the body; margins "
+        "were not read, nor the choice between several balanced rotations: the largest here, as in A.1 for sliding "
+        "(lowest frequency); with any rotation up to alpha, limits would be up to several times as high"
     )
     example = "closed form: C_R of a rectangle is Housner's coefficient"
     vertical = VerticalMotion.EXCLUDED
@@ -292,7 +292,7 @@ class AsceRocking(CodeMethod):
         """Return period [s] and capacity [m/s2] at a rotation of every side [rad]."""
         a, h = sides.slope, sides.height
         half = 0.5 * rotation
-        f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1, to all digits of slender bodies
+        f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1, without cancellation
         work = 2.0 * sides.gravity * f1
         period = 2.0 * math.pi * rotation * np.sqrt(sides.inertia * h / work)  # Eq. 298
         return period, work / rotation  # Eq. 299
@@ -300,40 +300,40 @@ class AsceRocking(CodeMethod):
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
         """Eqs. 296 to 299, at the rotation that overturns."""
         beta, (period, capacity) = self.damping(sides), self.oscillator(sides, sides.angle)
-        found = np.full((len(shaking.motions), *beta.shape), np.nan)
-        alike = np.round(beta, 12)  # sides of one damping share their spectra
-        for value in np.unique(alike[np.isfinite(alike)]):
-            some = alike == value
-            periods, places = np.unique(period[some], return_inverse=True)
-            found[:, some] = capacity[some] / shaking.spectra(periods, float(value))[:, places.ravel()]
-        return found
+        factors = np.full((len(shaking.motions), *beta.shape), np.nan)
+        dampings = np.round(beta, 12)  # sides with equal damping use common spectra
+        for value in np.unique(dampings[np.isfinite(dampings)]):
+            selected = dampings == value
+            periods, inverse = np.unique(period[selected], return_inverse=True)
+            factors[:, selected] = capacity[selected] / shaking.spectra(periods, float(value))[:, inverse.ravel()]
+        return factors
 
 
 class IshiyamaCriteria(CodeMethod):
-    """Ishiyama: overturning takes both an acceleration that lifts and a velocity."""
+    """Ishiyama: overturning needs both the acceleration of uplift and a velocity."""
 
     name = "ishiyama"
     title = "Ishiyama's criteria, acceleration and velocity"
     reference = "Ishiyama 1982, Criteria for overturning of rigid bodies by sinusoidal and earthquake excitations"
     domain = (
-        "lower limits: below either of both a body stands; the factor 0.4 was found for rectangles on a rigid floor"
+        "lower limits: a body below one of both does not overturn; the factor 0.4 is for rectangles on a rigid floor"
     )
     reading = (
-        "medium: that velocity counts beside acceleration was read in the paper's summary; the formula is from "
+        "medium: the summary of the paper states criteria of velocity and acceleration; the formula is from "
         "secondary sources, and both of its forms (with R, and 10 B / sqrt(H) in cm) agree within 2.5 %"
     )
-    share = 0.4  # of the velocity of a single impulse that overturns [-]
+    velocity_ratio = 0.4  # limit over the overturning velocity of a single impulse [-]
 
     def velocity(self, sides: BodySides) -> FloatArray:
-        """Return the ground velocity below which a body stands, by side [m/s]."""
+        """Return the limit of the ground velocity without overturning, by side [m/s]."""
         alpha, p = sides.angle, sides.frequency_parameter
         impulse = 2.0 * np.sin(0.5 * alpha) * sides.gravity / (p * np.cos(alpha))
-        return np.asarray(self.share * impulse)  # Eq. 300
+        return np.asarray(self.velocity_ratio * impulse)  # Eq. 300
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 300; both must be passed."""
-        lifts = sides.uplift / shaking.acceleration  # Eq. 294
-        return np.maximum(lifts, self.velocity(sides) / shaking.velocity)
+        """Eq. 300; overturning exceeds both limits."""
+        uplift_factor = sides.uplift / shaking.acceleration  # Eq. 294
+        return np.maximum(uplift_factor, self.velocity(sides) / shaking.velocity)
 
 
 class KanekoHayashi(CodeMethod):
@@ -354,7 +354,7 @@ class KanekoHayashi(CodeMethod):
 
     @staticmethod
     def acceleration(sides: BodySides, frequency: FloatArray) -> FloatArray:
-        """Return A_R50 of every side; frequency: of the floor's motion [Hz]. In m and s its 10 is 1 [m/s2]."""
+        """Return A_R50 of every side [m/s2]; frequency: of the floor motion [Hz]. Its factor 10 is 1 in m and s."""
         ratio = sides.slope
         width, height = 2.0 * sides.half_width, 2.0 * sides.height
         slow = sides.gravity * ratio * (1.0 + ratio)
@@ -362,13 +362,13 @@ class KanekoHayashi(CodeMethod):
         return np.maximum(slow, quick)  # Eq. 301
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 301; a motion that is scaled keeps its frequency."""
+        """Eq. 301; scaling does not change the frequency of a motion."""
         frequency = shaking.acceleration / (2.0 * math.pi * shaking.velocity)
         return self.acceleration(sides, frequency) / shaking.acceleration
 
 
 class HousnerPulse(CodeMethod):
-    """Housner's rectangular pulse of constant acceleration, as long as takes the PGA to reach the PGV."""
+    """Housner's rectangular pulse of constant acceleration, with duration PGV / PGA."""
 
     name = "housner-pulse"
     title = "Housner's rectangular pulse"
@@ -388,12 +388,12 @@ class HousnerPulse(CodeMethod):
 
     @staticmethod
     def acceleration(sides: BodySides, duration: FloatArray) -> FloatArray:
-        """Return the acceleration of a pulse of some duration [s] that just overturns, by side [m/s2]."""
+        """Return the overturning acceleration of a pulse of given duration [s], by side [m/s2]."""
         ratio = 0.5 * (1.0 + 1.0 / np.tanh(0.5 * sides.frequency_parameter * duration))
         return np.asarray(ratio * sides.gravity * sides.angle)  # Eq. 302
 
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Eq. 302; a motion that is scaled keeps its duration."""
+        """Eq. 302; scaling does not change the duration of a motion."""
         return self.acceleration(sides, shaking.velocity / shaking.acceleration) / shaking.acceleration
 
 
@@ -413,4 +413,4 @@ LEFT_OUT = {
     "NZSEE C8, displacement method for face loads": "its text could not be read",
     "margins of ASCE/SEI 43 over its best estimate": "the clauses could not be read",
 }
-"""What is not here, and why: nothing is written from memory."""
+"""Excluded methods, with reasons: no method is written from memory."""

@@ -1,4 +1,4 @@
-"""Fragility: how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
+"""Fragility: probability of rocking and overturning over the intensity level, with its uncertainty."""
 
 from rocking.studies.fragility._fragility import fragility, fragility_analysis
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of

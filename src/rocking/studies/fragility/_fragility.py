@@ -1,4 +1,4 @@
-"""The front door: the fragility of a body by one of the three analyses, as a labelled dataset."""
+"""Fragility of a body by one of three analyses, as a labelled dataset."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
+def fragility(  # noqa: PLR0913 - users set every one of them
     body: Body,
     motions: Motions,
     levels: Any = None,
@@ -35,7 +35,7 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     progress: Progress = None,
     **options: Any,
 ) -> "xr.Dataset":
-    """Return how likely a body is to rock, to rock far and to overturn at levels of shaking.
+    """Return the probability of rocking, of large rotations and of overturning over the intensity level.
 
     Parameters
     ----------
@@ -44,26 +44,26 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     motions : GroundMotion or Pulse, a sequence of them, or MotionSet
         All records or all pulses.
     levels : array_like, optional
-        Levels of the measure, increasing, to which every motion is brought; not for a cloud. An incremental analysis
-        searches the boundary between neighbours of unlike outcome, and below the first one down to zero. If not
-        given, 16 from .9 to 9 times what lifts the body, for a measure that says what that is [unit of the measure].
+        Increasing levels of the measure; every motion is scaled to each level; not for a cloud. An incremental
+        analysis searches the boundary between neighbours of different outcome, and from zero to the first level.
+        Default: 16 levels from 0.9 to 9 times the uplift level, if the measure has one [unit of the measure].
     restitution : as for `simulate`
         Model or its name, number, pair by side, or law.
     analysis : {"stripes", "cloud", "incremental"}
-        Multiple stripes; the motions as they are; or stripes and every level between them at which a motion begins or
-        ceases to overturn the body.
+        Multiple stripes; the motions as recorded; or stripes with every level between them at which a motion begins
+        or ceases to overturn the body.
     im : str or IntensityMeasure
-        A name of `rocking.motions.intensity.measures`, or ``sa(period)``; for levels one that grows with the motion.
+        A name of `rocking.motions.intensity.measures`, or ``sa(period)``. Levels need a measure that grows with the
+        motion.
     limit_states : sequence of float or str
-        Limit states: rotations over alpha [-], with rocking and overturning. Where ``"rocking"`` or
-        ``"overturning"`` is given, the given states alone.
+        Limit states: rotations over alpha [-], with rocking and overturning. If ``"rocking"`` or
+        ``"overturning"`` is in the sequence, only the states of the sequence.
     scale : float, optional
-        One factor on all motions of a cloud; 1 if not given [-].
+        Scale factor of all motions of a cloud; default 1 [-].
     least : float, optional
-        Rotation over alpha below which a history of a cloud counts as barely lifted, and is left out of the line; .01
-        if not given [-].
+        Smallest rotation over alpha of a history of a cloud that enters the regression; default 0.01 [-].
     tolerance : float, optional
-        Width over level to which an incremental analysis searches; 0 for the last bit, 1e-8 if not given [-].
+        Relative width at which the search of an incremental analysis ends; 0 for the last bit, default 1e-8 [-].
     progress : callable, optional
         Called with the number of histories done since the last call.
     **options
@@ -73,13 +73,13 @@ def fragility(  # noqa: PLR0913 - every one of them is a question that users ask
     -------
     xarray.Dataset
         Outcome and rotation over ``motion`` and ``level`` (a cloud: over ``motion``); over ``state`` the lognormal
-        curves: median [unit of the measure], dispersion [-], their 95 % intervals, missing (NaN) where there is none,
-        and what can be claimed of each; with units.
+        curves: median [unit of the measure], dispersion [-], their 95 % intervals and the verdict. Missing values are
+        NaN. All variables have units.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, goes with another analysis, or levels are missing.
+        If a value is outside its range or belongs to another analysis, or if levels are missing.
     MissingExtraError
         If xarray is not installed.
 
@@ -121,24 +121,24 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     progress: Progress = None,
     **options: Any,
 ) -> Any:
-    """Return the analysis behind `fragility`, which pictures, rankings of measures and files are made of.
+    """Return the analysis behind `fragility`, the input of plots, rankings of measures and files.
 
     Parameters
     ----------
     body, motions, levels, restitution, analysis, im, limit_states, scale, least, progress
-        As for `fragility`; progress is not told of the histories of a search.
+        As for `fragility`; progress does not count the histories of a search.
     **options
-        As for `fragility`; ``tolerance`` of stripes and clouds is that of `Settings`.
+        As for `fragility`; ``tolerance`` of stripes and clouds is the tolerance of `Settings`.
 
     Returns
     -------
     MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
-        Outcomes, counts and curves; the line of a cloud, the intervals of an incremental analysis.
+        Outcomes, counts and curves; the regression of a cloud, the intervals of an incremental analysis.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, goes with another analysis, or levels are missing.
+        If a value is outside its range or belongs to another analysis, or if levels are missing.
 
     Examples
     --------
@@ -155,7 +155,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
     >>> pulses = [sine(1.0, period) for period in (0.5, 0.7)]
     >>> growing = fragility_analysis(block, pulses, [3.0, 6.0, 9.0], restitution=0.9, analysis="incremental")
-    >>> growing.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
+    >>> growing.fractions.tolist()  # a motion that overturns the body at 6 m/s2 may not at 9
     [0.0, 1.0, 0.5]
     >>> [(round(i.start, 3), round(i.end, 3)) for i in growing.intervals]
     [(4.789, inf), (3.449, 8.667)]
@@ -170,11 +170,11 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
 
 
 def _with_curves(analysis: MultipleStripeAnalysis | CloudAnalysis) -> "xr.Dataset":
-    """Return the dataset of an analysis with the curve of each state beside what was counted."""
+    """Return the dataset of an analysis with the curve of each state."""
     names = [state.name for state in analysis.limit_states]
     curves = [name in analysis.fits and curve_of(name, analysis.fits[name]) for name in names]
     verdicts = [analysis.fits[name].verdict if name in analysis.fits else analysis.uplift.verdict for name in names]
-    units, of_each = {"units": analysis.subject.label["units"]}, {"units": "1"}
+    units, dimensionless = {"units": analysis.subject.label["units"]}, {"units": "1"}
 
     def over_states(name: str, unit: dict[str, str]) -> tuple[Any, FloatArray, dict[str, str]]:
         return "state", np.array([getattr(curve, name) if curve else np.nan for curve in curves]), unit
@@ -185,8 +185,8 @@ def _with_curves(analysis: MultipleStripeAnalysis | CloudAnalysis) -> "xr.Datase
 
     return analysis.dataset.assign(
         median=over_states("median", units),
-        dispersion=over_states("dispersion", of_each),
+        dispersion=over_states("dispersion", dimensionless),
         median_95=intervals("median_95", units),
-        dispersion_95=intervals("dispersion_95", of_each),
+        dispersion_95=intervals("dispersion_95", dimensionless),
         verdict=("state", np.array(verdicts)),
     ).assign_coords(state=names, end=["low", "high"])

@@ -1,4 +1,4 @@
-"""Cloud analysis: the motions as they are, a regression of the rotation on the measure, and overturning apart."""
+"""Cloud analysis: regression of the rotation on the measure of recorded motions, and a curve of overturning."""
 
 import math
 from contextlib import suppress
@@ -18,7 +18,7 @@ from rocking.studies.fragility.subject import FragilityAnalysis, Responses
 if TYPE_CHECKING:
     import xarray as xr
 
-LEAST = 0.01  # rotation over alpha below which a history counts as barely lifted, unless another one is chosen [-]
+LEAST = 0.01  # default of the rotation over alpha below which a history counts as barely lifted [-]
 
 DEFINITION = (
     "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "
@@ -27,22 +27,22 @@ DEFINITION = (
 )
 
 
-def checked_least(least: float) -> float:
-    """Return the rotation over alpha [-] below which a history counts as barely lifted, if it is one."""
-    return checks.within("least", least, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
+def checked_least(rotation: float) -> float:
+    """Return the checked rotation over alpha [-] below which a history counts as barely lifted."""
+    return checks.within("least", rotation, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
 
 
-def clearly_lifted(responses: Responses, least: float) -> BoolArray:
-    """Return which histories rocked, by at least a rotation over alpha [-], and stayed standing."""
-    return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
+def clearly_lifted(responses: Responses, min_rotation: float) -> BoolArray:
+    """Return True for histories that rocked without overturning, by at least a rotation over alpha [-]."""
+    return np.asarray(responses.rocked & (responses.rotation >= min_rotation) & (responses.rotation > 0.0))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CloudAnalysis(FragilityAnalysis):
-    """The outcome of a cloud analysis; states and rotations have one entry a motion."""
+    """Result of a cloud analysis; states and rotations have one entry per motion."""
 
-    motion_levels: FloatArray  # measure of each motion, with the factor [its unit]
-    least: float = LEAST  # rotation over alpha below which a history is barely lifted, and left out of the line [-]
+    motion_levels: FloatArray  # measure of each scaled motion [its unit]
+    least: float = LEAST  # smallest rotation over alpha in the regression [-]
 
     kind = "cloud"
     definition = DEFINITION
@@ -57,7 +57,7 @@ class CloudAnalysis(FragilityAnalysis):
 
     @property
     def levels(self) -> FloatArray:
-        """Levels at which there are motions, increasing [unit of the measure]."""
+        """Levels of the motions, increasing and unique [unit of the measure]."""
         return self._sorted[0]
 
     @property
@@ -70,44 +70,44 @@ class CloudAnalysis(FragilityAnalysis):
         """Number of motions that reach each state, by name of the state, at each level."""
         return {s.name: self._counted(self.responses.exceed(s) == 1.0) for s in self.limit_states}
 
-    def _counted(self, chosen: BoolArray) -> IntArray:
-        return np.bincount(self._sorted[1][chosen], minlength=self.levels.size).astype(np.int64)
+    def _counted(self, selected: BoolArray) -> IntArray:
+        return np.bincount(self._sorted[1][selected], minlength=self.levels.size).astype(np.int64)
 
     @cached_property
     def regression(self) -> Regression:
-        """Straight line of ln(theta/alpha) over ln of the measure, of histories clearly lifted and still standing."""
+        """Regression of ln(theta/alpha) on ln of the measure, from histories clearly lifted without overturning."""
         levels, rotation = self.motion_levels[self.clear], self.responses.rotation[self.clear]
         return regression(np.log(levels), np.log(rotation))
 
     @property
     def barely_lifted(self) -> int:
-        """Number of histories that rocked by less than `least`: they are left out of the line."""
+        """Number of histories that rocked by less than `least`; the regression does not include them."""
         return int(np.sum(self.responses.rocked & ~self.clear))
 
     @cached_property
     def clear(self) -> BoolArray:
-        """Which histories rocked, by at least `least`, and stayed standing."""
+        """True for histories that rocked without overturning, by at least `least`."""
         return clearly_lifted(self.responses, self.least)
 
-    def clear_share(self, level: FloatArray) -> FloatArray:
-        """Return how many of the histories that rocked and stayed standing were clearly lifted, at levels [-]."""
-        # a lognormal curve where the outcomes fix one, else their share at all levels
+    def clear_fraction(self, level: FloatArray) -> FloatArray:
+        """Return the fraction clearly lifted of the histories that rocked without overturning, at levels [-]."""
+        # a lognormal curve if the outcomes determine one, else their fraction at all levels
         rocked, fit = self.responses.rocked, self._clear_fit
         if fit is not None and fit.exists:
             return np.asarray(fit.probability(level))
-        share = float(self.clear.sum() / rocked.sum()) if rocked.any() else 1.0
-        return np.full(np.shape(level), share)
+        fraction = float(self.clear.sum() / rocked.sum()) if rocked.any() else 1.0
+        return np.full(np.shape(level), fraction)
 
     @cached_property
     def _clear_fit(self) -> LognormalFit | None:
         rocked = self.responses.rocked
-        with suppress(InvalidValueError):  # all at one level: there is no curve, and the share says all there is
+        with suppress(InvalidValueError):  # all at one level: there is no curve; the fraction is used
             if rocked.any() and 0 < self.clear.sum() < rocked.sum():
                 return fit_lognormal(self.motion_levels[rocked], self.clear[rocked])
         return None
 
     def probability_of_rocking(self, level: Any) -> FloatArray:
-        """Return the probability that the body rocks or overturns: 0 or 1 where a level decides it, else fitted [-]."""
+        """Return the probability of rocking or overturning [-]: 0 or 1 if a level decides it, else from a fit."""
         levels = checks.positive_array("level", level, self.subject.measure.unit)
         threshold = self.subject.uplift_threshold
         if threshold is not None:
@@ -117,22 +117,22 @@ class CloudAnalysis(FragilityAnalysis):
     def probability(self, level: Any, rotation: float) -> FloatArray:
         """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels."""
         # P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned)
-        parts = self.parts(level, rotation)
-        return parts["overturned"] + parts["exceeded"]  # Eq. 221
+        terms = self.parts(level, rotation)
+        return terms["overturned"] + terms["exceeded"]  # Eq. 221
 
     def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
-        """Return the parts of the total probability, which add up to one, at levels and for a rotation over alpha [-].
+        """Return the terms of the total probability, which add up to 1, at levels and for a rotation over alpha [-].
 
         ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not overturn)
-        and ``overturned``. What is barely lifted reaches no rotation above `least`.
+        and ``overturned``. A barely lifted body reaches no rotation above `least`.
         """
         levels = checks.positive_array("level", level, self.subject.measure.unit)
-        hint = "the line knows nothing of histories barely lifted; choose another least="
+        hint = "The regression does not include barely lifted histories. Reduce least."
         limit = math.log(checks.positive("rotation", checks.within("rotation", rotation, self.least, 1e6, hint=hint)))
-        # whatever overturned has rocked: where the curves cross, rocking is at least as probable
+        # an overturned body has rocked: if the curves cross, rocking is at least as probable
         rocks = self.probability_of_rocking(levels)
         over = np.minimum(np.asarray(self.fit_of("overturning").probability(levels), dtype=np.float64), rocks)
-        beyond = self.regression.probability_above(limit, np.log(levels)) * self.clear_share(levels)
+        beyond = self.regression.probability_above(limit, np.log(levels)) * self.clear_fraction(levels)
         return {
             "no rocking": 1.0 - rocks,
             "below": (rocks - over) * (1.0 - beyond),

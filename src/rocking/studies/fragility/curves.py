@@ -1,4 +1,4 @@
-"""Fragility curves apart from how they were found: what is exported; those that cross are refused, or fitted again."""
+"""Fragility curves for export, independent of their analysis; curves that cross are refused or fitted again."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -20,10 +20,10 @@ from rocking.studies.fragility.subject import NAMED, Subject, checked_levels
 if TYPE_CHECKING:
     import xarray as xr
 
-CLAIMS = ("method", "verdict", "interval_method")  # what is said of each curve wherever it goes
+CLAIMS = ("method", "verdict", "interval_method")  # texts exported with each curve
 Crossing = Literal["keep-uplift", "common-dispersion", "refuse"]
 
-COMMON = "common-dispersion"  # method of curves that share one dispersion
+COMMON = "common-dispersion"  # method of curves with a common dispersion
 ROCKING = NAMED["rocking"].name
 STATES = Option("fragility.limit_states")
 TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier than a lesser one in a file [-]
@@ -38,23 +38,23 @@ class FragilityCurve:
     state : str
         Name of the state.
     median : float
-        Level that half of the motions need for it [unit of the measure].
+        Level at which half of the motions reach the state [unit of the measure].
     dispersion : float
         Standard deviation of the natural logarithm of that level [-].
     method : str
-        How it was fitted.
+        Method of the fit.
     verdict : str
-        What can be claimed of it.
+        Verdict on the fit.
     median_95, dispersion_95 : tuple, optional
-        Ends of their 95 % intervals, None where one is open; None if there is no interval [as median, dispersion].
+        Ends of the 95 % intervals, None for an open end; None without an interval [unit of median, dispersion].
     interval_method : str
-        How the intervals were found.
+        Method of the intervals.
     agreement : Agreement, optional
-        How well it agrees with the outcomes; None where nobody asked.
+        Goodness of fit; None if not requested.
     repeated : Repeated, optional
-        Intervals from the bootstrap; None where nobody asked.
+        Intervals from the bootstrap; None if not requested.
     alone : FragilityCurve, optional
-        The curve fitted to this state alone, with its intervals; None where it is this curve.
+        The curve fitted to this state alone, with its intervals; None if this curve is that fit.
 
     Raises
     ------
@@ -80,11 +80,11 @@ class FragilityCurve:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """The curve by the names of `LognormalFit.summary`, which it replaces there; what it has not is None."""
+        """The curve with the keys of `LognormalFit.summary`; None for missing values."""
         absent = dict.fromkeys(("interval_method", "standard_errors", "log_likelihood"))
         ends = {name: list(getattr(self, name) or (None, None)) for name in ("median_95", "dispersion_95")}
-        words = {name: getattr(self, name) for name in ("median", "dispersion", "method", "verdict")}
-        return {**absent, **ends, **words}
+        values = {name: getattr(self, name) for name in ("median", "dispersion", "method", "verdict")}
+        return {**absent, **ends, **values}
 
     def probability(self, level: Any) -> FloatArray:
         """Return the probability of the state at levels of the measure.
@@ -109,7 +109,7 @@ class FragilityCurve:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FragilityModel:
-    """Fragility curves of one body against one measure, with what they rest on.
+    """Fragility curves of one body over one measure, with the data of the fit.
 
     Parameters
     ----------
@@ -120,23 +120,23 @@ class FragilityModel:
     unit : str
         Its unit; ``-`` if it has none.
     curves : tuple of FragilityCurve
-        From the least to the worst state.
+        Curves from the mildest to the worst state.
     levels : ndarray
-        Levels that were tried [unit of the measure].
+        Levels of the histories [unit of the measure].
     trials : ndarray of int
         Histories at each level.
     reached : dict of str to ndarray
-        How many of them reached each state.
+        Number of histories that reached each state.
     source : str
-        Where the data come from.
+        Source of the data.
     uplift_threshold : float, optional
         Level below which nothing rocks, if there is one [unit of the measure].
     about : dict
         Provenance, plain values.
     without : dict of str to str
-        States that have no curve, and why.
+        States without a curve, and the reason.
     adjusted : str
-        Why curves are not those fitted to each state alone; empty where they are.
+        Reason why curves differ from those fitted to each state alone; empty if they do not.
 
     Raises
     ------
@@ -176,12 +176,12 @@ class FragilityModel:
 
     @property
     def shared(self) -> "dict[str, FragilityCurve]":
-        """Curves that share one dispersion, by state: they are not those fitted to each state alone."""
+        """Curves with a common dispersion, by state."""
         return {curve.state: curve for curve in self.curves if curve.method == COMMON}
 
     @property
     def highest(self) -> float:
-        """Level above which all curves are one: four dispersions above every median and no level tried [its unit]."""
+        """Level above which all curves are 1: 4 dispersions above all medians, at least the last level [its unit]."""
         return max(float(self.levels[-1]), *(c.median * math.exp(min(4.0 * c.dispersion, 600.0)) for c in self.curves))
 
     @property
@@ -204,10 +204,10 @@ class FragilityModel:
             "end": ["low", "high"],
             "level": ("level", self.levels, {"units": unit, "long_name": self.im}),
         }
-        words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
-        words |= {f"without_curve {state}": why for state, why in self.without.items()}
-        words |= {"adjusted": self.adjusted} if self.adjusted else {}
-        about = {"component": self.name, "im": self.im, "source": self.source, **words, **self.about}
+        texts = {claim: "; ".join(f"{c.state}: {getattr(c, claim)}" for c in self.curves) for claim in CLAIMS}
+        texts |= {f"without_curve {state}": reason for state, reason in self.without.items()}
+        texts |= {"adjusted": self.adjusted} if self.adjusted else {}
+        about = {"component": self.name, "im": self.im, "source": self.source, **texts, **self.about}
         labelled: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=plain_texts(about))
         return labelled
 
@@ -225,29 +225,29 @@ def model_of(
     name : str
         Name of the body, as in an inventory.
     source : str
-        Where the data come from; the definition of the analysis, if not given.
+        Source of the data; default: the definition of the analysis.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross. "keep-uplift": where they do, one dispersion for all states but rocking; the
-        curve of rocking is not changed where uplift is impossible below a level, and is left out where it still
-        crosses. "common-dispersion": one dispersion for all states, always. "refuse": the curve of each state alone,
-        which files for FEMA P-58, PELICUN and OpenQuake refuse if curves cross.
+        Treatment of curves that cross. "keep-uplift": one dispersion for all crossing states but rocking. The curve
+        of rocking is not changed if uplift is impossible below a level, and is omitted if it still crosses.
+        "common-dispersion": one dispersion for all states, always. "refuse": the curve of each state alone; files
+        for FEMA P-58, PELICUN and OpenQuake refuse curves that cross.
     bootstrap : int
-        Repetitions of the study for intervals and bands beside the usual ones; none, if 0.
+        Number of bootstrap repetitions for additional intervals and bands; 0: none.
     seed : int
         Seed of all random numbers.
     limit_states : sequence of str, optional
-        Names of the states to hand on; all if not given.
+        Names of the states of the model; default: all.
 
     Returns
     -------
     FragilityModel
-        States whose curve has no finite median and dispersion are left out; ``without`` contains the reasons, and
-        ``adjusted`` the reason of curves that are not those of each state alone.
+        The curves. States without a finite median and dispersion are omitted; ``without`` contains the reasons.
+        ``adjusted`` contains the reason if curves differ from those of each state alone.
 
     Raises
     ------
     InvalidValueError
-        If `crossing_curves` or a state is unknown, no state has a curve, or "common-dispersion" finds none.
+        If `crossing_curves` or a state is unknown, no state has a curve, or no common dispersion exists.
     """
     check_crossing(crossing_curves)
     alone = _alone(analysis, name, source, limit_states)
@@ -256,32 +256,32 @@ def model_of(
 
 
 def shown_curves(analysis: Any, crossing_curves: Crossing = "keep-uplift") -> FragilityModel | None:
-    """Return the curves that files would contain, without their goodness of fit; None where there are none."""
+    """Return the curves of exported files, without their goodness of fit; None if there are none."""
     try:
         return without_crossing(_alone(analysis, "body"), crossing_curves)
-    except InvalidValueError:  # files are refused with the reason
+    except InvalidValueError:  # the export of files raises the reason
         return None
 
 
 def _alone(analysis: Any, name: str, source: str = "", limit_states: Sequence[str] | None = None) -> FragilityModel:
     """Return the curve of each state alone."""
-    wanted = (
+    states = (
         list(analysis.fits)
         if limit_states is None
         else [checks.one_of("limit_states", s, analysis.fits) for s in limit_states]
     )
     subject: Subject = analysis.subject
     measure = subject.measure
-    found = {s: curve_of(s, fit, measure.name, measure.unit) for s, fit in analysis.fits.items() if s in wanted}
-    without = [state for state, curve in found.items() if curve is None]
-    if len(without) == len(found):
+    curves = {s: curve_of(s, fit, measure.name, measure.unit) for s, fit in analysis.fits.items() if s in states}
+    without = [state for state, curve in curves.items() if curve is None]
+    if len(without) == len(curves):
         raise InvalidValueError(
             "nothing to export: no state of {name!r:.60} has a lognormal curve", name=name,
-            hint=f"the histories must both reach a state and miss it, at levels that overlap ({', '.join(without)})",
+            hint=f"Some histories must reach a state and others not, at levels that overlap ({', '.join(without)}).",
         )  # fmt: skip
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
     return FragilityModel(
-        name, measure.name, measure.unit, tuple(filter(None, found.values())), analysis.levels, analysis.trials,
+        name, measure.name, measure.unit, tuple(filter(None, curves.values())), analysis.levels, analysis.trials,
         analysis.counts, source or analysis.definition, subject.lowest_uplift, about,
         {state: analysis.fits[state].verdict_in(*_shown(measure.name, measure.unit)) for state in without},
     )  # fmt: skip
@@ -311,13 +311,13 @@ def _shown(measure: str, unit: str) -> tuple[str, float]:
 def with_evidence(
     curve: FragilityCurve, fit: LognormalFit, levels: FloatArray, bootstrap: int = 0, seed: int = 0
 ) -> FragilityCurve:
-    """Return a curve with its goodness of fit, and bootstrap intervals and bands at levels where asked for."""
+    """Return a curve with its goodness of fit, and on request bootstrap intervals and bands at levels."""
     repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
 
 
 def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-uplift") -> FragilityModel:
-    """Return the model with curves that do not cross, by one of the treatments; one curve and "refuse": as it is."""
+    """Return the model with curves that do not cross, by one of the treatments; unchanged for "refuse"."""
     match check_crossing(crossing_curves):
         case "common-dispersion" if len(model.curves) > 1:
             return with_common_dispersion(model)
@@ -327,18 +327,18 @@ def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-up
 
 
 def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
-    """Return the model with one dispersion for the states that no level of uplift decides."""
-    why = Message("Fitted alone, curves cross: {excess}.", {"excess": excess.words(model)})
+    """Return the model with one dispersion for the states without a threshold of uplift."""
+    reason = Message("Fitted alone, curves cross: {excess}.", {"excess": excess.describe(model)})
     decided = tuple(c for c in model.curves if c.state == ROCKING and model.uplift_threshold is not None)
     others = replace(model, curves=tuple(c for c in model.curves if c not in decided))
     try:
-        found = with_common_dispersion(others) if crosses(others) is not None else others
+        nested_model = with_common_dispersion(others) if crosses(others) is not None else others
     except InvalidValueError:
         names = ", ".join(curve.state for curve in others.curves)
         kept = Message("They are kept, since no common dispersion fits the states {states}.", {"states": names})
-        return replace(model, adjusted=Message.joined([why, kept]))
-    joined = replace(found, curves=(*decided, *found.curves))
-    reasons = [why, found.adjusted]
+        return replace(model, adjusted=Message.joined([reason, kept]))
+    joined = replace(nested_model, curves=(*decided, *nested_model.curves))
+    reasons = [reason, nested_model.adjusted]
     if not decided:
         return replace(joined, adjusted=Message.joined(reasons))
     facts = {"state": ROCKING, "uplift": uplift_words(model)}
@@ -346,12 +346,12 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
         reasons.append(Message("The curve of {state} is not changed: {uplift}.", facts))
     else:
         reasons.append(Message("The state {state} is left out, since its curve would still cross: {uplift}.", facts))
-        joined = replace(found, without={**model.without, ROCKING: reasons[-1]})
+        joined = replace(nested_model, without={**model.without, ROCKING: reasons[-1]})
     return replace(joined, adjusted=Message.joined(reasons))
 
 
 def uplift_words(model: FragilityModel) -> str:
-    """Return below which level no motion lifts the body."""
+    """Return a sentence with the level below which no motion lifts the body."""
     unit, size = _shown(model.im, model.unit)
     level = f"{(model.uplift_threshold or 0.0) * size:.4g} {unit}".rstrip()
     return Message("no motion lifts the body below {level}", {"level": level})
@@ -368,15 +368,17 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
     if missing:
         raise InvalidValueError(
-            "counts of all states are needed for one dispersion, got none of {state!r:.60}", state=missing[0]
+            "a common dispersion needs the counts of all states; state {state!r:.60} has none", state=missing[0]
         )
-    tried = np.asarray(model.trials) > 0
-    reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
+    has_trials = np.asarray(model.trials) > 0
+    reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[has_trials] for c in model.curves])
     try:
-        fitted = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+        fitted = nested_curves(
+            model.levels[has_trials], reached, np.asarray(model.trials, dtype=np.float64)[has_trials]
+        )
     except InvalidValueError as error:
         names = ", ".join(curve.state for curve in model.curves)
-        hint = Message(f"the states are {names}: {{option}} leaves some out", {"option": STATES})
+        hint = Message(f"The states are {names}. {{option}} selects fewer states.", {"option": STATES})
         error.hint = hint
         raise
     unit, size = _shown(model.im, model.unit)
@@ -389,61 +391,65 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         verdict = Message.joined([Message(_COMMON, facts), curve.verdict])
         curves.append(FragilityCurve(curve.state, median, dispersion, COMMON, verdict, alone=curve))
         if curve.state == ROCKING and model.uplift_threshold is not None:
-            share = float(curves[-1].probability(model.uplift_threshold))
-            at_uplift = {"state": ROCKING, "share": share, "uplift": uplift_words(model)}
+            probability_at_uplift = float(curves[-1].probability(model.uplift_threshold))
+            at_uplift = {"state": ROCKING, "share": probability_at_uplift, "uplift": uplift_words(model)}
             gives = Message("The curve of {state} gives {share:.2g} at the level of uplift: {uplift}.", at_uplift)
             adjusted = Message.joined([adjusted, gives])
     return replace(model, curves=tuple(curves), adjusted=adjusted)
 
 
 def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
-    """Return intervals, goodness of fit and bootstrap of curves, over state; NaN where there is none."""
+    """Return intervals, goodness of fit and bootstrap of curves, over state; NaN for missing values."""
 
-    def intervals(ends: Sequence[Ends | None], of: str, meaning: str) -> tuple[Any, np.ndarray, dict[str, str]]:
-        words = f"95 % interval{meaning}, missing where it is open, or there is none"
-        return ("state", "end"), np.array([ends_of(each) for each in ends]), {"units": of, "long_name": words}
+    def intervals(ends: Sequence[Ends | None], units: str, meaning: str) -> tuple[Any, np.ndarray, dict[str, str]]:
+        long_name = f"95 % interval{meaning}, missing where it is open, or there is none"
+        return (
+            ("state", "end"),
+            np.array([ends_of(interval) for interval in ends]),
+            {"units": units, "long_name": long_name},
+        )
 
     variables: dict[str, Any] = {
         "median_95": intervals([curve.median_95 for curve in curves], unit, ""),
         "dispersion_95": intervals([curve.dispersion_95 for curve in curves], "1", ""),
     }
     agreements = [curve.agreement or Agreement() for curve in curves]
-    for name, words in STATISTICS.items():
-        value, p_value = np.array([each.numbers[name] for each in agreements]).T
-        variables[name] = ("state", value, {"units": "1", "long_name": words})
-        variables[f"{name}_p_value"] = ("state", p_value, {"units": "1", "long_name": f"p-value: {words}"})
-    variables["agreement"] = ("state", np.array([each.words for each in agreements]))
+    for name, long_name in STATISTICS.items():
+        value, p_value = np.array([agreement.numbers[name] for agreement in agreements]).T
+        variables[name] = ("state", value, {"units": "1", "long_name": long_name})
+        variables[f"{name}_p_value"] = ("state", p_value, {"units": "1", "long_name": f"p-value: {long_name}"})
+    variables["agreement"] = ("state", np.array([agreement.words for agreement in agreements]))
     if any(curve.alone for curve in curves):
         alone = [curve.alone or curve for curve in curves]
         about = {"long_name": "of the curve fitted to the state alone"}
         variables["median_alone"] = ("state", np.array([c.median for c in alone]), {"units": unit, **about})
         variables["dispersion_alone"] = ("state", np.array([c.dispersion for c in alone]), {"units": "1", **about})
-        variables |= {f"{name}_alone": each for name, each in variables_of(alone, levels, unit).items()}
+        variables |= {f"{name}_alone": variable for name, variable in variables_of(alone, levels, unit).items()}
     if not any(curve.repeated for curve in curves):
         return variables
-    each, meaning = [curve.repeated or Repeated() for curve in curves], " from the bootstrap"
+    bootstraps, meaning = [curve.repeated or Repeated() for curve in curves], " from the bootstrap"
     open_band = np.full((2, levels), math.nan)
-    bands = np.array([open_band if one.band is None else one.band for one in each])
-    dispersion = intervals([one.dispersion_95 for one in each], "1", meaning)
+    bands = np.array([open_band if bootstrap.band is None else bootstrap.band for bootstrap in bootstraps])
+    dispersion = intervals([bootstrap.dispersion_95 for bootstrap in bootstraps], "1", meaning)
     return variables | {
-        "median_bootstrap_95": intervals([one.median_95 for one in each], unit, meaning),
+        "median_bootstrap_95": intervals([bootstrap.median_95 for bootstrap in bootstraps], unit, meaning),
         "dispersion_bootstrap_95": dispersion,
         "probability_bootstrap_95": (("state", "end", "level"), bands, dispersion[2]),
-        "bootstrap": ("state", np.array([one.words for one in each])),
+        "bootstrap": ("state", np.array([bootstrap.words for bootstrap in bootstraps])),
     }
 
 
 @dataclass(frozen=True)
 class Excess:
-    """Where the curve of a worse state lies highest above that of a lesser one."""
+    """Level at which the curve of a worse state lies highest above the curve of a lesser state."""
 
     lesser: str  # lesser, worse: names of the states
     worse: str
-    level: float  # where [unit of the measure]
-    size: float  # by how much [-]
+    level: float  # [unit of the measure]
+    size: float  # difference of the probabilities [-]
 
-    def words(self, model: FragilityModel) -> str:
-        """Return where and by how much, in words."""
+    def describe(self, model: FragilityModel) -> str:
+        """Return a phrase with the level, the states and the difference."""
         unit, size = _shown(model.im, model.unit)
         level = f"{self.level * size:.4g} {unit}".rstrip()
         facts = {"level": level, "worse": self.worse, "lesser": self.lesser, "size": self.size}
@@ -451,42 +457,44 @@ class Excess:
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
-    """Return where neighbouring curves are most out of order between two levels; None if they never are."""
+    """Return the largest excess of neighbouring curves between two levels; None if curves do not cross."""
     largest = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
         medians, dispersions = np.array([(c.median, c.dispersion) for c in (lesser, worse)]).T
         with np.errstate(over="ignore", under="ignore"):
             extremes = np.exp(difference_extremes(np.log(medians), dispersions))
-        places = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
-        apart = worse.probability(places) - lesser.probability(places)
-        k = int(np.argmax(apart))
-        if apart[k] > (0.0 if largest is None else largest.size):
-            largest = Excess(lesser.state, worse.state, float(places[k]), float(apart[k]))
+        candidates = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
+        differences = worse.probability(candidates) - lesser.probability(candidates)
+        k = int(np.argmax(differences))
+        if differences[k] > (0.0 if largest is None else largest.size):
+            largest = Excess(lesser.state, worse.state, float(candidates[k]), float(differences[k]))
     return largest
 
 
 def crosses(model: FragilityModel, highest: float | None = None) -> Excess | None:
-    """Return where curves cross by more than is allowed, above the level of uplift and up to the highest level."""
+    """Return the largest excess above the tolerance, from the level of uplift to the highest; None without one."""
     worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)
     return None if worst is None or worst.size <= TOLERANCE else worst
 
 
 def nested(model: FragilityModel, crossing_curves: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
-    """Return curves that do not cross up to the highest level, by one of the treatments of those that do."""
+    """Return curves that do not cross up to the highest level, with one of the treatments."""
     model = without_crossing(model, crossing_curves)
     if (worst := crosses(model, highest)) is None:
         return model
     if model.adjusted:
-        hint = Message("no common dispersion fits these states: leave one out with {option}", {"option": STATES})
+        hint = Message("No common dispersion fits these states. Select fewer states with {option}.", {"option": STATES})
     else:
         keep = Option("export.crossing_curves", "keep-uplift")
-        hint = Message("their dispersions differ: {option} fits one for all states but rocking", {"option": keep})
+        hint = Message(
+            "Their dispersions differ. {option} fits one dispersion for all states but rocking.", {"option": keep}
+        )
     raise InvalidValueError(
-        "curves must not cross, but {crossing}, at most {limit:g} is allowed", crossing=worst.words(model),
+        "curves must not cross, but {crossing}, at most {limit:g} is allowed", crossing=worst.describe(model),
         limit=TOLERANCE, hint=hint,
     )  # fmt: skip
 
 
 def check_crossing(crossing_curves: Any) -> str:
-    """Return the way to treat curves that cross, or refuse what is none."""
+    """Return the treatment of curves that cross, or refuse an unknown one."""
     return str(checks.one_of("crossing_curves", crossing_curves, get_args(Crossing)))

@@ -1,4 +1,4 @@
-"""Fragility as files: tables of parameters, points and FEMA P-58, as CSV, Excel, MATLAB and netCDF; NRML is apart."""
+"""Export of fragility curves: parameters, points and FEMA P-58 as CSV, Excel, MATLAB, netCDF; and NRML."""
 
 import json
 import math
@@ -31,7 +31,7 @@ from rocking.tables import to_excel as tables_to_excel
 from rocking.tables import to_mat as structure_to_mat
 from rocking.tables import to_netcdf as dataset_to_netcdf
 
-TABLES = ("parameters", "points", "fema-p58")  # tables that can be written
+TABLES = ("parameters", "points", "fema-p58")  # exported tables
 Destination = str | os.PathLike[str]
 
 
@@ -52,7 +52,7 @@ def _parameters(model: FragilityModel) -> Table:
     entries = [(c.state, c) for c in model.curves]
     entries += [(f"{c.state}, alone", c.alone) for c in model.curves if c.alone is not None]
     curves = [replace(curve, alone=None) for _, curve in entries]
-    evidence = {name: each[1].tolist() for name, each in variables_of(curves, model.levels.size, "").items()}
+    evidence = {name: variable[1].tolist() for name, variable in variables_of(curves, model.levels.size, "").items()}
     intervals = {"median 95 %": ("median_95", unit), "dispersion 95 %": ("dispersion_95", "[-]")}
     repeated = {
         "median bootstrap 95 %": ("median_bootstrap_95", unit),
@@ -61,33 +61,33 @@ def _parameters(model: FragilityModel) -> Table:
     header = (
         "component", "state", "im", f"median {unit}", "dispersion [-]", "method", f"lowest level {unit}",
         f"highest level {unit}", "histories", "source",
-        *(f"{words} {end} {of}" for words, (_, of) in intervals.items() for end in ends),
-        "intervals by", "verdict", *(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")),
+        *(f"{label} {end} {units}" for label, (_, units) in intervals.items() for end in ends),
+        "intervals by", "verdict", *(f"{name}{suffix} [-]" for name in STATISTICS for suffix in ("", " p-value")),
         "agreement",
     )  # fmt: skip
     if "bootstrap" in evidence:
-        header += (*(f"{words} {end} {of}" for words, (_, of) in repeated.items() for end in ends), "bootstrap")
+        header += (*(f"{label} {end} {units}" for label, (_, units) in repeated.items() for end in ends), "bootstrap")
         intervals |= repeated
-    known: dict[str, Cell] = {
+    common: dict[str, Cell] = {
         "component": model.name, "im": model.im, "method": "none", header[6]: float(model.levels[0]),
         header[7]: float(model.levels[-1]), "histories": int(np.sum(model.trials)), "source": model.source,
     }  # fmt: skip
     rows = []
     for k, (state, c) in enumerate(entries):
-        cells = known | {
+        cells = common | {
             "state": state, header[3]: c.median, header[4]: c.dispersion, "method": c.method,
             "intervals by": c.interval_method, "verdict": c.verdict,
         }  # fmt: skip
         numbers = {
-            f"{words} {end} {of}": value
-            for words, (name, of) in intervals.items()
+            f"{label} {end} {units}": value
+            for label, (name, units) in intervals.items()
             for end, value in zip(ends, evidence[name][k], strict=True)
         }
         for name in STATISTICS:
             numbers |= {f"{name} [-]": evidence[name][k], f"{name} p-value [-]": evidence[f"{name}_p_value"][k]}
         cells |= {name: value for name, value in numbers.items() if not math.isnan(value)}
         rows.append(cells | {name: evidence[name][k] for name in ("agreement", "bootstrap") if name in evidence})
-    rows += [{**known, "state": state, "verdict": why} for state, why in model.without.items()]
+    rows += [{**common, "state": state, "verdict": reason} for state, reason in model.without.items()]
     return Table.of_rows("parameters", header, [tuple(cells.get(name, "") for name in header) for cells in rows])
 
 
@@ -117,26 +117,25 @@ def fema_p58_table(
     *,
     crossing_curves: Crossing = "refuse",
 ) -> Table:
-    """Return the table of a component as FEMA P-58 asks for it, one row a damage state.
+    """Return the table of a component for FEMA P-58, one row per damage state.
 
     Parameters
     ----------
     model : FragilityModel
         The curves; its name is the component's id.
     description : str
-        What the component is.
+        Description of the component.
     demand_parameter : str
-        The demand in the words of the method; the measure, if not given.
+        Name of the demand in FEMA P-58; default: the measure.
     quality : str
-        What the data are: a derivation by analysis, unless said otherwise. How each curve was fitted, and what can be
-        claimed of it, stands after it.
+        Quality of the data; default: derived by analysis. The method and the verdict of each curve follow it.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross, as in `model_of`: no worse damage state may be likelier than a lesser one.
+        Treatment of curves that cross, as in `model_of`: the worse of two states may not be the more probable.
 
     Returns
     -------
     Table
-        Damage states DS1, DS2, ... from the least to the worst, sequential. Medians of accelerations are in g, as in
+        Damage states DS1, DS2, ... from the mildest to the worst, sequential. Medians of accelerations are in g, as in
         files for PELICUN and OpenQuake; the table contains the unit.
 
     Raises
@@ -177,26 +176,26 @@ _LIMIT_STATE = "Family", "Theta_0", "Theta_1", "DamageStateWeights"
 
 
 def _pelicun(model: FragilityModel, crossing_curves: Crossing) -> Table:
-    """Return the damage model of a component as PELICUN 3 reads it: one row, accelerations in g."""
+    """Return the damage model of a component for PELICUN 3: one row, accelerations in g."""
     # layout, names of demands, and spectral|period as in NHERI-SimCenter/DamageAndLossModelLibrary, fragility.csv of
     # seismic/power_network (Hazus v5.1), vocabularies.py, and fragility.csv of California RC Bridges 2025
     spectral = spectral_period(model.im)
     if model.im != "pga" and (spectral is None or spectral[1] != 0.05):
         raise InvalidValueError(
-            "for PELICUN curves stand against pga or sa(period) with 5 % damping, got {measure!r:.60}",
+            "PELICUN requires curves over pga or sa(period) with 5 % damping, got {measure!r:.60}",
             measure=model.im,
         )  # fmt: skip
     on_floor = _support(model) != GROUND
     if on_floor and spectral is not None:
         raise InvalidValueError(
-            "for PELICUN curves of motions of {support} stand against pga (written as Peak Floor Acceleration), got "
+            "PELICUN requires curves over pga (Peak Floor Acceleration) for motions of {support}, got "
             "{measure!r:.60}", support=_support(model), measure=model.im,
         )  # fmt: skip
     peak = f"Peak {'Floor' if on_floor else 'Ground'} Acceleration"
     demand = peak if spectral is None else f"Spectral Acceleration|{spectral[0]!r}"
     unit, size = exchange_unit(model.im, model.unit)
-    # Demand-Directional is 1, since the curve is of the motion in one direction: with 0 PELICUN takes the larger of
-    # two directions times NonDirectionalMultipliers, 1.2 unless a user sets another (pelicun/model/demand_model.py)
+    # Demand-Directional is 1, since the curve is for a motion in one direction: with 0 PELICUN uses the larger of
+    # two directions times NonDirectionalMultipliers, default 1.2 (pelicun/model/demand_model.py)
     row: list[Cell] = [model.name, 0, demand, unit, 0, 1]
     curves = nested(model, crossing_curves).curves
     for curve in curves:
@@ -221,27 +220,26 @@ def to_csv(
     path : str or path
         The file.
     which : {"parameters", "points", "fema-p58", "pelicun"} or Table
-        What to write; for PELICUN 3 a damage model of one component, against pga or sa(period), in g.
+        The table; for PELICUN 3 a damage model of one component, over pga or sa(period), in g.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
         Treatment of curves that cross, as in `model_of`, in the tables of FEMA P-58 and PELICUN.
 
     Returns
     -------
     Path
-        The file. Words that a spreadsheet would take for a formula start with an apostrophe.
+        The file. Text that a spreadsheet would read as a formula starts with an apostrophe.
     """
-    chosen = which if isinstance(which, Table) else table(model, which, crossing_curves=crossing_curves)
-    return table_to_csv(chosen, target_of(path))
+    content = which if isinstance(which, Table) else table(model, which, crossing_curves=crossing_curves)
+    return table_to_csv(content, target_of(path))
 
 
 def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Crossing = "refuse") -> Path:
-    """Write all tables of a model as a workbook, one sheet a table; words are stored as words, never as formulas.
+    """Write all tables of a model as a workbook, one sheet per table; text is never stored as a formula.
 
     Parameters
     ----------
     model, path, crossing_curves
-        As for `to_csv`. Where curves cross and `crossing_curves` is "refuse", the sheet of FEMA P-58 contains the
-        reason.
+        As for `to_csv`. If curves cross and `crossing_curves` is "refuse", the sheet of FEMA P-58 contains the reason.
 
     Returns
     -------
@@ -254,7 +252,7 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing_curves: Cross
 
 
 def _sheet(model: FragilityModel, name: str, crossing_curves: Crossing) -> Table:
-    """Return a table; a refusal to draw up one does not cost the others."""
+    """Return a table, or a table with the reason for its refusal."""
     check_crossing(crossing_curves)
     try:
         return table(model, name, crossing_curves=crossing_curves)
@@ -273,8 +271,8 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
     Returns
     -------
     Path
-        The file, with states, median, dispersion, their intervals (NaN where open), goodness of fit (NaN where there
-        is none), bootstrap where it was asked for, levels, trials, exceeded, probability, words and provenance.
+        The file, with states, median, dispersion, their intervals (NaN for open ends), goodness of fit (NaN if
+        missing), requested bootstrap, levels, trials, exceeded, probability, texts and provenance.
     """
     structure = {
         "component": model.name,
@@ -282,7 +280,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         "unit": model.unit,
         "source": model.source,
         "limit_states": np.array([c.state for c in model.curves], dtype=object),
-        **{word: np.array([getattr(c, word) for c in model.curves], dtype=object) for word in CLAIMS},
+        **{claim: np.array([getattr(c, claim) for c in model.curves], dtype=object) for claim in CLAIMS},
         "median": np.array([c.median for c in model.curves]),
         "dispersion": np.array([c.dispersion for c in model.curves]),
         **_evidence(model),
@@ -298,14 +296,14 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
 
 
 def _evidence(model: FragilityModel) -> dict[str, Any]:
-    """Return intervals, goodness of fit and bootstrap, one row a state, and why states have no curve."""
+    """Return intervals, goodness of fit and bootstrap, one row per state, and reasons of missing curves."""
     evidence = {
         name: np.asarray(values)
         for name, (_, values, *_) in variables_of(model.curves, model.levels.size, model.unit).items()
     }
-    words = {name: values.astype(object) for name, values in evidence.items() if values.dtype.kind == "U"}
+    texts = {name: values.astype(object) for name, values in evidence.items() if values.dtype.kind == "U"}
     without = {"state": list(model.without), "why": list(model.without.values())}
-    return evidence | words | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
+    return evidence | texts | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
 
 
 def to_netcdf(model: FragilityModel, path: Destination) -> Path:
@@ -347,39 +345,38 @@ def to_nrml(
     Parameters
     ----------
     model : FragilityModel
-        The curves, against a measure that OpenQuake knows: pga, pgv, pgd, sa(period) with 5 % damping, arias or cav.
+        The curves, over a measure of OpenQuake: pga, pgv, pgd, sa(period) with 5 % damping, arias or cav.
     path : str or path
         The file.
     asset_category : str
-        What the assets are.
+        Category of the assets.
     loss_category : {"structural", "nonstructural", "contents", "business_interruption", "occupants"}
-        What kind of loss.
+        Category of the loss.
     description : str
-        Words for the reader; the source of the model, if not given. How each curve was fitted, and what can be claimed
-        of it, stands after them.
+        Description; default: the source of the model. The method and the verdict of each curve follow it.
     highest : float, optional
-        OpenQuake takes the measure for no larger than this; four dispersions above all medians and all levels, if
-        not given [unit of the measure].
+        Largest value of the measure in OpenQuake; default: 4 dispersions above all medians and levels [unit of the
+        measure].
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}
-        Treatment of curves that cross between the ends of the file, as in `model_of`: no worse state may be likelier
-        than a lesser one, or the file gives states negative probabilities.
+        Treatment of curves that cross between the ends of the file, as in `model_of`: curves that cross lead to
+        negative probabilities of states.
 
     Returns
     -------
     Path
-        The file. Below the level where nothing rocks, if there is one, OpenQuake takes all probabilities for zero.
+        The file. OpenQuake uses zero probability below the threshold of uplift, if there is one.
 
     Raises
     ------
     InvalidValueError
-        If OpenQuake does not know the measure or the loss category, a name cannot stand in XML, or curves cross.
+        If the measure or loss category is unknown to OpenQuake, a name is not allowed in XML, or curves cross.
     """
     target = target_of(path)
     loss_category = checks.one_of("loss_category", loss_category, LOSS_CATEGORIES)
     if _support(model) != GROUND:
         raise InvalidValueError(
-            "OpenQuake takes {measure} as that of the ground; these motions are of {support}. Fit curves to motions "
-            "of the ground, or export to PELICUN or FEMA P-58", measure=model.im, support=_support(model),
+            "OpenQuake requires the {measure} of the ground; these motions are of {support}. Fit curves to ground "
+            "motions, or export to PELICUN or FEMA P-58.", measure=model.im, support=_support(model),
         )  # fmt: skip
     imt, unit, size = intensity_type(model.im)
     model = nested(model, crossing_curves, None if highest is None else checks.positive("highest", highest, model.unit))
@@ -410,14 +407,14 @@ def to_nrml(
 def intensity_type(measure: str) -> tuple[str, str, float]:
     """Return the name of a measure in OpenQuake, the unit there, and one SI unit in that unit."""
     period = spectral_period(measure)
-    one = MEASURES.get(measure) if period is None else spectral_measure(*period)
-    if one is None or one.openquake is None:
-        known = ", ".join(name for name, each in MEASURES.items() if each.openquake)
+    im = MEASURES.get(measure) if period is None else spectral_measure(*period)
+    if im is None or im.openquake is None:
+        supported = ", ".join(name for name, candidate in MEASURES.items() if candidate.openquake)
         raise InvalidValueError(
-            "OpenQuake knows {names} and sa(period) with 5 % damping, got {measure!r:.60}", names=known,
-            measure=measure, hint="fit the curves against one of these",
+            "OpenQuake supports {names} and sa(period) with 5 % damping, got {measure!r:.60}", names=supported,
+            measure=measure, hint="Fit the curves to one of these measures.",
         )  # fmt: skip
-    return one.openquake
+    return im.openquake
 
 
 def _support(model: FragilityModel) -> str:
@@ -446,14 +443,14 @@ def _identifier(name: str) -> str:
 
 
 def _identifiers(names: list[str]) -> list[str]:
-    """Names of limit states stand in a list separated by blanks: they hold letters, digits and underscores only."""
+    """Return names of limit states with letters, digits and underscores only, for a list separated by blanks."""
     plain = [re.sub(r"[^A-Za-z0-9]+", "_", name.replace(">", "above")).strip("_") or "state" for name in names]
     plain = [name if name[0].isalpha() else f"state_{name}" for name in plain]
     return [name if plain.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(plain, 1)]
 
 
 def _word(text: str) -> str:
-    """Refuse what no XML file can hold, escaped or not."""
+    """Return a text if XML allows all its characters."""
     if not _XML.fullmatch(text):
-        raise InvalidValueError("words in XML must be printable and not empty, got {word!r:.60}", word=text)
+        raise InvalidValueError("A text in XML must be printable and not empty, got {word!r:.60}.", word=text)
     return text

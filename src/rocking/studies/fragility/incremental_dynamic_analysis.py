@@ -1,4 +1,4 @@
-"""Incremental dynamic analysis: every motion at rising levels, with every interval in which it overturns the body."""
+"""Incremental dynamic analysis: every motion at increasing levels, with all intervals of overturning."""
 
 import math
 from collections.abc import Callable
@@ -22,27 +22,27 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
-"""Takes numbers of motions and levels; returns sides overturned to (0 if none), and which could be computed."""
+"""Function of motion indices and levels; returns sides of overturning (0 if none) and flags of success."""
 
-PARTS = 16  # pieces that a bracket is cut into in the first round, and as long as there are few of them
-WIDE = 0.01  # long records have narrower survivals, in which the body balances on its corner: over their level [-]
-FEW = 1000  # brackets up to which more pieces cost less than more rounds; above, brackets are halved
+PARTS = 16  # pieces per bracket in the first round, and while there are few brackets
+WIDE = 0.01  # relative width; long records have narrower survivals, with the body balanced on its corner [-]
+FEW = 1000  # number of brackets up to which pieces cost less than rounds; bisection above
 
 
 @dataclass(frozen=True)
 class OverturningInterval:
-    """Levels between which a motion overturns the body."""
+    """An interval of levels at which a motion overturns the body."""
 
-    motion: int  # number of the motion
+    motion: int  # index of the motion
     start: float  # level at which overturning starts [unit of the measure]
-    # level at which it stops: above it the body stays standing again; infinite if it did up to the last level
+    # level at which overturning stops; infinite if the body overturns up to the last level
     end: float
-    start_width: float  # start_width, end_width: widths of the brackets that hold them [unit of the measure]
+    start_width: float  # start_width, end_width: widths of their brackets [unit of the measure]
     end_width: float
 
     @property
     def is_open(self) -> bool:
-        """Whether the motion still overturned the body at the highest level."""
+        """True if the motion overturned the body at the highest level."""
         return math.isinf(self.end)
 
 
@@ -50,28 +50,28 @@ class OverturningInterval:
 class OutcomeBrackets:
     """Pairs of levels between which the outcome of a motion changes."""
 
-    motion: IntArray  # number of the motion
+    motion: IntArray  # index of the motion
     low: FloatArray  # low, high: the levels [unit of the measure]
     high: FloatArray
-    # before, after: side that the body overturns to at either level: 1 right, -1 left, 0 if it stays standing
+    # before, after: side of overturning at either level: 1 right, -1 left, 0 without overturning
     before: IntArray
     after: IntArray
 
     @property
     def starts(self) -> BoolArray:
-        """Where overturning starts."""
+        """True for brackets in which overturning starts."""
         return np.asarray((self.before == 0) & (self.after != 0))
 
     @property
     def stops(self) -> BoolArray:
-        """Where overturning stops."""
+        """True for brackets in which overturning stops."""
         return np.asarray((self.before != 0) & (self.after == 0))
 
     def __len__(self) -> int:
         return int(self.motion.size)
 
-    def chosen(self, which: Any) -> "OutcomeBrackets":
-        return OutcomeBrackets(*(values[which] for values in vars(self).values()))
+    def chosen(self, selection: Any) -> "OutcomeBrackets":
+        return OutcomeBrackets(*(values[selection] for values in vars(self).values()))
 
     def joined(self, other: "OutcomeBrackets") -> "OutcomeBrackets":
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
@@ -80,24 +80,24 @@ class OutcomeBrackets:
 
 
 def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> OutcomeBrackets:
-    """Return neighbouring levels, increasing along each row, between which the outcome, or the side of it, changes."""
-    row, place = np.nonzero(sides[:, 1:] != sides[:, :-1])
+    """Return neighbouring levels, increasing along each row, with different outcomes or sides of overturning."""
+    row, column = np.nonzero(sides[:, 1:] != sides[:, :-1])
     return OutcomeBrackets(
-        motion[row], levels[row, place], levels[row, place + 1], sides[row, place], sides[row, place + 1]
+        motion[row], levels[row, column], levels[row, column + 1], sides[row, column], sides[row, column + 1]
     )
 
 
 def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> OutcomeBrackets:
-    """Return narrower brackets, all cut at once in every round, to a width over level [-]."""
-    # Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
-    # them there is one that leaves the body standing: it is searched for, and splits the bracket. The first round keeps
-    # every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot
-    # make their number explode. A bracket within which a history fails stays as it is.
+    """Return brackets narrowed to a relative width [-]; each round cuts all brackets together."""
+    # Levels that overturn to the right and levels that overturn to the left are both open sets. Between two of them
+    # there is a level without overturning: the search looks for it, and splits the bracket. The first round keeps
+    # every change of outcome; later rounds keep the lowest in each bracket, so that a fractal boundary does not
+    # increase their number without limit. A bracket with a failed history is not changed.
     done = brackets.chosen(slice(0, 0))
     first = True
     while len(brackets):
-        wanted = np.maximum(tolerance * brackets.high, 4.0 * np.spacing(brackets.high))
-        wide = brackets.high - brackets.low > wanted  # Eq. 184
+        target_width = np.maximum(tolerance * brackets.high, 4.0 * np.spacing(brackets.high))
+        wide = brackets.high - brackets.low > target_width  # Eq. 184
         done, brackets = done.joined(brackets.chosen(~wide)), brackets.chosen(wide)
         if len(brackets):
             parts = PARTS if first or len(brackets) <= FEW else 2
@@ -109,36 +109,36 @@ def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> 
 def _cut(
     brackets: OutcomeBrackets, outcomes: Outcomes, parts: int, *, every: bool
 ) -> tuple[OutcomeBrackets, OutcomeBrackets]:
-    """Return the brackets that a failed history keeps from being cut, and the pieces of the others."""
-    share = np.linspace(0.0, 1.0, parts + 1)
-    levels = brackets.low[:, None] + share * (brackets.high - brackets.low)[:, None]
+    """Return the brackets with a failed history, and the pieces of the others."""
+    fraction = np.linspace(0.0, 1.0, parts + 1)
+    levels = brackets.low[:, None] + fraction * (brackets.high - brackets.low)[:, None]
     levels[:, -1] = brackets.high
     shape = (len(brackets), parts - 1)
     inner, good = outcomes(np.repeat(brackets.motion, parts - 1), levels[:, 1:-1].ravel())
-    known = good.reshape(shape).all(axis=1)
-    sides = np.hstack([brackets.before[:, None], inner.reshape(shape), brackets.after[:, None]])[known]
-    pieces = brackets_of(np.flatnonzero(known), levels[known], sides)
+    is_complete = good.reshape(shape).all(axis=1)
+    sides = np.hstack([brackets.before[:, None], inner.reshape(shape), brackets.after[:, None]])[is_complete]
+    pieces = brackets_of(np.flatnonzero(is_complete), levels[is_complete], sides)
     if not every:
         pieces = _lowest(pieces, brackets)
-    return brackets.chosen(~known), replace(pieces, motion=brackets.motion[pieces.motion])
+    return brackets.chosen(~is_complete), replace(pieces, motion=brackets.motion[pieces.motion])
 
 
 def _lowest(pieces: OutcomeBrackets, parents: OutcomeBrackets) -> OutcomeBrackets:
-    """Return the lowest change of each bracket: for sides that meet, the first stop and the start after it, if any."""
+    """Return the lowest change of each bracket; between two sides the first stop and the start after it, if any."""
     meeting = parents.starts[pieces.motion] == parents.stops[pieces.motion]
     ends = pieces.starts | pieces.stops
     split = np.isin(pieces.motion, pieces.motion[ends])
-    # where a level that leaves the body standing was found, changes from side to side are left
+    # once a level without overturning is known, changes from side to side are omitted
     kept = pieces.chosen(ends | (meeting & ~split))
-    wanted = np.where(parents.starts == parents.stops, 2, 1)[kept.motion]
+    n_wanted = np.where(parents.starts == parents.stops, 2, 1)[kept.motion]
     _, first, count = np.unique(kept.motion, return_index=True, return_counts=True)
-    place = np.arange(len(kept)) - np.repeat(first, count)
+    rank = np.arange(len(kept)) - np.repeat(first, count)
     pair = kept.starts | kept.stops
-    return kept.chosen(place < np.where(pair, wanted, 1))
+    return kept.chosen(rank < np.where(pair, n_wanted, 1))
 
 
 def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
-    """Return the intervals of levels that overturn, from where they start and stop."""
+    """Return the intervals of levels with overturning, from their starts and stops."""
     brackets = brackets.chosen(brackets.starts | brackets.stops)
     intervals = []
     middle, width = 0.5 * (brackets.low + brackets.high), brackets.high - brackets.low
@@ -153,17 +153,17 @@ def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
 def overturning_intervals(
     stripes: MultipleStripeAnalysis, tolerance: float, threads: int | None = None
 ) -> list[OverturningInterval]:
-    """Return all intervals of levels in which motions overturn a body, searched between those of stripes."""
+    """Return all intervals of levels with overturning, searched between the levels of stripes."""
     subject, responses = stripes.subject, stripes.responses
     motion = np.flatnonzero(responses.good.all(axis=1))
     zero = np.zeros((motion.size, 1))
     levels = np.hstack([zero, np.broadcast_to(stripes.levels, (motion.size, stripes.levels.size))])
     sides = np.hstack([zero.astype(np.int64), responses.sides[motion]])
 
-    def outcomes(which: IntArray, level: FloatArray) -> tuple[IntArray, BoolArray]:
-        factors = (level / subject.intensities[which]) ** (1.0 / subject.measure.power)
-        arrays = results_of(subject.table(which, factors), threads=threads)
-        reached = Responses.of(arrays, subject.parameters, which.shape)
+    def outcomes(motions: IntArray, level: FloatArray) -> tuple[IntArray, BoolArray]:
+        factors = (level / subject.intensities[motions]) ** (1.0 / subject.measure.power)
+        arrays = results_of(subject.table(motions, factors), threads=threads)
+        reached = Responses.of(arrays, subject.parameters, motions.shape)
         return reached.sides, reached.good
 
     brackets = brackets_of(motion, levels, sides)
@@ -179,35 +179,35 @@ FRACTION = (
     "whatever they do below or above: that of the stripes"
 )
 
-OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: one of one's own, and one whose coefficients are drawn
+OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: a user's law, and a law with sampled coefficients
 
 OWN_LAW = (
-    "the restitution is a law of one's own: boundaries between levels are those of the body only if its factor is the "
-    "same whenever a motion is repeated"
+    "The restitution is a user-defined law. The limits of the intervals are valid only if its coefficient is the "
+    "same each time a motion is repeated."
 )
 
 
 def check_repeatable(law: ImpactLaw) -> None:
-    """Refuse a restitution that is another one whenever a motion is repeated."""
+    """Refuse a restitution that changes when a motion is repeated."""
     if law.kind == RANDOM or law.per_history:
         raise InvalidValueError(
-            "{parameter} must be the same whenever a motion is repeated, got {law}: no level starts the overturning "
-            "if the coefficients are drawn anew", parameter="restitution", law=type(law).__name__,
-            hint='analysis="stripes" takes it',
+            "{parameter} must be the same each time a motion is repeated, got {law}: with sampled coefficients, no "
+            "level starts the overturning", parameter="restitution", law=type(law).__name__,
+            hint='Use analysis="stripes".',
         )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
-    """The outcome of an incremental dynamic analysis: that of the stripes, and the intervals between their levels.
+    """Result of an incremental dynamic analysis: the stripes, and the intervals between their levels.
 
-    A stronger motion may leave standing what a weaker one overturns (resurrection). Two definitions of the probability
-    of overturning therefore differ; both are given, each with its name.
+    A body that a motion overturns may not overturn at a higher level of this motion (resurrection). Therefore two
+    definitions of the probability of overturning differ; the result contains both, with their names.
     """
 
-    # all intervals of levels in which a motion overturns the body, by motion and level, of motions without a failed
-    # history. Survival between overturning to one side and to the other is always found; other intervals of either
-    # kind that are narrower than the distance between levels may be missed
+    # all intervals of levels with overturning, by motion and level, of motions without a failed history. Survival
+    # between overturning to one side and to the other is always detected; other intervals that are narrower than the
+    # distance between levels may be missed
     intervals: tuple[OverturningInterval, ...]
 
     kind = "incremental"
@@ -221,23 +221,23 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @property
     def restitution_note(self) -> str:
-        """What the boundaries take for granted of a law of one's own; empty for the others."""
+        """Condition of the intervals for a user-defined law; empty for other laws."""
         return OWN_LAW if self.histories.law.kind == OWN else ""
 
     @cached_property
     def complete(self) -> BoolArray:
-        """Which motions have no failed history; the others have no first crossing."""
+        """True for motions without a failed history; only these have a first crossing."""
         return np.asarray(self.responses.good.all(axis=1))
 
     @property
     def fractions(self) -> FloatArray:
-        """Fraction of the motions that overturn the body at each level; NaN where none could be computed [-]."""
+        """Fraction of the motions that overturn the body at each level; NaN without a result [-]."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.counts["overturned"] / self.trials)
 
     @cached_property
     def first_crossings(self) -> FloatArray:
-        """Lowest level at which each motion overturns the body; infinite if it does not, NaN if one failed."""
+        """Lowest level at which each motion overturns the body; infinite if none, NaN after a failed history."""
         crossings = np.where(self.complete, math.inf, math.nan)
         for interval in reversed(self.intervals):
             crossings[interval.motion] = interval.start
@@ -253,36 +253,40 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
 
     @property
     def survivals(self) -> list[tuple[int, float, float]]:
-        """Motion and ends of the levels, above an overturning one, at which it leaves the body standing after all."""
+        """Motion and ends of each interval without overturning above a level with overturning."""
         highest = float(self.levels[-1])
         return [
-            (one.motion, one.end, after.start if after is not None and after.motion == one.motion else highest)
-            for one, after in zip(self.intervals, (*self.intervals[1:], None), strict=False)
-            if not one.is_open
+            (
+                interval.motion,
+                interval.end,
+                following.start if following is not None and following.motion == interval.motion else highest,
+            )
+            for interval, following in zip(self.intervals, (*self.intervals[1:], None), strict=False)
+            if not interval.is_open
         ]
 
     def resurrected(self, wider_than: float = 0.0) -> list[int]:
-        """Return which motions leave the body standing at levels above one at which they overturn it."""
-        # a width over the lowest of these levels such as WIDE leaves narrow survivals out [-]
-        least = checks.within("wider_than", wider_than, 0.0, 1e6)
-        return sorted({motion for motion, low, high in self.survivals if high - low > least * low})
+        """Return the indices of motions with levels without overturning above a level with overturning."""
+        # a relative width such as WIDE excludes narrow survivals [-]
+        min_width = checks.within("wider_than", wider_than, 0.0, 1e6)
+        return sorted({motion for motion, low, high in self.survivals if high - low > min_width * low})
 
     @property
     def resurrection(self) -> str:
-        """How many motions leave the body standing at levels above one at which they overturn it, in a sentence."""
+        """Number of motions without overturning above a level with overturning, as a sentence."""
         facts = {
             "standing": len(self.resurrected()), "count": int(self.complete.sum()), "wide": len(self.resurrected(WIDE)),
         }  # fmt: skip
         return Message(
-            "{standing} of {count} motion left it standing at levels above one that overturns it, {wide} of them over "
-            "more than 1 % of the level.",
+            "{standing} of {count} motion does not overturn the body at levels above a level that does, {wide} of them "
+            "over more than 1 % of the level.",
             facts,
-            "{standing} of {count} motions left it standing at levels above one that overturns it, {wide} of them over "
-            "more than 1 % of the level.",
+            "{standing} of {count} motions do not overturn the body at levels above a level that does, {wide} of them "
+            "over more than 1 % of the level.",
         )
 
     def share_resurrected(self, wider_than: float = 0.0) -> float:
-        """Return the share of resurrected motions among those without a failed history, from 0 to 1 [-]."""
+        """Return the fraction of resurrected motions among those without a failed history [-]."""
         return len(self.resurrected(wider_than)) / max(1, int(self.complete.sum()))
 
     @property
@@ -290,7 +294,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
         """All outcomes of the levels, the first crossings and the intervals, with their units."""
         rows = [(i.motion, i.start, i.end) for i in self.intervals]
         motion, start, end = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.empty(0),) * 3
-        words = {f"definition_{name.replace(' ', '_')}": meaning for name, meaning in self.definitions.items()}
+        definitions = {f"definition_{name.replace(' ', '_')}": meaning for name, meaning in self.definitions.items()}
         return (
             super()
             .dataset.assign(
@@ -299,11 +303,11 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
                 interval_start=("interval", start, self.subject.label),
                 interval_end=("interval", end, self.subject.label),
             )
-            .assign_attrs(**words)
+            .assign_attrs(**definitions)
         )
 
     def summary(self) -> dict[str, Any]:
-        """Both definitions, each with its curve, and the resurrections too."""
+        """Return both definitions with their curves, and the resurrections."""
         first = self.first_crossing_fit
         return {
             **super().summary(),

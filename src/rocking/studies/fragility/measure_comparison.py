@@ -1,4 +1,4 @@
-"""Which measure of intensity says most about a body: efficiency and sufficiency of several, on the same histories."""
+"""Compare the efficiency and sufficiency of intensity measures on the same histories."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,37 +23,37 @@ if TYPE_CHECKING:
 DEFAULT_MEASURES = (
     "pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(0.5)", "sa(1.0)", "arias", "cav", "housner",
 )  # fmt: skip
-"""Measures that are compared if none are named."""
+"""Default measures of the comparison."""
 
 
 @dataclass(frozen=True)
 class MeasureScore:
-    """How well one measure predicts rocking and overturning."""
+    """Efficiency and sufficiency of one measure."""
 
     im: str  # im, unit: name and unit of the measure
     unit: str
-    # standard deviation of ln(theta/alpha) about its line over the ln of the measure, of histories that rocked and
-    # stayed standing: the less, the fewer motions are needed [-]
+    # standard deviation of ln(theta/alpha) about its regression on ln of the measure, of histories that rocked
+    # without overturning: with a smaller one, fewer motions are needed [-]
     efficiency: float
     slope: float  # slope of that line [-]
-    proficiency: float  # efficiency over the size of the slope: the uncertainty of the measure that does the same [-]
+    proficiency: float  # efficiency over the absolute slope: equivalent dispersion of the measure [-]
     determination: float  # R squared of that line [-]
     overturning_dispersion: float  # dispersion of the lognormal curve of overturning; NaN if there is none [-]
-    overturning_verdict: str  # what can be said of that curve
-    # for each column of the metadata the p-value of a slope of the residuals over it: a small one says that the
-    # measure leaves out what the column knows [-]
+    overturning_verdict: str  # verdict on that curve
+    # p-value of the slope of the residuals over each column of the metadata: a small value shows that the measure
+    # does not include the effect of the column [-]
     sufficiency: Mapping[str, float]
-    rocked: int  # rocked, overturned: histories that the line and the curve rest on
+    rocked: int  # rocked, overturned: numbers of histories of the regression and the curve
     overturned: int
-    barely_lifted: int = 0  # histories that rocked too little for the line, and were left out of it
+    barely_lifted: int = 0  # number of histories that rocked too little for the regression
 
 
 @dataclass(frozen=True)
 class MeasureComparison:
     """Measures of intensity ranked by efficiency, the best first."""
 
-    scores: tuple[MeasureScore, ...]  # one a measure
-    # measures that cannot be ranked, and why: one that is the same for all motions says nothing about them
+    scores: tuple[MeasureScore, ...]  # one per measure
+    # measures without a rank, with the reason: they are equal for all motions
     left_out: Mapping[str, str]
     least: float = LEAST  # rotation over alpha below which a history counts as barely lifted [-]
 
@@ -71,7 +71,7 @@ class MeasureComparison:
         return rows
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """Return the table, one row a measure, by rank."""
+        """Return the table, one row per measure, by rank."""
         frame: pd.DataFrame = extra("pandas", "a table").DataFrame(self.rows()).set_index("rank")
         return frame
 
@@ -84,7 +84,7 @@ def compare_measures(
     least: float | None = None,
     progress: Progress = None,
 ) -> MeasureComparison:
-    """Rank measures of intensity by how well they predict the histories of one cloud analysis.
+    """Rank measures of intensity by their efficiency for the histories of one cloud analysis.
 
     Efficiency is that of Luco & Cornell 2007 (Earthquake Spectra 23:357): the scatter of the response given the
     measure. Sufficiency is tested by the residuals: given the measure, nothing else of the motion should matter. With
@@ -93,14 +93,14 @@ def compare_measures(
     Parameters
     ----------
     analysis : CloudAnalysis
-        The histories; all measures see the same ones.
+        The histories, common to all measures.
     ims : sequence of str or IntensityMeasure
-        What to compare.
+        The measures.
     metadata : mapping of str to array_like, optional
-        Numbers that belong to the motions, such as magnitude, ln of the distance, duration; one a motion.
+        Quantities of the motions, such as magnitude, ln of the distance, duration; one number per motion.
     least : float, optional
-        Rotation over alpha below which a history counts as barely lifted, and is left out of the lines: rotations next
-        to nothing have logarithms that outweigh all others. That of the analysis, 0.01 there, if not given [-].
+        Smallest rotation over alpha of a history in the regressions: the logarithms of very small rotations would
+        dominate them. Default: the value of the analysis [-].
     progress : callable, optional
         Called with the number of motions measured since the last call; all are measured once for each measure.
 
@@ -120,41 +120,41 @@ def compare_measures(
     >>> import rocking as rk
     >>> from rocking.studies.fragility import fragility_analysis
     >>> pulses = [rk.pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
-    >>> found = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9, analysis="cloud")
-    >>> compare_measures(found, ["pga", "pgv", "pgv/pga"]).best
+    >>> cloud = fragility_analysis(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9, analysis="cloud")
+    >>> compare_measures(cloud, ["pga", "pgv", "pgv/pga"]).best
     'pgv'
     """
-    chosen = [measure(one) for one in ims]
-    names = [one.name for one in chosen]
+    measures = [measure(im) for im in ims]
+    names = [im.name for im in measures]
     if not names or len(set(names)) < len(names):
-        raise InvalidValueError("ims must be at least one, none of them twice, got {names}", names=names)
+        raise InvalidValueError("ims must contain at least one measure, each once, got {names}", names=names)
     check_progress(progress)
     if least is not None:
         analysis = replace(analysis, least=checked_least(least))
     columns = {name: _column(name, values, analysis) for name, values in (metadata or {}).items()}
     scores, left_out = [], {}
-    for one in chosen:
-        other = replace_measure(analysis, one)
+    for im in measures:
+        candidate = replace_measure(analysis, im)
         if progress is not None:
             progress(len(analysis.subject.motions))
-        if len(np.unique(other.motion_levels[other.clear])) == 1:
-            left_out[one.name] = f"{one.name} is {other.motion_levels[0]:g} {one.unit} for all that rocked"
+        if len(np.unique(candidate.motion_levels[candidate.clear])) == 1:
+            left_out[im.name] = f"{im.name} is {candidate.motion_levels[0]:g} {im.unit} for all that rocked"
         else:
-            scores.append(_score(other, columns))
+            scores.append(_score(candidate, columns))
     if not scores:
         raise InvalidValueError("no measure can be ranked: {reasons}", reasons="; ".join(left_out.values()))
     return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.least)
 
 
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
-    """Return the same histories against another measure: it alone is computed again, and what is fitted to it."""
+    """Return the same histories with another measure; computes the measure and its fits only."""
     subject = replace(analysis.subject, measure=measure(name))
     factor = float(np.asarray(analysis.histories.scales).ravel()[0])
     return replace(analysis, subject=subject, motion_levels=subject.measure.scaled(subject.intensities, factor))
 
 
 def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
-    line, worst, of = analysis.regression, NAMED["overturning"], analysis.subject.measure
+    line, worst, im = analysis.regression, NAMED["overturning"], analysis.subject.measure
     dispersion = math.nan
     try:
         fit = fits_of(analysis.subject, [worst], analysis.motion_levels, analysis.responses)[worst.name]
@@ -164,10 +164,10 @@ def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> Measur
         curve, verdict = curve_of(worst.name, fit), fit.verdict
         dispersion = math.nan if curve is None else curve.dispersion
     proficiency = line.scatter / abs(line.slope) if line.slope else math.inf  # Eq. 222
-    left = {name: regression(values[analysis.clear], line.residuals) for name, values in columns.items()}
+    residual_fits = {name: regression(values[analysis.clear], line.residuals) for name, values in columns.items()}
     return MeasureScore(
-        of.name, of.unit, line.scatter, line.slope, proficiency, line.determination, dispersion, verdict,
-        {name: each.p_value for name, each in left.items()}, line.count,
+        im.name, im.unit, line.scatter, line.slope, proficiency, line.determination, dispersion, verdict,
+        {name: fit_of_column.p_value for name, fit_of_column in residual_fits.items()}, line.count,
         int(np.nansum(analysis.responses.overturned)), analysis.barely_lifted,
     )  # fmt: skip
 
@@ -177,7 +177,7 @@ def _column(name: str, column: Any, analysis: CloudAnalysis) -> FloatArray:
     count = len(analysis.subject.motions)
     if values.shape != (count,) or not np.isfinite(values).all():
         raise InvalidValueError(
-            "metadata[{name!r:.40}] must be {count} finite numbers, one a motion, got shape {shape}", name=name,
+            "metadata[{name!r:.40}] must be {count} finite numbers, one per motion, got shape {shape}", name=name,
             count=count, shape=values.shape,
         )  # fmt: skip
     return values

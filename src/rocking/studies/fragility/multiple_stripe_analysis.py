@@ -1,4 +1,4 @@
-"""Multiple stripes: every motion brought to every level of the measure, and how many reach which state there."""
+"""Multiple stripes: every motion scaled to every level of the measure, with counts of the states."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +20,7 @@ DEFINITION = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MultipleStripeAnalysis(FragilityAnalysis):
-    """The outcome of a multiple stripe analysis; states and rotations are of shape (motions, levels)."""
+    """Result of a multiple stripe analysis; states and rotations have the shape (motions, levels)."""
 
     levels: FloatArray  # levels of the measure [its unit]
 

@@ -1,4 +1,4 @@
-"""The question of a fragility: a subject, the analysis of it that is asked for, its histories and its answer."""
+"""A fragility analysis before it is computed: its subject, its histories, and the analysis of their results."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,20 +25,20 @@ ANALYSES = ("stripes", "cloud", "incremental")
 
 _MOST_FACTOR = 1e6  # on a motion, as in all histories [-]
 _REACH = (0.9, 9.0, 16)
-"""Levels that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
+"""Default levels: lowest and highest over the uplift level, number; in equal ratios."""
 
 
 @dataclass(frozen=True, eq=False)
 class FragilityQuestion:
-    """A subject with the analysis of it that is asked for: its histories, and what their results make."""
+    """A subject and the requested analysis, with its histories."""
 
     subject: Subject
     analysis: str  # one of `ANALYSES`
     limit_states: tuple[LimitState, ...]
-    levels: FloatArray  # to which every motion is brought; of a cloud that of each motion [unit of the measure]
+    levels: FloatArray  # levels of the stripes; for a cloud the level of each motion [unit of the measure]
     histories: Product
-    least: float  # rotation over alpha below which a history of a cloud is barely lifted [-]
-    tolerance: float  # width over level to which an incremental analysis searches [-]
+    least: float  # smallest rotation over alpha of a history in the regression of a cloud [-]
+    tolerance: float  # relative width at which an incremental search ends [-]
 
     @classmethod
     def of(
@@ -46,7 +46,7 @@ class FragilityQuestion:
         limit_states: Sequence[float | str] = (0.5,), *, scale: float | None = None, least: float | None = None,
         tolerance: float | None = None,
     ) -> Self:  # fmt: skip
-        """Return what is asked, as `rocking.fragility` says it; nothing is computed but intensities."""
+        """Return the question with parameters as for `rocking.fragility`; computes intensities only."""
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
         odd = [name for name, value in (("scale", scale), ("least", least)) if value is not None]
         if odd and kind != "cloud":
@@ -57,7 +57,7 @@ class FragilityQuestion:
         tolerance = checks.within("tolerance", 1e-8 if tolerance is None else tolerance, 0.0, 0.1)
         if kind == "cloud":
             if levels is not None:
-                raise InvalidValueError("levels are not for a cloud, which takes the motions as they are")
+                raise InvalidValueError("A cloud uses the motions as recorded. Remove levels.")
             scale = checks.positive("scale", 1.0 if scale is None else scale)
             at, factors = measure.scaled(subject.intensities, scale), np.array([scale])
         else:
@@ -70,16 +70,16 @@ class FragilityQuestion:
         return cls(subject, kind, limit_states_of(limit_states), at, histories, least, tolerance)
 
     def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
-        """Return the analysis of the results of the histories; the search of an incremental one is done here."""
+        """Return the analysis of the results of the histories; an incremental analysis searches its intervals here."""
         shape = (len(self.subject.motions), *(self.levels.shape if self.analysis != "cloud" else ()))
         responses = Responses.of(arrays, self.subject.parameters, shape)
-        known = self.subject, self.limit_states, self.histories, responses, self.levels
+        common = self.subject, self.limit_states, self.histories, responses, self.levels
         if self.analysis == "cloud":
-            return CloudAnalysis(*known, self.least)
-        stripes = MultipleStripeAnalysis(*known)
+            return CloudAnalysis(*common, self.least)
+        stripes = MultipleStripeAnalysis(*common)
         if self.analysis == "stripes":
             return stripes
-        return IncrementalDynamicAnalysis(*known, tuple(overturning_intervals(stripes, self.tolerance, threads)))
+        return IncrementalDynamicAnalysis(*common, tuple(overturning_intervals(stripes, self.tolerance, threads)))
 
     def computed(self, threads: int | None = None, progress: Progress = None) -> MultipleStripeAnalysis | CloudAnalysis:
         """Return the analysis, its histories computed in memory."""
@@ -87,24 +87,26 @@ class FragilityQuestion:
 
 
 def _check_factors(subject: Subject, factors: FloatArray) -> None:
-    """Refuse a motion that a factor beyond those of all histories would bring to the levels: a dead channel."""
-    least = np.atleast_2d(factors).min(axis=1)
-    if (most := int(least.argmax())) >= 0 and not least[most] <= _MOST_FACTOR:
-        value, unit = float(subject.intensities[most]), subject.measure.unit
+    """Refuse a motion that needs a scale factor above the limit to reach the levels, such as a dead channel."""
+    lowest = np.atleast_2d(factors).min(axis=1)
+    if (worst := int(lowest.argmax())) >= 0 and not lowest[worst] <= _MOST_FACTOR:
+        value, unit = float(subject.intensities[worst]), subject.measure.unit
         raise InvalidValueError(
-            "motion {motion!r:.80} has {measure} = {amount:.3g} {unit}; a factor of {factor:.3g} brings it to the "
-            "lowest level, and up to {limit:g} are allowed", motion=subject.motions[most].name,
-            measure=subject.measure.name, amount=value, unit=unit, factor=least[most], limit=_MOST_FACTOR,
-            hint="is its channel dead? Leave it out",
+            "motion {motion!r:.80} has {measure} = {amount:.3g} {unit}. It needs a scale factor of {factor:.3g} to "
+            "reach the lowest level; at most {limit:g} is allowed.", motion=subject.motions[worst].name,
+            measure=subject.measure.name, amount=value, unit=unit, factor=lowest[worst], limit=_MOST_FACTOR,
+            hint="Check for a dead channel, or remove the motion.",
         )  # fmt: skip
 
 
 def default_levels(subject: Subject) -> FloatArray:
-    """Return levels around those that lift the body, for a measure that says which these are [its unit]."""
+    """Return levels around the uplift level of the body, for a measure that has one [its unit]."""
     if subject.measure.uplift is None:
         raise InvalidValueError(
-            "which levels of {measure}? Give levels in {unit}", measure=subject.measure.name, unit=subject.measure.unit
+            "levels of {measure} are missing. Add levels in {unit}.",
+            measure=subject.measure.name,
+            unit=subject.measure.unit,
         )
     low, high, count = _REACH
-    lifts = subject.measure.uplift(subject.scale)
-    return geometric(low * lifts, high * lifts, count)
+    uplift = subject.measure.uplift(subject.scale)
+    return geometric(low * uplift, high * uplift, count)

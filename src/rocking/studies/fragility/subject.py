@@ -1,4 +1,4 @@
-"""What all fragility analyses share: a body under motions, limit states read from its responses, and their curves."""
+"""Common parts of all fragility analyses: a body under motions, limit states of its responses, and their curves."""
 
 import json
 import math
@@ -46,25 +46,25 @@ _ROCKED = Outcome.ROCKED, Outcome.ROCKED_AND_SLID, Outcome.FLEW
 class Subject:
     """A body with its restitution, a set of motions, and the measure of their intensity."""
 
-    parameters: RockingParameters  # the body as the equations see it
+    parameters: RockingParameters  # parameters of the equations of the body
     motions: MotionSet
     measure: IntensityMeasure
-    settings: Settings  # how to integrate
-    engine: str = "auto"  # which engine
+    settings: Settings  # of the integration
+    engine: str = "auto"  # name of the engine
 
     @classmethod
     def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
         """Return the subject of an analysis; options: gravity [m/s2], engine and other fields of `Settings`."""
-        rest = dict(options)
-        engine = rest.pop("engine", "auto")
-        settings = study_settings(body, rest, rest.pop("gravity", conventions.g))
+        remaining = dict(options)
+        engine = remaining.pop("engine", "auto")
+        settings = study_settings(body, remaining, remaining.pop("gravity", conventions.g))
         parameters = mechanics_of(settings).parameters(body, restitution, settings)
         all_motions = motions if isinstance(motions, MotionSet) else MotionList(motions, plane=isinstance(body, Body))
         return cls(parameters, all_motions, measure(measure_name), settings, engine)
 
     @cached_property
     def scale(self) -> RockingScale:
-        """What of the body the measures know: of the side that lifts first."""
+        """Quantities of the body for the measures, from the side that lifts first."""
         side = min(self.parameters.right, self.parameters.left, key=lambda s: s.slenderness_angle)
         alpha, gravity = side.slenderness_angle, self.settings.gravity
         tangent = alpha if self.settings.linear else math.tan(alpha)  # Eq. 25
@@ -72,14 +72,14 @@ class Subject:
 
     @cached_property
     def intensities(self) -> FloatArray:
-        """Measure of each motion as it is given [unit of the measure]."""
+        """Measure of each motion as recorded [unit of the measure]."""
         return self.measure.values(self.motions, self.scale)
 
     @cached_property
     def uplift_threshold(self) -> float | None:
         """Level above which every motion lifts the body, and below which none does; None if the measure has none.
 
-        There is one where `lowest_uplift` is a level, of a body with equal sides.
+        It exists for a body with equal sides that has a `lowest_uplift`.
         """
         equal = math.isclose(
             self.parameters.right.slenderness_angle, self.parameters.left.slenderness_angle, rel_tol=1e-12
@@ -88,9 +88,9 @@ class Subject:
 
     @cached_property
     def lowest_uplift(self) -> float | None:
-        """Level below which no motion lifts the body, that of its weaker side; None if the measure has none.
+        """Level below which no motion lifts the body (its weaker side); None if the measure has none.
 
-        There is one for PGA, absolute or normalised, under horizontal motions of a body that does not slide before.
+        It exists for PGA, absolute or normalised, under horizontal motions of a body that does not slide before uplift.
         """
         settings = self.settings
         if not mechanics_of(settings).in_plane:
@@ -106,18 +106,18 @@ class Subject:
             motion = self.motions[k]
             names.append(motion.name)
             horizontal &= getattr(motion, "vertical", None) is None
-        self.__dict__.setdefault("are_horizontal", horizontal)  # no motion is made twice for both
+        self.__dict__.setdefault("are_horizontal", horizontal)  # avoids a second pass over the motions
         return names
 
     @cached_property
     def are_horizontal(self) -> bool:
-        # without the names: those of ten million motions take more room than all results
+        # without the names: for ten million motions they need more memory than all results
         return all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
 
     @cached_property
     def clusters(self) -> IntArray:
-        """Number of the first motion that is the same as each motion, sample by sample."""
-        # only motions of equal intensity are compared: to make all those of a large set once more would take long
+        """Index of the first motion with samples equal to those of each motion."""
+        # only motions of equal intensity are compared: to generate all motions of a large set again takes long
         _, group, size = np.unique(self.intensities, return_inverse=True, return_counts=True)
         clusters, first = np.arange(len(self.motions)), dict[str, int]()
         for k in np.flatnonzero(size[group] > 1).tolist():
@@ -126,19 +126,19 @@ class Subject:
 
     @cached_property
     def support(self) -> str:
-        """Where the motions act: "ground", a floor, or several of these."""
+        """Support of the motions: "ground", a floor, or several of them."""
         if not isinstance(self.motions, MotionList):
             return GROUND  # families are of the ground
         return ", ".join(dict.fromkeys(support_of(self.motions[k]) for k in range(len(self.motions))))
 
     @property
     def measure_words(self) -> str:
-        """Words of the measure, with the floor on which the motions act."""
+        """Description of the measure, with the floor of the motions."""
         return words_on(self.support, self.measure.words)
 
     @property
     def label(self) -> dict[str, str]:
-        """Unit and words of the measure, for labelled datasets."""
+        """Unit and description of the measure, for labelled datasets."""
         unit = self.measure.unit
         return {"units": "1" if unit == "-" else unit, "long_name": self.measure_words}
 
@@ -154,7 +154,7 @@ class Subject:
         )
 
     def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
-        """Return histories one by one: numbers of motions, and the factor on each [-]."""
+        """Return a table of histories from the indices of their motions and their scale factors [-]."""
         return HistoryTable(
             self.motions, motion, self._sides | {"scale": factors},
             law=self.parameters.law, settings=self.settings, engine=self.engine,
@@ -162,7 +162,7 @@ class Subject:
 
     @property
     def _provenance(self) -> str:
-        """Source and processing of the motions; of a family what makes them."""
+        """Source and processing of the motions; the description of a family."""
         if not isinstance(self.motions, MotionList):
             return json.dumps(self.motions.description())
         return json.dumps([list(provenance_of(self.motions[k])) for k in range(len(self.motions))])
@@ -194,22 +194,22 @@ def checked_levels(name: str, values: Any, unit: str) -> FloatArray:
 
 @dataclass(frozen=True)
 class LimitState:
-    """A state that a history reaches or does not; one that reaches a state has reached all before it."""
+    """A state that a history reaches or does not; a history that reaches a state has reached all lesser states."""
 
     name: str  # ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``
-    level: float  # rotation over alpha to be exceeded: 0 for rocking at all, infinite for overturning [-]
+    level: float  # rotation over alpha to exceed: 0 for rocking, infinite for overturning [-]
 
 
 NAMED = {"rocking": LimitState("rocking", 0.0), "overturning": LimitState("overturned", math.inf)}
 
 
 def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState, ...]:
-    """Return limit states, from the least: rotations over alpha (increasing [-]), ``rocking``, ``overturning``.
+    """Return limit states from the mildest: rotations over alpha (increasing [-]), ``rocking``, ``overturning``.
 
-    Numbers alone include rocking and overturning; where a name is among them, the states are those given.
+    Rocking and overturning are added to numbers; a sequence with a name is complete.
     """
-    given: Any = [levels] if isinstance(levels, str) else levels
-    names = [level for level in given if isinstance(level, str)] if isinstance(given, list | tuple) else []
+    items: Any = [levels] if isinstance(levels, str) else levels
+    names = [level for level in items if isinstance(level, str)] if isinstance(items, list | tuple) else []
     if unknown := [name for name in names if name not in NAMED]:
         raise InvalidValueError(
             parameter="limit_states", allowed=f"rotations over alpha, {' or '.join(NAMED)}", value=unknown[0]
@@ -218,7 +218,7 @@ def limit_states_of(levels: Sequence[float | str] = (0.5,)) -> tuple[LimitState,
         raise InvalidValueError(
             "{parameter} must contain each name at most once, got {value}", parameter="limit_states", value=levels
         )
-    between = _rotations([level for level in given if not isinstance(level, str)] if names else given)
+    between = _rotations([level for level in items if not isinstance(level, str)] if names else items)
     chosen = names or NAMED
     return tuple(
         state for state in (NAMED["rocking"], *between, NAMED["overturning"])
@@ -237,31 +237,31 @@ def _rotations(levels: Any) -> tuple[LimitState, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """What the states are read from: the results of some histories, of any shape."""
+    """Results of histories, of any shape, from which limit states are evaluated."""
 
     outcome: np.ndarray  # codes of `Outcome`
     # largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-]
     rotation: FloatArray
     sides: np.ndarray  # side overturned to: 1 right, -1 left, 0 if it did not
-    # 1 where the ground would have to pull, as of `lost_contact`; None where it is not known [-]
+    # 1 for a tensile contact force, as of `lost_contact`; None if not computed [-]
     lost: FloatArray | None = None
 
     @classmethod
     def of(cls, arrays: Arrays, parameters: Any, shape: tuple[int, ...]) -> "Responses":
-        """Return the responses of one body from results, in a shape."""
+        """Return the responses of one body from results, in the given shape."""
         missing = {"outcome", "peak_rotation"} - set(arrays)
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
         if missing or sizes != {math.prod(shape)}:
             raise InvalidValueError(
                 "{parameter} must be outcome and peak_rotation of {count} histories, got {names} of {sizes}",
                 parameter="results", count=math.prod(shape), names=sorted(arrays), sizes=sorted(sizes),
-                hint="of another study?",
+                hint="Check that the results belong to this study.",
             )  # fmt: skip
         outcome = np.asarray(arrays["outcome"], dtype=np.int8).reshape(shape)
         peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
         right, left = parameters.right.slenderness_angle, parameters.left.slenderness_angle
         over, to_right = outcome == Outcome.OVERTURNED.code, peak > 0.0
-        rotation = np.abs(peak)  # there may be ten million of them: no more copies than needed
+        rotation = np.abs(peak)  # up to ten million: avoid copies
         rotation /= right if right == left else np.where(to_right, right, left)
         rotation[over], rotation[outcome == Outcome.FAILED.code] = math.inf, math.nan
         lost = lost_contact(arrays).reshape(shape) if "least_force" in arrays else None
@@ -269,23 +269,23 @@ class Responses:
 
     @property
     def contact(self) -> str:
-        """In how many histories the ground would have to pull, as a sentence; empty if in none."""
+        """Number of histories with a tensile contact force, as a sentence; empty if 0."""
         return "" if self.lost is None else contact_words(self.lost)
 
     @property
     def good(self) -> BoolArray:
-        """Which histories could be computed."""
+        """True for histories that could be computed."""
         return np.asarray(self.outcome != Outcome.FAILED.code)
 
     @property
     def rocked(self) -> BoolArray:
-        """Which histories rocked and stayed standing; what hops flat does not rock."""
+        """True for histories that rocked without overturning; a flat hop is not rocking."""
         hopped = (self.outcome == Outcome.FLEW.code) & ~(self.rotation > 0.0)
-        return np.asarray(np.isin(self.outcome, [each.code for each in _ROCKED]) & ~hopped)
+        return np.asarray(np.isin(self.outcome, [outcome.code for outcome in _ROCKED]) & ~hopped)
 
     @property
     def overturned(self) -> FloatArray:
-        """1 where it overturned, 0 where it did not, NaN where there is no result [-]."""
+        """1 if overturned, 0 if not, NaN without a result [-]."""
         return overturned(self.outcome)
 
     def exceed(self, state: LimitState) -> FloatArray:
@@ -309,7 +309,7 @@ class Responses:
         return variables
 
     def counts(self) -> dict[Outcome, int]:
-        """Return how many were not lifted, rocked, overturned, and slid or flew; those without a result are in none."""
+        """Return the number of histories by outcome, without those that failed."""
         counts = {outcome: int((self.outcome == outcome.code).sum()) for outcome in Outcome}
         del counts[Outcome.FAILED]
         always = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
@@ -318,16 +318,16 @@ class Responses:
 
 @dataclass(frozen=True)
 class UpliftCheck:
-    """Whether the histories rocked exactly where rocking is known beforehand: above PGA = g tan(alpha), never below."""
+    """Check of the histories against the theory: rocking above PGA = g tan(alpha), none below."""
 
-    # level of the measure that lifts the body [unit of the measure]; None if no level of this measure decides
+    # uplift level [unit of the measure]; None if the measure has none
     threshold: float | None
     checked: int  # histories that were compared; those within 1e-9 of the threshold are not
     contradictions: int  # histories that rocked below it or did not above it
 
     @property
     def verdict(self) -> str:
-        """The result in words."""
+        """The result as a sentence."""
         if self.threshold is None:
             return "no level of this measure alone decides whether the body rocks"
         return (
@@ -337,7 +337,7 @@ class UpliftCheck:
 
 
 def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> UpliftCheck:
-    """Compare which histories rocked, each at its level [unit of the measure], with the threshold of uplift."""
+    """Return the check of histories at their levels [unit of the measure] against the threshold of uplift."""
     threshold = subject.uplift_threshold
     if threshold is None:
         return UpliftCheck(None, 0, 0)
@@ -353,16 +353,16 @@ def fits_of(
     uncertain = [state for state in limit_states if state.level > 0.0 or subject.uplift_threshold is None]
     reached = [responses.exceed(state) == 1.0 for state in uncertain]
     counts = pooled(levels, responses.good, reached, subject.clusters)
-    return {state.name: fit_counts(each) for state, each in zip(uncertain, counts, strict=True)}
+    return {state.name: fit_counts(count) for state, count in zip(uncertain, counts, strict=True)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FragilityAnalysis(ABC):
-    """What every fragility analysis has: histories of one subject, the states that they reached, and their curves."""
+    """Base of all fragility analyses: histories of one subject, the states that they reached, and their curves."""
 
     subject: Subject
     limit_states: tuple[LimitState, ...]  # from rocking to overturned
-    histories: Product  # what was computed
+    histories: Product  # computed histories
     responses: Responses
 
     kind: ClassVar[str]
@@ -380,16 +380,16 @@ class FragilityAnalysis(ABC):
 
     @property
     def failed(self) -> int:
-        """Number of histories that could not be computed; they count nowhere."""
+        """Number of histories that could not be computed; no count includes them."""
         return int((~self.responses.good).sum())
 
     @cached_property
     def fits(self) -> dict[str, LognormalFit]:
-        """Lognormal curve of each state from the outcomes; none for rocking where a level decides it."""
+        """Lognormal curve of each state from the outcomes; none for rocking if a level decides it."""
         return fits_of(self.subject, self.limit_states, self.history_levels, self.responses)
 
     def fit_of(self, name: str) -> LognormalFit:
-        """Return the curve of ``rocking`` or ``overturning``, whether or not it is among the states."""
+        """Return the curve of ``rocking`` or ``overturning``, also if it is not among the states."""
         state = NAMED[name]
         if state.name in self.fits:
             return self.fits[state.name]
@@ -397,7 +397,7 @@ class FragilityAnalysis(ABC):
 
     @property
     def verdicts(self) -> dict[str, list[str]]:
-        """What is to be known of curves that are not likeliest, with the states; intervals are told apart."""
+        """Verdicts on curves that are no maximum of the likelihood, with their states; without those on intervals."""
         limit_states: dict[str, list[str]] = {}
         for name, fit in self.fits.items():
             if fit.separation is not Separation.OVERLAP or not fit.exists:
@@ -419,7 +419,7 @@ class FragilityAnalysis(ABC):
         return labelled
 
     def summary(self) -> dict[str, Any]:
-        """Return what is printed, as plain values, medians in the unit of the measure: definition, check, curves."""
+        """Return definition, check and curves as plain values, medians in the unit of the measure."""
         return {
             "analysis": self.kind,
             "definition": self.definition,

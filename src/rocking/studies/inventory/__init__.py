@@ -1,4 +1,4 @@
-"""Inventories: which objects of a list stay standing at a level of shaking, in a ranked table and plain words."""
+"""Inventories: rate the objects of a list at an intensity level; a ranked table with sentences."""
 
 from rocking.studies.inventory._inventory import inventory
 from rocking.studies.inventory.assessment import assess

@@ -1,4 +1,4 @@
-"""The front door: an inventory assessed, as a labelled dataset."""
+"""Assessment of an inventory, as a labelled dataset."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,26 +20,26 @@ from rocking.studies.inventory.table import advice, plan_words, remarks, sentenc
 if TYPE_CHECKING:
     import xarray as xr
 
-# of each restitution, object and direction: kind and meaning
+# over restitution, object and direction: type and description
 _OF_DIRECTIONS = {
-    "count": (np.int64, "motions that were computed"),
-    "lifted": (np.int64, "motions that lift it"),
-    "overturned": (np.int64, "motions that overturn it"),
-    "slid": (np.int64, "motions that make it slide, of objects in three dimensions"),
-    "failed": (np.int64, "motions that could not be computed"),
-    "lost_contact": (np.int64, "motions in which the ground would have to pull"),
+    "count": (np.int64, "number of computed motions"),
+    "lifted": (np.int64, "number of motions with uplift"),
+    "overturned": (np.int64, "number of motions with overturning"),
+    "slid": (np.int64, "number of motions with sliding, of objects in three dimensions"),
+    "failed": (np.int64, "number of motions that could not be computed"),
+    "lost_contact": (np.int64, "number of motions with a tensile contact force"),
     "median_rotation": (
         np.float64,
-        "median of the peak rotation over the slenderness angle; infinite if it overturns there",
+        "median of the peak rotation over the slenderness angle; infinite if overturned",
     ),
     "high_rotation": (
         np.float64,
-        "84 % quantile of the peak rotation over the slenderness angle; infinite if it overturns",
+        "84 % quantile of the peak rotation over the slenderness angle; infinite if overturned",
     ),
 }
 
 
-def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
+def inventory(  # noqa: PLR0913 - users set every one of them
     objects: str | Path | Inventory | Sequence[InventoryObject],
     motions: str | Hazard | GroundMotion | Mapping[str, GroundMotion] | Sequence[Any] = FAMILY,
     restitution: Any = None,
@@ -54,51 +54,52 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     map_columns: str | Mapping[str, str] | None = None,
     **options: Any,
 ) -> "xr.Dataset":
-    """Return which objects of a list stay standing at a level of shaking, the worst first.
+    """Assess the objects of a list at an intensity level; return them with the worst first.
 
     Parameters
     ----------
     objects : str, Path, Inventory or sequence of InventoryObject
         A list as .xlsx, .ods or CSV with the columns ``name``, ``width_cm``, ``depth_cm``, ``height_cm`` and more, in
-        English, German, Italian, French, Spanish, Greek, Chinese or Turkish; or the objects. Scans and other bodies in
-        space are named in a column ``body_file``, beside the list, with ``units`` of a mesh.
+        English, German, Italian, French, Spanish, Greek, Chinese or Turkish; or the objects. A column ``body_file``
+        names scans and other 3D bodies in the folder of the list, with ``units`` of a mesh.
     motions : str, Hazard, GroundMotion, mapping, or a sequence of them
-        The family of synthetic motions, or records; each acts in either direction by itself. Of records by axis, as for
-        `simulate`, the one with the largest peak does, and in three dimensions the other horizontal one across it.
+        The family of synthetic motions, or records; each acts in each direction separately. Of records by axis, as for
+        `simulate`, the component with the largest peak acts; in three dimensions the other horizontal component acts
+        at right angles.
     restitution : str, RestitutionModel, float or mapping
         Restitution model, compared with Housner's (KED if Housner's is selected). Default: the calibrated model with a
         sampled coefficient per motion, compared with both.
     pga, pgv : str or float, optional
-        Peak ground acceleration or velocity to which every motion is scaled, such as ``"0.3g"`` or ``"25cm/s"``, a
-        number in SI; synthetic motions need one of the two, records are taken as they are without [m/s2 or m/s].
+        Peak ground acceleration or velocity of every scaled motion, such as ``"0.3g"`` or ``"25cm/s"``, or a number in
+        SI. Synthetic motions need one of the two; records are unscaled by default [m/s2 or m/s].
     count, seed : int, optional
-        How many synthetic motions, 200 if not given, and their seed, 1 if not given [-].
+        Number of synthetic motions (default 200) and their random seed (default 1) [-].
     thresholds : Thresholds, optional
-        What the lights mean.
+        Thresholds of the lights.
     gravity : float
         Acceleration of gravity [m/s2].
     friction : float, optional
-        Coefficient of friction where a row has none of its own: objects slide, rock and fall in three dimensions, each
-        under every motion along its width and along its depth. Without one a box rocks in a plane, and a body of a file
-        does not slide [-].
+        Coefficient of friction of rows without one: objects slide, rock and overturn in three dimensions, under every
+        motion along the width and along the depth. Without friction a box rocks in a plane, and a body of a file does
+        not slide [-].
     map_columns : str or mapping of str to str, optional
-        What columns of a list are that are not understood, by their titles: ``"Objekt=name, Maß B=width_cm"``.
+        Meaning of columns with unknown titles: ``"Objekt=name, Maß B=width_cm"``.
     **options
-        ``threads`` of the fast engine, and ``progress``, told how many histories have been computed since it was last
-        called.
+        ``threads`` of the fast engine, and ``progress``, called with the number of histories computed since the last
+        call.
 
     Returns
     -------
     xarray.Dataset
-        Over ``object``, the worst first: light, worse direction, acceleration of uplift, interval of the share that
-        overturns, and sentences, one of them with what would make it green; over ``restitution``, ``object`` and
-        ``direction``: motions that lift it and overturn it, and rotations; over ``not_assessed`` the rows without a
-        verdict and why, over ``not_object`` the lines that are no objects; with units, numbers and notes of the list.
+        Over ``object``, the worst first: light, worse direction, uplift acceleration, interval of the overturning
+        fraction, and sentences, with the measures that make it green. Over ``restitution``, ``object`` and
+        ``direction``: numbers of motions with uplift and with overturning, and rotations. Over ``not_assessed``: rows
+        without a verdict, with reasons. Over ``not_object``: other lines. With units, numbers and notes of the list.
 
     Raises
     ------
     InvalidValueError
-        If there is no object, the motions are not said to be of any strength, or a value is outside its range.
+        If there is no object, synthetic motions have no level, or a value is outside its range.
     MissingExtraError
         If xarray is not installed.
 
@@ -111,32 +112,33 @@ def inventory(  # noqa: PLR0913 - every one of them is a question that users ask
     """
     if map_columns is not None and not isinstance(objects, (str, Path)):
         raise InvalidValueError("map_columns applies to files only. Remove map_columns.")
-    everything = read_inventory(objects, map_columns=map_columns) if isinstance(objects, (str, Path)) else objects
+    objects = read_inventory(objects, map_columns=map_columns) if isinstance(objects, (str, Path)) else objects
     hazard = _hazard(motions, pga, pgv, count, seed)
-    how = {"restitution": restitution, "thresholds": thresholds, "gravity": gravity, "friction": friction}
-    assessment = assess(everything, hazard, **how, **options)
-    return dataset_of(assessment)
+    settings = {"restitution": restitution, "thresholds": thresholds, "gravity": gravity, "friction": friction}
+    return dataset_of(assess(objects, hazard, **settings, **options))
 
 
 def _hazard(motions: Any, pga: Any, pgv: Any, count: int | None, seed: int | None) -> Hazard:
     levels = {kind: value for kind, value in (("PGA", pga), ("PGV", pgv)) if value is not None}
     if len(levels) > 1:
-        raise InvalidValueError("give pga or pgv, not both: motions are scaled to one of them")
+        raise InvalidValueError("Use pga or pgv, not both.")
     level = None
     for kind, value in levels.items():
         in_si = isinstance(value, (int, float)) and not isinstance(value, bool)
         level = IntensityLevel(kind, value) if in_si else IntensityLevel.of(kind, value)
     if isinstance(motions, str):
         if level is None:
-            raise InvalidValueError('how strong is the shaking? Give pga="0.3g" or pgv="25cm/s", or records')
+            raise InvalidValueError('The intensity level is missing. Add pga="0.3g" or pgv="25cm/s", or use records.')
         number, start = COUNT if count is None else count, SEED if seed is None else seed
         return Hazard.of_family(motions, level, count=number, seed=start)
     odd = [name for name, value in (("count", count), ("seed", seed)) if value is not None]
     if odd:
-        raise InvalidValueError("{names} is for synthetic motions: leave it out beside records", names=", ".join(odd))
+        raise InvalidValueError(
+            "{names} applies to synthetic motions only. Remove it, or remove the records.", names=", ".join(odd)
+        )
     if isinstance(motions, Hazard):
         if level is not None:
-            raise InvalidValueError("a hazard is scaled already: leave pga and pgv out")
+            raise InvalidValueError("The hazard is already scaled. Remove pga and pgv.")
         return motions
     return Hazard.of_records([motions] if isinstance(motions, (GroundMotion, Mapping)) else motions, level)
 
@@ -146,50 +148,55 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
     xarray = extra("xarray", "inventory")
     verdicts, sentences = assessment.verdicts, assessment.thresholds.sentences(assessment.language)
     names = [assessment.restitution, *assessment.comparisons]
-    plan, say = {id(each.item): each for each in assessment.plan}, words_of(assessment)
-    by_model = [[each.results for each in verdicts], *zip(*(each.compared for each in verdicts), strict=True)]
-    results = [one for of_model in by_model for results in of_model for one in results]
+    plan, say = {id(entry.item): entry for entry in assessment.plan}, words_of(assessment)
+    by_model = [
+        [verdict.results for verdict in verdicts],
+        *zip(*(verdict.compared for verdict in verdicts), strict=True),
+    ]
+    results = [result for of_model in by_model for pair in of_model for result in pair]
     shape = (len(names), len(verdicts), len(DIRECTIONS))
 
-    def table(name: str, kind: type, words: str) -> tuple[Any, np.ndarray, dict[str, str]]:
-        values = [np.inf if (value := getattr(one, name)) is None else value for one in results]
-        about = {"units": "1", "long_name": words}
+    def table(name: str, kind: type, long_name: str) -> tuple[Any, np.ndarray, dict[str, str]]:
+        values = [np.inf if (value := getattr(result, name)) is None else value for result in results]
+        about = {"units": "1", "long_name": long_name}
         return ("restitution", "object", "direction"), np.array(values, dtype=kind).reshape(shape), about
 
     meanings = " ".join(f"{light.word}: {sentences[light]}" for light in reversed(Light))
     data: dict[str, Any] = {
-        "light": ("object", [each.light.word for each in verdicts], {"long_name": meanings}),
-        "worse_direction": ("object", [each.worse.direction for each in verdicts]),
+        "light": ("object", [verdict.light.word for verdict in verdicts], {"long_name": meanings}),
+        "worse_direction": ("object", [verdict.worse.direction for verdict in verdicts]),
         "uplift_acceleration": (
-            "object", [each.uplift_acceleration for each in verdicts],
-            {"units": "m/s2", "long_name": "ground acceleration below which it stays still in both directions"},
+            "object", [verdict.uplift_acceleration for verdict in verdicts],
+            {"units": "m/s2", "long_name": "ground acceleration of uplift, the smaller of both directions"},
         ),
         "overturned_share_95": (
-            ("object", "end"), np.array([each.interval for each in verdicts]).reshape(len(verdicts), 2),
-            {"units": "1", "long_name": "interval of the share that overturns in the worse direction"},
+            ("object", "end"), np.array([verdict.interval for verdict in verdicts]).reshape(len(verdicts), 2),
+            {"units": "1", "long_name": "interval of the overturning fraction in the worse direction"},
         ),
-        "in_words": ("object", [sentence(each, assessment) for each in verdicts]),
-        "measures": ("object", [plan_words(plan[k], say) if (k := id(each.item)) in plan else "" for each in verdicts]),
-        "what_to_do": ("object", [advice(each, assessment) for each in verdicts]),
+        "in_words": ("object", [sentence(verdict, assessment) for verdict in verdicts]),
+        "measures": (
+            "object", [plan_words(plan[k], say) if (k := id(verdict.item)) in plan else "" for verdict in verdicts]
+        ),
+        "what_to_do": ("object", [advice(verdict, assessment) for verdict in verdicts]),
         **{name: table(name, *about) for name, about in _OF_DIRECTIONS.items()},
-        "reason": ("not_assessed", [say(each.reason) for each in assessment.not_assessed]),
-        "not_object_reason": ("not_object", [say(each.reason) for each in assessment.not_objects]),
+        "reason": ("not_assessed", [say(row.reason) for row in assessment.not_assessed]),
+        "not_object_reason": ("not_object", [say(row.reason) for row in assessment.not_objects]),
     }  # fmt: skip
     coordinates = {
-        "object": [each.item.name for each in verdicts],
-        "row": ("object", [each.item.row for each in verdicts], {"units": "1", "long_name": "line of its file"}),
-        "number": ("object", [each.item.number for each in verdicts], {"long_name": "inventory number"}),
-        "pieces": ("object", [each.item.count for each in verdicts], {"units": "1", "long_name": "pieces alike"}),
-        "note": ("object", [each.item.note for each in verdicts], {"long_name": "what the list notes"}),
-        "remarks": ("object", [remarks(each, assessment) for each in verdicts], {"long_name": "what was assumed"}),
+        "object": [verdict.item.name for verdict in verdicts],
+        "row": ("object", [verdict.item.row for verdict in verdicts], {"units": "1", "long_name": "line of its file"}),
+        "number": ("object", [verdict.item.number for verdict in verdicts], {"long_name": "inventory number"}),
+        "pieces": ("object", [verdict.item.count for verdict in verdicts], {"units": "1", "long_name": "equal pieces"}),
+        "note": ("object", [verdict.item.note for verdict in verdicts], {"long_name": "note of the list"}),
+        "remarks": ("object", [remarks(verdict, assessment) for verdict in verdicts], {"long_name": "assumptions"}),
         "direction": list(DIRECTIONS),
         "restitution": names,
         "end": ["low", "high"],
-        "not_assessed": [each.name for each in assessment.not_assessed],
-        "not_assessed_row": ("not_assessed", [each.row for each in assessment.not_assessed]),
-        "not_assessed_number": ("not_assessed", [each.number for each in assessment.not_assessed]),
-        "not_assessed_note": ("not_assessed", [each.note for each in assessment.not_assessed]),
-        "not_object": [each.row for each in assessment.not_objects],
+        "not_assessed": [row.name for row in assessment.not_assessed],
+        "not_assessed_row": ("not_assessed", [row.row for row in assessment.not_assessed]),
+        "not_assessed_number": ("not_assessed", [row.number for row in assessment.not_assessed]),
+        "not_assessed_note": ("not_assessed", [row.note for row in assessment.not_assessed]),
+        "not_object": [row.row for row in assessment.not_objects],
     }
     hazard = assessment.hazard
     about = {"inventory": assessment.source, "shaking": hazard.words(say.code), "motions": say(hazard.source)}

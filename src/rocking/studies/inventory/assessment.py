@@ -1,4 +1,4 @@
-"""The assessment: every object in both directions under every motion, the worse direction counts."""
+"""Assessment of every object in both directions under every motion; the worse direction decides."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -33,66 +33,66 @@ from rocking.studies.motion_sets import MotionList
 
 @dataclass(frozen=True)
 class DirectionResult:
-    """How an object fares in one direction with one model of impact."""
+    """Result of an object in one direction with one restitution model."""
 
     direction: Direction  # the direction
-    uplift_acceleration: float  # horizontal acceleration below which it stays still, ``g b / h`` [m/s2]
-    # count, lifted, overturned, failed: motions that were computed, that lift it, that overturn it; and those that
-    # could not be computed [-]
+    uplift_acceleration: float  # horizontal acceleration of uplift, ``g b / h`` [m/s2]
+    # count, lifted, overturned, failed: numbers of computed motions, of motions with uplift and with overturning, and
+    # of motions that could not be computed [-]
     count: int
     lifted: int
     overturned: int
     failed: int
     # median_rotation, high_rotation: median and 84 % quantile of the peak rotation over the slenderness angle [-];
-    # None if it overturns there
+    # None if overturned
     median_rotation: float | None
     high_rotation: float | None
-    light: Light  # what this direction alone would show
-    # motions of the computed ones in which the ground would have to pull: their verdicts assume contact [-]
+    light: Light  # light of this direction alone
+    # number of computed motions with a tensile contact force: their verdicts assume contact [-]
     lost_contact: int = 0
-    slid: int = 0  # motions that make it slide, of an object in three dimensions [-]
+    slid: int = 0  # number of motions with sliding, of an object in three dimensions [-]
 
     @property
     def overturned_share(self) -> float:
-        """Share of the motions that overturn it [-]."""
+        """Fraction of the motions that overturn the object [-]."""
         return self.overturned / self.count
 
     @property
     def lifted_share(self) -> float:
-        """Share of the motions that lift it [-]."""
+        """Fraction of the motions that lift the object [-]."""
         return self.lifted / self.count
 
     @property
     def severity(self) -> tuple[float, ...]:
-        """What is compared to find the worse: light, share, rotations, and the acceleration of uplift [-]."""
-        high, middle = (1e9 if each is None else each for each in (self.high_rotation, self.median_rotation))
+        """Sort key of the worse direction: light, fraction, rotations, and the acceleration of uplift [-]."""
+        high, middle = (1e9 if ratio is None else ratio for ratio in (self.high_rotation, self.median_rotation))
         return self.light.severity, self.overturned_share, high, middle, -self.uplift_acceleration
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is said of an object."""
+    """Result of an object."""
 
     item: InventoryObject  # the object
-    results: tuple[DirectionResult, ...]  # one for each direction, by the model of impact that was asked for
-    compared: tuple[tuple[DirectionResult, ...], ...]  # the same by each of the other models
-    interval: tuple[float, float]  # interval of the share that overturns in the worse direction [-]
-    friction: float = math.inf  # of an object that moves in space; infinite for one that rocks in a plane [-]
+    results: tuple[DirectionResult, ...]  # one per direction, with the selected restitution model
+    compared: tuple[tuple[DirectionResult, ...], ...]  # results with the other models
+    interval: tuple[float, float]  # interval of the overturning fraction in the worse direction [-]
+    friction: float = math.inf  # of an object in 3D; infinite for a plane object [-]
 
     @property
     def worse(self) -> DirectionResult:
         """The direction that governs."""
-        return max(self.results, key=lambda each: each.severity)
+        return max(self.results, key=lambda result: result.severity)
 
     @property
     def worse_compared(self) -> tuple[DirectionResult, ...]:
-        """The direction that governs, by each of the other models."""
-        return tuple(max(results, key=lambda each: each.severity) for results in self.compared)
+        """The direction that governs, for each of the other models."""
+        return tuple(max(results, key=lambda result: result.severity) for results in self.compared)
 
     @property
     def uplift_acceleration(self) -> float:
-        """Horizontal acceleration below which the object stays still in both directions [m/s2]."""
-        return min(each.uplift_acceleration for each in self.results)
+        """Horizontal acceleration of uplift, the smaller of both directions [m/s2]."""
+        return min(result.uplift_acceleration for result in self.results)
 
     @property
     def light(self) -> Light:
@@ -101,42 +101,43 @@ class Verdict:
 
     @property
     def model_decides(self) -> bool:
-        """Whether another model of impact would show another light."""
-        return any(each.light is not self.light for each in self.worse_compared)
+        """True if another restitution model gives another light."""
+        return any(result.light is not self.light for result in self.worse_compared)
 
 
 @dataclass(frozen=True, eq=False)
 class Assessment:
-    """An inventory assessed."""
+    """Result of an inventory."""
 
     verdicts: tuple[Verdict, ...]  # the worst first
     not_assessed: tuple[NotAssessed, ...]  # rows without a verdict
     hazard: Hazard  # the motions
-    thresholds: Thresholds  # what the lights mean
-    restitution: str  # restitution, comparisons: the models of impact, in words
+    thresholds: Thresholds  # of the lights
+    restitution: str  # restitution, comparisons: names of the restitution models
     comparisons: tuple[str, ...]
     source: str = "objects"  # name of the inventory
     ignored: tuple[str, ...] = ()  # columns of the file that were not read
     gravity: float = g  # acceleration of gravity [m/s2]
-    plan: tuple[PlanEntry, ...] = ()  # what helps the objects that are not green, sorted by gain
-    drawn: bool = False  # whether the coefficient of restitution is drawn for every motion
+    plan: tuple[PlanEntry, ...] = ()  # measures for the objects that are not green, sorted by gain
+    drawn: bool = False  # True if the coefficient of restitution is sampled for every motion
     language: str = "en"  # of the report
     not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are no objects
-    stated: tuple[str | Message, ...] = ()  # what the list states beside its table and was used
+    stated: tuple[str | Message, ...] = ()  # used statements of the list outside its table
     header_lines: tuple[int, ...] = ()  # lines of the header of the list
 
     def pieces(self) -> dict[Light, int]:
-        """Return how many pieces show each light, the worst first."""
+        """Return the number of pieces by light, the worst first."""
         return {
-            light: sum(each.item.count for each in self.verdicts if each.light is light) for light in reversed(Light)
+            light: sum(verdict.item.count for verdict in self.verdicts if verdict.light is light)
+            for light in reversed(Light)
         }
 
     def counts(self) -> dict[Light, int]:
-        """Return how many rows, not pieces, show each light, the worst first."""
-        return {light: sum(each.light is light for each in self.verdicts) for light in reversed(Light)}
+        """Return the number of rows (not pieces) by light, the worst first."""
+        return {light: sum(verdict.light is light for verdict in self.verdicts) for light in reversed(Light)}
 
 
-_ROLLS = Message("its friction was not used: a round object rocks in a plane")
+_ROLLS = Message("its friction was ignored: a round object rocks in a plane")
 
 DEFAULT_MODELS = (DEFAULT_RESTITUTION, *reversed(COMPARED_RESTITUTIONS))
 """Restitution models of an inventory without a stated one: the first gives the rating."""
@@ -163,13 +164,13 @@ def assess(
     inventory : Inventory or sequence of InventoryObject
         The objects.
     hazard : Hazard
-        The motions; each acts in either direction by itself.
+        The motions; each acts in each direction separately.
     restitution, thresholds, gravity, friction
         As for `rocking.inventory`.
     threads : int, optional
         Threads of the fast engine.
     progress : callable, optional
-        Told how many histories have been computed since it was last called.
+        Called with the number of histories computed since the last call.
 
     Returns
     -------
@@ -179,7 +180,7 @@ def assess(
     Raises
     ------
     InvalidValueError
-        If there is no object, or the restitution is a law that changes from impact to impact.
+        If there is no object, or the restitution is an impact law.
 
     Examples
     --------
@@ -205,30 +206,30 @@ def assess(
 def assessment_plan(
     inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, **options: Any
 ) -> tuple[Histories, Callable[[Arrays], Assessment], dict[str, int], tuple[InventoryObject, ...]]:
-    """Return the histories of an assessment, what makes it of their results, what they are over, and the objects.
+    """Return the histories of an assessment, the function of their results, their dimensions, and the objects.
 
-    For campaigns. Objects that move in three dimensions have models of impact that change more slowly than motions.
+    For campaigns. With objects in three dimensions, restitution models change more slowly than motions.
     """
     assessor = _Assessor(inventory, hazard, **options)
     objects = assessor.inventory.objects
     shaken, models = {"motion": len(hazard.motions)}, {"restitution": len(assessor.labels)}
-    ways = {"direction": len(DIRECTIONS)}
+    directions = {"direction": len(DIRECTIONS)}
     if any(map(assessor.moves_in_space, objects)):
-        every = [assessor.object_histories(item) for item in objects]
-        rows = [each for each in every if isinstance(each, ObjectHistories)]
-        refused = [each for each in every if isinstance(each, NotAssessed)]
+        candidates = [assessor.object_histories(item) for item in objects]
+        rows = [row for row in candidates if isinstance(row, ObjectHistories)]
+        refused = [row for row in candidates if isinstance(row, NotAssessed)]
         assessor.check_any(rows, refused)
-        parts = tuple(part for row in rows for part in row.parts)
-        histories = JoinedHistories(assessor.ordered, parts, settings=parts[0].settings)
+        products = tuple(product for row in rows for product in row.parts)
+        histories = JoinedHistories(assessor.ordered, products, settings=products[0].settings)
 
         def ruled(results: Arrays) -> Assessment:
-            apart = [dict(zip(results, each, strict=True)) for each in zip(
+            by_row = [dict(zip(results, values, strict=True)) for values in zip(
                 *(np.split(values, len(rows)) for values in results.values()), strict=True
             )]  # fmt: skip
-            return assessor.assessment([*refused, *(row.rule(own) for row, own in zip(rows, apart, strict=True))])
+            return assessor.assessment([*refused, *(row.rule(own) for row, own in zip(rows, by_row, strict=True))])
 
-        over = {"object": len(rows)} | models | shaken | ways
-        return histories, ruled, over, tuple(row.item for row in rows)
+        dimensions = {"object": len(rows)} | models | shaken | directions
+        return histories, ruled, dimensions, tuple(row.item for row in rows)
     product, items, refused = assessor.product(objects)
     assessor.check_any(items, refused)
     assert product is not None
@@ -236,17 +237,17 @@ def assessment_plan(
     def finish(results: Arrays) -> Assessment:
         return assessor.assessment([*refused, *assessor.verdicts(items, product, results)])
 
-    return product, finish, shaken | {"object": len(items)} | ways | models, tuple(items)
+    return product, finish, shaken | {"object": len(items)} | directions | models, tuple(items)
 
 
 @dataclass(frozen=True)
 class ObjectHistories:
-    """The histories of one object's verdict, and what makes it of their results."""
+    """The histories of one object, and the function from their results to its verdict."""
 
     item: InventoryObject
-    parts: tuple[Product, ...]  # of the models one after another, each over motion and direction
-    models: int  # number of models of impact
-    make: Callable[[Arrays], Verdict | NotAssessed]  # of results over motion, direction and model
+    parts: tuple[Product, ...]  # by model, each over motion and direction
+    models: int  # number of restitution models
+    make: Callable[[Arrays], Verdict | NotAssessed]  # function of results over motion, direction and model
 
     def rule(self, results: Arrays) -> Verdict | NotAssessed:
         """Return the verdict of results over model, motion and direction."""
@@ -255,7 +256,7 @@ class ObjectHistories:
 
 
 class _Assessor:
-    """What an assessment is made with, checked, and its steps: bodies, histories, verdicts."""
+    """Checked inputs of an assessment, and its steps: bodies, histories, verdicts."""
 
     def __init__(
         self, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, *, restitution: Any = None,
@@ -266,32 +267,32 @@ class _Assessor:
         if not self.inventory.objects and not self.inventory.not_assessed:
             raise InvalidValueError("an inventory must have at least one object, got none")
         if isinstance(restitution, ImpactLaw):
-            raise InvalidValueError(
-                "restitution of an inventory must be a model or a coefficient, not a law of impacts"
-            )
+            raise InvalidValueError("restitution of an inventory must be a model or a coefficient, not an impact law")
         self.hazard, self.thresholds = hazard, thresholds or Thresholds()
         self.gravity = checks.positive("gravity", gravity, "m/s2")
         is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
-        beside = ("ked",) if is_housner else ("housner",)
+        compared = ("ked",) if is_housner else ("housner",)
         # in 3D the first is the mean of the calibrated model, without scatter
-        self.restitutions = DEFAULT_MODELS if restitution is None else (restitution, *beside)
-        # what nobody asked for by name is drawn with its scatter, for every motion another
+        self.restitutions = DEFAULT_MODELS if restitution is None else (restitution, *compared)
+        # the default model is sampled with its scatter, for each motion
         self.drawn, self.draws = restitution is None, Draws(len(hazard.motions), hazard.description.get("seed", SEED))
-        # a wrong word is the user's slip, not that of every row: it is refused here
+        # an unknown model is an error of the user, not of every row: it is refused here
         example = Block(width=1.0, height=4.0)
-        self.labels = tuple(RockingParameters.of_body(example, each, self.gravity).label for each in self.restitutions)
+        self.labels = tuple(
+            RockingParameters.of_body(example, model, self.gravity).label for model in self.restitutions
+        )
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
-        """Yield objects whose histories fit into a piece: an inventory of any length takes no more memory."""
+        """Yield groups of objects whose histories fit into a piece: memory does not grow with the inventory."""
         objects = [item for item in self.inventory.objects if not self.moves_in_space(item)]
-        many = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * len(self.labels)))
-        for first in range(0, len(objects), many):
-            yield objects[first : first + many]
+        size = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * len(self.labels)))
+        for first in range(0, len(objects), size):
+            yield objects[first : first + size]
 
     def product(
         self, objects: Sequence[InventoryObject]
     ) -> tuple[Product | None, list[InventoryObject], list[NotAssessed]]:
-        """Return the histories of some objects, those that have any, and those that are refused."""
+        """Return the histories of objects, the objects with histories, and the refused ones."""
         items: list[InventoryObject] = []
         refused: list[NotAssessed] = []
         columns: list[dict[str, FloatArray]] = []
@@ -306,19 +307,19 @@ class _Assessor:
             return None, items, refused
         sides = {name: np.stack([column[name] for column in columns], axis=-2) for name in columns[0]}
         if not self.drawn and not any(item.approximate for item in items):
-            sides = {name: values[0] for name, values in sides.items()}  # the same under every motion
+            sides = {name: values[0] for name, values in sides.items()}  # independent of the motion
         settings = PlaneSettings(gravity=self.gravity)
         return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
 
     def _column(self, item: InventoryObject, way: Direction) -> dict[str, FloatArray]:
-        """Return the sides of an object in a direction, under each motion by each of the models of impact."""
-        bodies = [each.body(way) for each in self.draws.bodies(item)]
-        every = sides_of([
+        """Return the sides of an object in a direction, for each motion and restitution model."""
+        bodies = [variant.body(way) for variant in self.draws.bodies(item)]
+        all_sides = sides_of([
             RockingParameters.of_body(body, restitution, self.gravity)
             for body in bodies for restitution in self.restitutions
         ])  # fmt: skip
         number = self.draws.number(len(bodies))
-        sides = {name: values.reshape(len(bodies), -1)[number] for name, values in every.items()}
+        sides = {name: values.reshape(len(bodies), -1)[number] for name, values in all_sides.items()}
         if self.drawn:
             for foot, r in restitutions(self.draws, bodies).items():
                 sides[f"r_{foot}"][:, 0] = r
@@ -327,18 +328,18 @@ class _Assessor:
     def verdicts(
         self, items: Sequence[InventoryObject], product: Product, results: Arrays
     ) -> Iterator[Verdict | NotAssessed]:
-        """Yield a verdict of each object: from outcome, rotation over the slenderness angle, and loss of contact."""
+        """Yield the verdict of each object from outcomes, rotations over the slenderness angle, and loss of contact."""
         shape = (len(product.motions), len(items), len(DIRECTIONS), len(self.labels))
         outcome = results["outcome"].reshape(shape)
         peak = np.abs(results["peak_rotation"].reshape(shape))
         ratio = peak / product.sides["alpha_right"].reshape((-1, *shape[1:]))
         lost = lost_contact(results).reshape(shape)
         for k, item in enumerate(items):
-            lifts = [slenderest(item).uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
-            yield self._verdict(item, lifts, outcome[:, k], ratio[:, k], lost[:, k])
+            uplifts = [slenderest(item).uplift_acceleration(way, self.gravity) for way in DIRECTIONS]
+            yield self._verdict(item, uplifts, outcome[:, k], ratio[:, k], lost[:, k])
 
     def moves_in_space(self, item: InventoryObject) -> bool:
-        """Return whether an object moves in three dimensions; a round one, which would roll for minutes, does not."""
+        """Return True if an object moves in three dimensions; a round object, which rolls for minutes, does not."""
         return item.solid is not None or (item.shape != "round" and self._friction(item) is not None)
 
     def _friction(self, item: InventoryObject) -> float | None:
@@ -347,20 +348,20 @@ class _Assessor:
     def verdict_in_space(
         self, item: InventoryObject, threads: int | None, progress: Callable[[int], None] | None
     ) -> Verdict | NotAssessed:
-        """Return the verdict of an object on the vertices of its hull, shaken along its width and along its depth."""
+        """Return the verdict of an object in 3D, under motions along its width and along its depth."""
         try:
             row = self._histories_in_space(item)
-            results = [results_of(part, threads=threads, progress=progress) for part in row.parts]
+            results = [results_of(product, threads=threads, progress=progress) for product in row.parts]
         except RockingError as error:
             return NotAssessed.of(item, error.sentence)
         names = ("outcome", "peak_rotation")
-        return row.rule({name: np.concatenate([part[name] for part in results]) for name in names})
+        return row.rule({name: np.concatenate([arrays[name] for arrays in results]) for name in names})
 
     def _moving(self, item: InventoryObject, threads: int | None = None) -> SpatialObject:
         return SpatialObject(item, self.hazard, self.draws, self.gravity, self._friction(item), threads)
 
     def object_histories(self, item: InventoryObject) -> ObjectHistories | NotAssessed:
-        """Return the histories of one object, whether it rocks in a plane or moves in three dimensions."""
+        """Return the histories of one object, in a plane or in three dimensions."""
         if self.moves_in_space(item):
             try:
                 return self._histories_in_space(item)
@@ -379,21 +380,21 @@ class _Assessor:
 
     def _histories_in_space(self, item: InventoryObject) -> ObjectHistories:
         moving = self._moving(item)
-        lifts = moving.moves()
-        models = [[rows for _, rows in moving.histories(each, self.order)] for each in self.restitutions]
-        angle = np.concatenate([np.full(len(one.motions), one.sides["alpha_right"].item()) for one in models[0]])
+        uplifts = moving.moves()
+        models = [[rows for _, rows in moving.histories(model, self.order)] for model in self.restitutions]
+        angle = np.concatenate([np.full(len(rows.motions), rows.sides["alpha_right"].item()) for rows in models[0]])
         shape = (-1, len(DIRECTIONS), len(self.labels))
 
         def make(results: Arrays) -> Verdict | NotAssessed:
             ratio = np.abs(results["peak_rotation"].reshape(shape)) / angle.reshape(-1, len(DIRECTIONS), 1)
             outcome = results["outcome"].reshape(shape)
-            return self._verdict(item, lifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
+            return self._verdict(item, uplifts, outcome, ratio, np.zeros(ratio.shape), moving.friction)
 
-        return ObjectHistories(item, tuple(one for own in models for one in own), len(models), make)
+        return ObjectHistories(item, tuple(rows for of_model in models for rows in of_model), len(models), make)
 
     @cached_property
     def order(self) -> IntArray:
-        """The motions of one body of an object of approximate sizes after those of another."""
+        """Order of the motions, grouped by the sampled body of an object with approximate sizes."""
         return np.argsort(np.arange(len(self.hazard.motions)) % STRATA, kind="stable")
 
     @cached_property
@@ -402,15 +403,15 @@ class _Assessor:
         return MotionList([self.hazard.motions[k] for k in self.order])
 
     def check_any(self, items: Sequence[Any], refused: Sequence[NotAssessed]) -> None:
-        """Refuse an inventory of which no object can be assessed."""
+        """Refuse an inventory without an object that can be assessed."""
         if not items:
-            first = min([*self.inventory.not_assessed, *refused], key=lambda each: each.row)
+            first = min([*self.inventory.not_assessed, *refused], key=lambda row: row.row)
             raise InvalidValueError(
                 "no object can be assessed; line {line}: {reason}", line=first.row, reason=first.reason
             )
 
     def _verdict(
-        self, item: InventoryObject, lifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
+        self, item: InventoryObject, uplifts: Sequence[float], outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
         friction: float = math.inf,
     ) -> Verdict | NotAssessed:  # fmt: skip
         if (outcome == Outcome.FAILED.code).all(axis=0).any():
@@ -418,41 +419,41 @@ class _Assessor:
         limits = self.thresholds.of(item.consequence)
         of_model, *of_others = (
             tuple(
-                self._direction(way, lifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model], limits)
+                self._direction(way, uplifts[j], outcome[:, j, model], ratio[:, j, model], lost[:, j, model], limits)
                 for j, way in enumerate(DIRECTIONS)
             )
             for model in range(len(self.labels))
         )
-        worse = max(of_model, key=lambda each: each.severity)
+        worse = max(of_model, key=lambda result: result.severity)
         interval = share_interval(worse.overturned, worse.count, self.thresholds.level)
         if not self.moves_in_space(item) and self._friction(item) is not None:
             item = replace(item, remarks=(*item.remarks, _ROLLS))
         return Verdict(item, of_model, tuple(of_others), interval, friction)
 
     def _direction(
-        self, way: Direction, lifts: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
+        self, way: Direction, uplift: float, outcome: np.ndarray, ratio: FloatArray, lost: FloatArray,
         limits: Thresholds,
     ) -> DirectionResult:  # fmt: skip
         good = outcome != Outcome.FAILED.code
-        fell = outcome[good] == Outcome.OVERTURNED.code
+        fallen = outcome[good] == Outcome.OVERTURNED.code
         lifted = ~np.isin(outcome[good], [Outcome.NO_UPLIFT.code, Outcome.SLID.code])
         slid = np.isin(outcome[good], [Outcome.SLID.code, Outcome.ROCKED_AND_SLID.code])
-        rotations = quantiles(np.where(fell, np.inf, ratio[good]), (0.5, 0.84)).tolist()
+        rotations = quantiles(np.where(fallen, np.inf, ratio[good]), (0.5, 0.84)).tolist()
         middle, high = (value if math.isfinite(value) else None for value in rotations)
-        counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
+        counts = {"lifted": int(lifted.sum()), "overturned": int(fallen.sum()), "count": int(good.sum())}
         failed = int((~good).sum())
         light = limits.light(high_rotation=high, failed=failed, slid=int(slid.sum()), **counts)
         return DirectionResult(
-            way, lifts, median_rotation=middle, high_rotation=high, light=light, failed=failed,
+            way, uplift, median_rotation=middle, high_rotation=high, light=light, failed=failed,
             lost_contact=int(np.nansum(lost)), slid=int(slid.sum()), **counts,
         )  # fmt: skip
 
     def assessment(self, rulings: Sequence[Verdict | NotAssessed], threads: int | None = None) -> Assessment:
         """Return verdicts and refusals of all objects, in order, with the plan of measures."""
-        verdicts = [each for each in rulings if isinstance(each, Verdict)]
-        refused = [*self.inventory.not_assessed, *(each for each in rulings if isinstance(each, NotAssessed))]
-        verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
-        refused.sort(key=lambda each: each.row)
+        verdicts = [ruling for ruling in rulings if isinstance(ruling, Verdict)]
+        refused = [*self.inventory.not_assessed, *(row for row in rulings if isinstance(row, NotAssessed))]
+        verdicts.sort(key=lambda verdict: (verdict.worse.severity, -verdict.item.row), reverse=True)
+        refused.sort(key=lambda row: row.row)
         return Assessment(
             tuple(verdicts), tuple(refused), self.hazard, self.thresholds, self.labels[0], self.labels[1:],
             source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
@@ -462,27 +463,28 @@ class _Assessor:
         )  # fmt: skip
 
     def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[PlanEntry, ...]:
-        """Return what helps each object that is not green, the largest gain first, the worse of equals first."""
-        asked = None if self.drawn else self.restitutions[0]
-        planner = Planner(self.hazard, self.draws, asked, self.gravity, threads, self._is_green)
-        wanted: list[tuple[InventoryObject, tuple[Direction, ...], float, float]] = []
-        found: list[PlanEntry] = []
-        for each in verdicts:
-            if each.light is Light.GREEN:
+        """Return the measures for each object that is not green: the largest gain first, then the worse verdict."""
+        restitution = None if self.drawn else self.restitutions[0]
+        planner = Planner(self.hazard, self.draws, restitution, self.gravity, threads, self._is_green)
+        rockers: list[tuple[InventoryObject, tuple[Direction, ...], float, float]] = []
+        entries: list[PlanEntry] = []
+        for verdict in verdicts:
+            if verdict.light is Light.GREEN:
                 continue
-            share, weight = each.worse.overturned_share, 1.0 / self.thresholds.factor(each.item.consequence)
-            if self.moves_in_space(each.item):
-                found.append(
-                    planner.entry_in_space(self._moving(each.item, threads), self.restitutions[0], share, weight)
+            item, worse = verdict.item, verdict.worse
+            fraction, weight = worse.overturned_share, 1.0 / self.thresholds.factor(item.consequence)
+            if self.moves_in_space(item):
+                entries.append(
+                    planner.entry_in_space(self._moving(item, threads), self.restitutions[0], fraction, weight)
                 )
             else:
-                lifted = tuple(one.direction for one in each.results if one.lifted or one.failed)
-                wanted.append((each.item, lifted, share, weight))
-        many = max(1, PIECE // (3 * len(DIRECTIONS) * len(self.hazard.motions)))
-        for first in range(0, len(wanted), many):
-            found += planner.entries(wanted[first : first + many])
-        rank = {id(each.item): place for place, each in enumerate(verdicts)}
-        return tuple(sorted(found, key=lambda each: (-each.gain, rank[id(each.item)])))
+                lifted = tuple(result.direction for result in verdict.results if result.lifted or result.failed)
+                rockers.append((item, lifted, fraction, weight))
+        size = max(1, PIECE // (3 * len(DIRECTIONS) * len(self.hazard.motions)))
+        for first in range(0, len(rockers), size):
+            entries += planner.entries(rockers[first : first + size])
+        rank = {id(verdict.item): k for k, verdict in enumerate(verdicts)}
+        return tuple(sorted(entries, key=lambda entry: (-entry.gain, rank[id(entry.item)])))
 
     def _is_green(self, item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray) -> bool:
         limits = self.thresholds.of(item.consequence)

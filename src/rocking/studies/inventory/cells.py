@@ -1,4 +1,4 @@
-"""Measures in cells: a number with or without its unit, about or between two, or none; and one of several parts."""
+"""Read cells of a list: measures with units, approximate values and intervals, and measures of several sizes."""
 
 # ruff: noqa: RUF001 - signs and words of other alphabets are meant
 
@@ -15,12 +15,12 @@ from rocking.studies.inventory.columns import FACTORS, UNITS, WORDS, order_of, p
 from rocking.studies.inventory.sheets import Cell, Shown
 
 ABOUT = 0.05
-"""Half the interval of a measure that is said to be about right, "ca. 120" or "120?", as a share of it [-]."""
+"""Half width of the interval of an approximate measure, "ca. 120" or "120?", over the measure [-]."""
 
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:([.,])([0-9]+))?(?:[eE][+-]?[0-9]+)?")
-# three digits after the mark could be thousands, unless what is before cannot be
+# three digits after the mark may be thousands, unless the digits before it exclude them
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
-# what can only be thousands: blanks, apostrophes, the same mark twice, or one mark before the other
+# certainly thousands: blanks, apostrophes, one mark twice, or two different marks
 _GROUPED = re.compile(
     r"(?<![0-9.,'])(?:[1-9](?: [0-9]{3})+(?:[.,][0-9]+)?"
     r"|[1-9][0-9]{0,2}(?:(?:[\u00a0\u202f\u2009'\u2019][0-9]{3})+(?:[.,][0-9]+)?"
@@ -30,7 +30,7 @@ _GROUPED = re.compile(
 
 
 def without_thousands(text: str) -> str:
-    """Return text whose numbers have no separators of thousands, where these can be nothing else.
+    """Return a text without unambiguous separators of thousands.
 
     >>> [without_thousands(text) for text in ("1.234,5", "2 350 mm", "1.234", "4' 6")]
     ['1234,5', '2350 mm', '1.234', "4' 6"]
@@ -45,12 +45,12 @@ def _ungrouped(number: str) -> str:
 
 
 class DecimalMark:
-    """The mark that separates the decimals in a table, by all of its numbers together.
+    """The decimal mark of a table, from all of its numbers.
 
-    ``12,5`` can only have a decimal comma. ``1,234`` could have thousands, and so could ``1.234``. Its mark separates
-    decimals if the same mark does elsewhere in the table and the other does not. It separates thousands if it does in
-    a number such as ``1.234,5``, or if the other numbers of the column are near. Where commas separate the fields,
-    decimals have points, and ``1.234`` is one unless a decimal comma contradicts it.
+    ``12,5`` has a decimal comma; ``1,234`` and ``1.234`` are ambiguous. Their mark separates decimals if another
+    number of the table has this decimal mark, and no number has the other one. It separates thousands if a number
+    such as ``1.234,5`` does, or if the other numbers of the column are near. If commas separate the fields, the
+    decimal mark is a point, unless a decimal comma contradicts it.
 
     >>> mark = DecimalMark(["12,5", "1,234", "7 cm"])
     >>> mark.number("width_cm", "1,234")
@@ -89,23 +89,23 @@ class DecimalMark:
         return checks.number(name, float(text.replace(",", ".")))
 
     def is_settled_by_column(self, name: str, cell: str) -> bool:
-        """Return whether only the other numbers of its column say that a mark in a number parts thousands."""
+        """Return True if only the other numbers of the column show that a mark separates thousands."""
         text = cell.strip()
         mark = re.sub(r"[0-9+-]", "", text)
         by_table = mark in self.groups or self._separates_decimals(mark)
         return bool(_THOUSANDS.fullmatch(text)) and not by_table and self._settles(name, text)
 
     def _separates_decimals(self, mark: str) -> bool:
-        """Return whether the other numbers of the table say that a mark separates decimals."""
+        """Return True if the other numbers of the table show that a mark separates decimals."""
         if mark == ",":
             return self.commas and not self.points
         return not self.commas and (self.points or self.comma_delimited)
 
     def _settles(self, name: str, text: str) -> bool:
-        """Return whether the other numbers of a column are near a number with thousands, and far from its decimals."""
+        """Return True if the other numbers of a column are near a number with thousands, and far from its decimals."""
         others = [
-            float(each.replace(",", "."))
-            for each in self.columns.get(name, ()) if _NUMBER.fullmatch(each) and not _THOUSANDS.fullmatch(each)
+            float(cell.replace(",", "."))
+            for cell in self.columns.get(name, ()) if _NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
         ]  # fmt: skip
         decimal = float(text.replace(",", "."))
         return len(others) >= _ENOUGH and all(
@@ -115,7 +115,7 @@ class DecimalMark:
 
 def _ambiguous(title: str, text: str, readings: tuple[str, str], first: str = "") -> InvalidValueError:
     return InvalidValueError(
-        "{title} is ambiguous: {cell} could be {one} or {other}; write {clear} or {other}",
+        "{title} is ambiguous: {cell} could be {one} or {other}. Write {clear} or {other}.",
         title=title,
         cell=repr(text),
         one=readings[0],
@@ -124,10 +124,10 @@ def _ambiguous(title: str, text: str, readings: tuple[str, str], first: str = ""
     )
 
 
-_ENOUGH, _NEAR = 3, 30.0  # numbers of a column that settle another, and how far they may be from it [-]
+_ENOUGH, _NEAR = 3, 30.0  # numbers of a column that decide on another one, and their largest ratio to it [-]
 _LONGEST = 200
 _SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
-_OTHERWISE = 0.5  # two sizes that are no size and what it might be instead [-]
+_OTHERWISE = 0.5  # largest relative difference of two alternative sizes [-]
 _ABOUT = "|".join(sorted(words_of(WORDS["about"]), key=len, reverse=True))
 _WITH = "|".join(words_of(WORDS["with"]))
 _UNKNOWN = words_of(WORDS["unknown"])
@@ -145,21 +145,21 @@ _DOUBT = re.compile(rf"\s*(?:\?+|[(\[][^\d()\[\]]*[)\]]|\b(?:ca|circa|approx)\.?
 _GIVE_OR_TAKE = re.compile(rf"({_QUANTITY})\s*(?:±|\+ ?/ ?-|\+-)\s*({_QUANTITY})")
 _PAIR = re.compile(rf"({_ONE})\s*([^\W\d]{{1,15}}|['\"])?\.?\s*")
 _MARKS = {"'": "ft", '"': "in"}
-_TWO_SIZES = "{title} says two sizes, got {cell}"
+_TWO_SIZES = "{title} contains two different sizes, got {cell}"
 _DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}.*|[0-9]{2}:[0-9]{2}.*")
 
 
 @dataclass(frozen=True)
 class CellMeasure:
-    """What a cell says, in SI units."""
+    """Measure in a cell, in SI units."""
 
     value: float
-    half_width: float = 0.0  # of the interval, if it is not known well
-    across: bool = False  # whether it is said to be a diameter
+    half_width: float = 0.0  # of the interval, if approximate
+    across: bool = False  # True for a diameter
 
 
 def is_missing(cell: Cell) -> bool:
-    """Return whether a cell says that nothing is known, or nothing at all.
+    """Return True if a cell is empty or contains a word for an unknown value.
 
     >>> [is_missing(cell) for cell in ("?", "k. A.", "#REF!", "unbekannt", "120?")]
     [True, True, True, True, False]
@@ -170,17 +170,17 @@ def is_missing(cell: Cell) -> bool:
 def measure(
     title: str, cell: Cell, factor: float | None, mark: DecimalMark, units: Mapping[str, float] = LENGTH_UNITS
 ) -> CellMeasure:
-    """Return what a cell measures; factor: of numbers without a unit, if that is known; units: those it may have."""
+    """Return the measure in a cell; factor: SI factor of numbers without a unit, or None; units: allowed units."""
     if isinstance(cell, Shown):
-        one = measure(title, cell.one, factor, mark, units)
-        return CellMeasure(cell * one.value, cell * one.half_width, one.across)
+        unit_measure = measure(title, cell.unity, factor, mark, units)
+        return CellMeasure(cell * unit_measure.value, cell * unit_measure.half_width, unit_measure.across)
     if isinstance(cell, float):
         return CellMeasure(checks.number(title, cell) * _named(title, cell, factor))
     if _NUMBER.fullmatch(cell.strip()):
         return CellMeasure(mark.number(title, cell) * _named(title, cell, factor))
 
-    def quantity(text: str, beside: str = "") -> float:
-        return _quantity(title, text, factor, mark, units, beside)
+    def quantity(text: str, neighbour: str = "") -> float:
+        return _quantity(title, text, factor, mark, units, neighbour)
 
     text = _tidied(without_thousands(cell))
     across = text.startswith(("ø", "dm "))
@@ -193,17 +193,17 @@ def measure(
 
 
 def _two(title: str, text: str, quantity: Callable[[str, str], float]) -> tuple[float, float] | None:
-    """Return the smaller and the larger of two measures in a text, twice the first if they say the same."""
+    """Return the smaller and the larger of two measures in a text; twice the first if they agree."""
     if (match := _BETWEEN.fullmatch(text)) and not (match[2] == "/" and re.match(_FRACTION, text)):
         low, high = quantity(match[1], match[3]), quantity(match[3], "")
-        if match[2] == "/" and low > high > 0.0:  # in front and behind, of which neither is the first
+        if match[2] == "/" and low > high > 0.0:  # front and back, in any order
             low, high = high, low
         if not low < high:
             raise InvalidValueError(
                 "{title} must go from the smaller to the larger, got {cell}", title=title, cell=f"{text!r:.40}"
             )
         return low, high
-    if match := _BESIDE.fullmatch(text):  # the same in another unit, or what else it might be
+    if match := _BESIDE.fullmatch(text):  # the same size in another unit, or an alternative
         value, other = quantity(match[1], ""), quantity(match[2], match[1])
         if abs(value - other) > _OTHERWISE * value:
             raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text!r:.40}")
@@ -220,29 +220,29 @@ def _tidied(cell: str) -> str:
 
 
 def _without_about(text: str) -> tuple[str, bool]:
-    """Return a measure without what says that it is not known well, or how it was taken; and whether anything did."""
-    whole = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
-    match = _ABOUT_FIRST.match(whole)
-    bare = _DOUBT.sub("", whole[match.end() :] if match else whole)
+    """Return a measure without words for an approximate value, and a flag for such words."""
+    plain_text = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
+    match = _ABOUT_FIRST.match(plain_text)
+    bare = _DOUBT.sub("", plain_text[match.end() :] if match else plain_text)
     bare = _IN_BRACKETS.sub(r"\1 \2", bare).strip() if _IN_BRACKETS.fullmatch(bare) else bare.strip()
-    if bare != whole:
+    if bare != plain_text:
         return _without_about(bare)[0], True
-    match = _UNIT_FIRST.fullmatch(whole)
+    match = _UNIT_FIRST.fullmatch(plain_text)
     if match:
         return _without_about(f"{match[2]} {match[1]}")
-    return whole, False
+    return plain_text, False
 
 
 def _quantity(
-    title: str, text: str, factor: float | None, mark: DecimalMark, units: Mapping[str, float], beside: str
+    title: str, text: str, factor: float | None, mark: DecimalMark, units: Mapping[str, float], neighbour: str
 ) -> float:
-    """Return a number with its unit, or feet with inches; beside: where the unit of one without may stand."""
+    """Return a number with its unit, or feet with inches; neighbour: text with the unit of a number without one."""
     pairs = _PAIR.findall(text) if re.fullmatch(_QUANTITY, text) else []
     factors = [units.get(_unit(word), 0.0) for _, word in pairs]
     if not pairs or (
         len(pairs) > 1 and (sorted(set(factors), reverse=True) != factors or len(pairs) > 2 or 0.0 in factors)
     ):
-        date = Message("a date, which a spreadsheet made of a number?")
+        date = Message("The cell contains a date. Format the column as numbers.")
         raise InvalidValueError(
             "{title} must be one number such as 12.5, 120 cm, ca. 120 or 120-130, without separators of thousands, "
             "got {cell}",
@@ -250,7 +250,9 @@ def _quantity(
             cell=f"{text[:40]!r}",
             hint=date if _DATE.fullmatch(text) else "",
         )
-    if odd := next((word for (_, word), one in zip(pairs, factors, strict=True) if word and not one), ""):
+    if odd := next(
+        (word for (_, word), number_factor in zip(pairs, factors, strict=True) if word and not number_factor), ""
+    ):
         raise InvalidValueError(
             "{title} must be one number with a unit of {units}, got {cell}",
             title=title,
@@ -258,19 +260,21 @@ def _quantity(
             cell=f"{odd[:20]!r}",
         )
     if not factors[0]:
-        other = next((word for _, word in _PAIR.findall(beside) if word), "")
+        other = next((word for _, word in _PAIR.findall(neighbour) if word), "")
         factors[0] = units.get(_unit(other), 0.0) or _named(title, text, factor)
-    return sum(_number(title, one, mark, by) * by for (one, _), by in zip(pairs, factors, strict=True))
+    return sum(
+        _number(title, number_factor, mark, by) * by for (number_factor, _), by in zip(pairs, factors, strict=True)
+    )
 
 
 def _number(title: str, text: str, mark: DecimalMark, by: float) -> float:
-    whole, _, part = text.rpartition(" ")
-    if "/" not in part:
+    integer, _, fraction = text.rpartition(" ")
+    if "/" not in fraction:
         return mark.number(title, text)
-    above, below = map(int, part.split("/"))
-    if not whole and by in {FACTORS["cm"], FACTORS["mm"]}:
+    above, below = map(int, fraction.split("/"))
+    if not integer and by in {FACTORS["cm"], FACTORS["mm"]}:
         raise _ambiguous(title, text, (f"{above / below:.4g}", f"{above}-{below}"))
-    return (mark.number(title, whole) if whole else 0.0) + above / below
+    return (mark.number(title, integer) if integer else 0.0) + above / below
 
 
 def _unit(word: str) -> str:
@@ -280,7 +284,7 @@ def _unit(word: str) -> str:
 def _named(title: str, cell: Cell, factor: float | None) -> float:
     if factor is None:
         raise InvalidValueError(
-            "{title} must name its unit, in its header or beside the number, got {cell}",
+            "{title} must state its unit, in its header or after the number, got {cell}",
             title=title,
             cell=f"{cell!r:.40}",
         )
@@ -298,10 +302,10 @@ _TWICE = re.compile(r"([^()]*\d[^()]*)\(([^()]*\d\s*x[^()]*)\)")
 def parts(
     title: str, cell: Cell, order: Sequence[str], factor: float | None, mark: DecimalMark, language: str
 ) -> dict[str, CellMeasure]:
-    """Return the measures of a cell such as ``120 x 80 x 220 cm`` or ``H 120, Ø 30 cm``; order: what its header says.
+    """Return the measures of a cell such as ``120 x 80 x 220 cm`` or ``H 120, Ø 30 cm``; order: that of its header.
 
-    >>> found = parts("Maße", "H 120 x B 80 x T 40 cm", (), None, DecimalMark([]), "de")
-    >>> {side: one.value for side, one in found.items()}
+    >>> sizes = parts("Maße", "H 120 x B 80 x T 40 cm", (), None, DecimalMark([]), "de")
+    >>> {side: size.value for side, size in sizes.items()}
     {'height': 1.2, 'width': 0.8, 'depth': 0.4}
     """
     text = _tidied(without_thousands(cell if isinstance(cell, str) else f"{cell:.10g}"))
@@ -309,59 +313,59 @@ def parts(
         text, order = text[: stated.start()].strip(), of_cell
     text, about = _without_about(text)
     if match := _TWICE.fullmatch(text):
-        found, again = (parts(title, each, order, factor, mark, language) for each in match.groups())
-        if any(abs(one.value - again[side].value) > _SAME * one.value for side, one in found.items()):
+        sizes, repeated = (parts(title, piece, order, factor, mark, language) for piece in match.groups())
+        if any(abs(size.value - repeated[side].value) > _SAME * size.value for side, size in sizes.items()):
             raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text[:60]!r}")
-        return found
-    apart = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", " x ", text) if text.count("/") + 1 == len(order) == 3 else text
-    pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", apart)) if piece]
+        return sizes
+    separated = re.sub(r"(?<=[0-9])\s*/\s*(?=[0-9])", " x ", text) if text.count("/") + 1 == len(order) == 3 else text
+    pieces = [piece for piece in _PARTS.split(re.sub(rf"\b({_ABOUT})\b\.? *", "~", separated)) if piece]
     labels = []
     for k, piece in enumerate(pieces):
         label = _LABEL.match(piece)
         side = side_of(plain(label[1]), language) if label else ""
-        labels.append("width" if side == "length" in labels else side)  # a longer and a shorter one: L 90, l 40
+        labels.append("width" if side == "length" in labels else side)  # longer and shorter side: L 90, l 40
         pieces[k] = piece[label.end() :] if label and side else piece
-    said = set(labels) | ({"width", "depth"} if "diameter" in labels else set())
-    left = [side for side in order or ("height",) if side not in said] if order or "diameter" in labels else []
+    labelled = set(labels) | ({"width", "depth"} if "diameter" in labels else set())
+    left = [side for side in order or ("height",) if side not in labelled] if order or "diameter" in labels else []
     for k in range(len(labels)):
         if not labels[k] and left:
             labels[k] = left.pop(0)
     if not pieces or "" in labels or len(set(labels)) < len(labels) or (left and "diameter" not in labels):
         hint = (
-            Message("its header names {count} parts", {"count": len(order)})
+            Message("The header has {count} sizes.", {"count": len(order)})
             if order
             else Message(
-                "which is the height? Write the order into the header, or say it: columns {example}",
+                "Add the order of the sizes to the header, or use columns {example}.",
                 {"example": f'"{title}=height x width x depth cm"'},
             )
         )
         raise InvalidValueError(
-            "{title} must have its parts in a known order, got {cell}", title=title, cell=f"{text[:40]!r}", hint=hint
+            "{title} must have its sizes in a known order, got {cell}", title=title, cell=f"{text[:40]!r}", hint=hint
         )
     units = [[by for _, word in _PAIR.findall(piece) if (by := LENGTH_UNITS.get(_unit(word)))] for piece in pieces]
-    found = {}
+    measures = {}
     for side, piece, own in zip(labels, pieces, units, strict=True):
         if is_missing(piece):
             raise InvalidValueError("{title} is {cell}", title=title, cell=f"{text[:40]!r}")
-        one = ("~" if about and not piece.startswith("~") else "") + piece
-        found[side] = measure(title, one, None if own else next(iter(units[-1]), factor), mark)
-    if "length" in found:
-        found["width" if "width" not in found else "depth"] = found.pop("length")
-    return found
+        text_of_side = ("~" if about and not piece.startswith("~") else "") + piece
+        measures[side] = measure(title, text_of_side, None if own else next(iter(units[-1]), factor), mark)
+    if "length" in measures:
+        measures["width" if "width" not in measures else "depth"] = measures.pop("length")
+    return measures
 
 
 def count_of(cell: Cell) -> int | None:
-    """Return how many a cell says there are, if it does.
+    """Return the number of pieces in a cell, or None.
 
     >>> [count_of(cell) for cell in ("2 Stk.", "3x", "3 Paar", 4.0, "-4", "viele")]
     [2, 3, 6, 4, None, None]
     """
     if isinstance(cell, float):
         return int(cell) if cell == int(cell) else None
-    words = plain(cell)
-    if words in _PAIRS:
+    text = plain(cell)
+    if text in _PAIRS:
         return 2
-    match = re.fullmatch(r"x? ?([0-9]{1,7}) ?([^\W\d]*)", words)
+    match = re.fullmatch(r"x? ?([0-9]{1,7}) ?([^\W\d]*)", text)
     if match is None or re.search(r"\d[.,]\d|^\s*-", cell):
         return None
     return int(match[1]) * (2 if match[2] in _PAIRS else 1)

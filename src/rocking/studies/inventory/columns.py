@@ -1,4 +1,4 @@
-"""What the columns of a list contain: by the words of its header, of one or more rows, in the language of most."""
+"""Meaning of the columns of a list, from a header of one or more rows in the language of most titles."""
 
 # ruff: noqa: RUF001 - signs and words of other alphabets are meant
 
@@ -18,22 +18,22 @@ from rocking.errors import InvalidValueError
 from rocking.studies.inventory import objects
 
 WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("header_words.toml").read_text("utf-8"))
-"""Words of lists in eight languages: of headers, by what the column holds, and of cells."""
+"""Words of lists in eight languages: headers by column, and words in cells."""
 
 SIZES = (*objects.SIZES, "length", "diameter")
 LENGTHS = (*SIZES, "base", *objects.LENGTHS[3:5], "base_diameter", "pedestal", objects.LENGTHS[5])
-"""What a column of lengths may hold."""
+"""Fields of columns with lengths."""
 
 WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
 """Units of the column of weights [kg]."""
 
 FACTORS = LENGTH_UNITS | WEIGHTS
 TEXTS = ("name", "note", "body_file", "units", "shape", "consequence", "photo", "number")
-"""Columns whose cells are no numbers."""
+"""Columns with text cells."""
 
 _MEASURES = (*LENGTHS, "weight")
 _FIELDS = {"weight": ("mass",), "base": ("base_width", "base_depth"), "base_diameter": ("base_width", "base_depth")}
-# of a group of columns and a column in it
+# by the titles of a group and of its column
 _IN_GROUP = {
     ("base", "width"): "base_width", ("base", "depth"): "base_depth", ("base", "length"): "base_depth",
     ("base", "diameter"): "base_diameter", ("base", "height"): "", ("width", "base"): "base_width",
@@ -45,7 +45,7 @@ _IN_GROUP = {
 
 @lru_cache(maxsize=1 << 16)
 def plain(text: str) -> str:
-    """Return words alone: small letters without accents, parted by blanks.
+    """Return a text as lower-case words without accents, separated by blanks.
 
     >>> plain("  Höhe (cm)"), plain("Ø-Base_mm"), plain("YÜKSEKLİK")
     ('hohe cm', 'ø base mm', 'yukseklik')
@@ -63,9 +63,9 @@ def plain(text: str) -> str:
 
 
 def words_of(text: str) -> set[str]:
-    """Return the words of a table, an umlaut in both its spellings."""
+    """Return the words of a comma-separated text, with both spellings of umlauts."""
     both = (text, text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue"))
-    words = {plain(word) for one in both for word in one.split(",")}
+    words = {plain(word) for spelling in both for word in spelling.split(",")}
     return words | {word.replace("ß", "ss") for word in words if not word.startswith("maß")}  # Masse is the weight
 
 
@@ -95,40 +95,41 @@ _TRANSLATED = re.compile(r"[/|\n\u2013\u2014]| - ")
 
 @dataclass(frozen=True)
 class InventoryColumn:
-    """What a column holds."""
+    """Meaning of a column."""
 
-    stem: str  # what its title names
-    fields: tuple[str, ...]  # fields of `InventoryObject` that it gives, in the order of the parts of its cells
-    factor: float | None  # what turns its numbers into SI units; None where the cells or a column of units say it
+    stem: str  # quantity of its title
+    fields: tuple[str, ...]  # its fields of `InventoryObject`, in the order of the sizes in its cells
+    factor: float | None  # SI factor of its numbers; None if the cells or a column contain the units
     title: str  # its name in the file
 
 
 @dataclass(frozen=True)
 class Header:
-    """What the titles of a list mean."""
+    """Meaning of the titles of a list."""
 
-    columns: tuple[InventoryColumn | None, ...]  # None for one that is not read
+    columns: tuple[InventoryColumn | None, ...]  # None for an ignored column
     language: str
     titles: tuple[str, ...]  # of all columns
 
     @property
-    def known(self) -> set[str]:
-        """What it gives."""
-        return {each.stem for each in self.columns if each} | {f for each in self.columns if each for f in each.fields}
+    def fields(self) -> set[str]:
+        """Quantities and fields of the columns."""
+        columns = [column for column in self.columns if column]
+        return {column.stem for column in columns} | {field for column in columns for field in column.fields}
 
     @property
     def missing(self) -> list[str]:
-        """What a list must have and this one does not."""
-        known = self.known
+        """Missing columns that a list needs."""
+        known = self.fields
         missing = [] if {"name", "number"} & known else ["name"]
         if "body_file" in known or {"diameter", "height"} <= known or ("size" in known and "height" not in known):
             return missing
-        wanted = ("width", "height") if {"width", "shape"} <= known else objects.SIZES
-        return missing + [each for each in wanted if each not in known]
+        required = ("width", "height") if {"width", "shape"} <= known else objects.SIZES
+        return missing + [field for field in required if field not in known]
 
 
 def _bare(words: Sequence[str]) -> tuple[list[str], str]:
-    """Return the words of a title without its unit, which is the last of them, and the unit."""
+    """Return the words of a title without its unit, which is the last word, and the unit."""
     kept = list(words)
     while kept and kept[-1] in _FILLERS - UNITS.keys():
         kept.pop()
@@ -137,9 +138,9 @@ def _bare(words: Sequence[str]) -> tuple[list[str], str]:
 
 
 def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
-    """Return what words of a title name in one language, and its unit."""
-    if whole := fields.get(" ".join(words)):
-        return whole, ""
+    """Return the quantity of a title in one language, and its unit."""
+    if stem_of_title := fields.get(" ".join(words)):
+        return stem_of_title, ""
     kept, unit = _bare(words)
     bare = [word for word in kept if word not in _FILLERS]
     stem = fields.get(" ".join(kept)) or fields.get(" ".join(bare), "")
@@ -147,34 +148,34 @@ def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
 
 
 def _stem(title: str, language: str) -> tuple[str, str]:
-    """Return what a title names, in a language or any other or two of them, and its unit; nothing of an unknown one."""
+    """Return the quantity of a title in a language, another or two languages, and its unit; empty if unknown."""
     words = plain(title).split()
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
-    found = next((found for fields in tables if (found := _stem_in(words, fields))[0]), ("", ""))
-    if found[0] or (found := _translated(title))[0]:
-        return found
+    match = next((match for fields in tables if (match := _stem_in(words, fields))[0]), ("", ""))
+    if match[0] or (match := _translated(title))[0]:
+        return match
     if any(word.startswith("inv") for word in words) and all(word.startswith("inv") or len(word) < 4 for word in words):
         return "number", ""  # N. d'inv., Inv.-Nr. alt
     bare = re.sub(r"\([^()]*\)|\[[^\[\]]*\]", " ", title)
     stem = _stem(bare, language)[0] if plain(bare) != plain(title) else ""
-    return ("", "") if stem in {*_MEASURES, "size"} else (stem, "")  # brackets may say of which part a measure is
+    return ("", "") if stem in {*_MEASURES, "size"} else (stem, "")  # brackets may contain the part of the object
 
 
 def stem_of(title: str, language: str) -> str:
-    """Return what a title names, or nothing."""
+    """Return the quantity of a title, or an empty text."""
     return _Level.of(title, language).stem
 
 
 def _translated(title: str) -> tuple[str, str]:
-    """Return what a title in more than one language names, and its unit, as of ``Breite / Larghezza (cm)``."""
+    """Return the quantity of a title in several languages, and its unit, such as ``Breite / Larghezza (cm)``."""
     words, unit = _bare(plain(title).split())
     fields = _phrased(words)
     if not fields:
-        parts = [plain(part).split() for part in _TRANSLATED.split(title)]
-        known = [part_fields for part in parts if (part_fields := _phrased(part))]
-        unknown = [word for part in parts if not _phrased(part) for word in part]
-        if known and not any(word in _OTHERS or word in _TELLING for word in unknown):
-            fields = set.intersection(*known)
+        pieces = [plain(piece).split() for piece in _TRANSLATED.split(title)]
+        known_fields = [piece_fields for piece in pieces if (piece_fields := _phrased(piece))]
+        unknown = [word for piece in pieces if not _phrased(piece) for word in piece]
+        if known_fields and not any(word in _OTHERS or word in _TELLING for word in unknown):
+            fields = set.intersection(*known_fields)
     if len(fields) != 1:
         return "", ""
     (stem,) = fields
@@ -182,12 +183,12 @@ def _translated(title: str) -> tuple[str, str]:
 
 
 def _phrased(words: Sequence[str]) -> set[str]:
-    """Return which fields words name that are phrases of any language one after another, all of the same field."""
+    """Return the fields of words that are a sequence of phrases of any language, all of one field."""
     ends: list[set[str]] = [{""}, *(set() for _ in words)]
     for k, word in enumerate(words):
         if word in _FILLERS or (
             word in UNITS and word not in _TELLING and "" not in ends[k]
-        ):  # a unit follows what it is of
+        ):  # a unit follows its quantity
             ends[k + 1] |= ends[k]
         for j in range(k + 1, min(k + 5, len(words)) + 1):
             ends[j] |= {
@@ -197,7 +198,7 @@ def _phrased(words: Sequence[str]) -> set[str]:
 
 
 def order_of(title: str, language: str = "en") -> tuple[str, ...]:
-    """Return the order of the parts of a measure that a title states.
+    """Return the order of the sizes in a title.
 
     >>> order_of("Maße (HxBxT) in cm"), order_of("height*width*depth"), order_of("Maße")
     (('height', 'width', 'depth'), ('height', 'width', 'depth'), ())
@@ -212,7 +213,7 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     for k, token in enumerate(tokens):
         side = side_of(token, language)
         if side and (not run or (k > 1 and tokens[k - 1] == "x")):
-            run.append("width" if side == "length" in run else side)  # a longer and a shorter one: L x l
+            run.append("width" if side == "length" in run else side)  # longer and shorter side: L x l
         elif token != "x":
             run = [side] if side else []
         best = max(best, list(run), key=len)
@@ -220,38 +221,38 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
 
 
 def side_of(token: str, language: str = "en") -> str:
-    """Return which measure a letter or word stands for."""
+    """Return the size of a letter or word; empty if it is none."""
     if token == "ø":
         return "diameter"
-    found = _HEADERS[language].get(token) or WORDS["sides"].get(token) or _stem(token, language)[0]
-    return found if found in SIZES else ""
+    quantity = _HEADERS[language].get(token) or WORDS["sides"].get(token) or _stem(token, language)[0]
+    return quantity if quantity in SIZES else ""
 
 
 Titles = Sequence[str | Sequence[str]]
-"""What stands above each column: a title, or a title for each row of the header, groups of columns first."""
+"""Titles of each column: a title, or a title per row of the header, groups of columns first."""
 
 
 def levels_of(title: str | Sequence[str]) -> tuple[str, ...]:
-    """Return the titles of a column, each on one line and once."""
-    levels = [" ".join(each.split(" ")).strip() for each in ((title,) if isinstance(title, str) else title)]
-    return tuple(dict.fromkeys(each for each in levels if each))
+    """Return the different titles of a column, each on one line."""
+    levels = [" ".join(level.split(" ")).strip() for level in ((title,) if isinstance(title, str) else title)]
+    return tuple(dict.fromkeys(filter(None, levels)))
 
 
 def title_of(title: str | Sequence[str]) -> str:
-    """Return what a column is called.
+    """Return the full title of a column.
 
     >>> title_of(("Maße (cm)", "Breite")), title_of(("Maße", "B", "[cm]"))
     ('Maße (cm): Breite', 'Maße: B [cm]')
     """
-    parted = "".join(f"{' ' if plain(each) in UNITS else ': '}{each}" for each in levels_of(title))
-    return " ".join(parted.removeprefix(": ").split())
+    joined = "".join(f"{' ' if plain(level) in UNITS else ': '}{level}" for level in levels_of(title))
+    return " ".join(joined.removeprefix(": ").split())
 
 
 def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header:
-    """Return what the titles of a list mean, in the language that knows most; mapped: what the user says of some.
+    """Return the meaning of the titles of a list in the best matching language; mapped: meanings from the user.
 
-    >>> found = header_of(["Objekt", "Höhe (cm)", ("Maße (cm)", "Breite"), ("Maße (cm)", "Tiefe")])
-    >>> found.language, [each.fields[0] for each in found.columns]
+    >>> header = header_of(["Objekt", "Höhe (cm)", ("Maße (cm)", "Breite"), ("Maße (cm)", "Tiefe")])
+    >>> header.language, [column.fields[0] for column in header.columns]
     ('de', ['name', 'height', 'width', 'depth'])
     """
     language = _language_of(titles)
@@ -260,48 +261,48 @@ def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header
         _column(name, levels_of(title), language) if target is None else _column(name, (target,), language)
         for title, name, target in zip(titles, named, targets, strict=True)
     ]
-    known = {field for each in columns if each for field in each.fields}
-    for field in {"number", "name"} - known:
-        free = [k for k, each in enumerate(columns) if each is None and targets[k] is None]
-        instead = (
-            k for k in free if field in {_INSTEAD.get(plain(each)) for each in (named[k], *levels_of(titles[k]))}
+    known_fields = {field for column in columns if column for field in column.fields}
+    for field in {"number", "name"} - known_fields:
+        free = [k for k, column in enumerate(columns) if column is None and targets[k] is None]
+        substitutes = (
+            k for k in free if field in {_INSTEAD.get(plain(level)) for level in (named[k], *levels_of(titles[k]))}
         )
-        if (place := next(instead, None)) is not None:
-            columns[place] = InventoryColumn(field, (field,), 1.0, named[place])
+        if (index := next(substitutes, None)) is not None:
+            columns[index] = InventoryColumn(field, (field,), 1.0, named[index])
     columns = _sided(_in_order(titles, columns))
-    stems = [each.stem if each else "" for each in columns]
-    for k, each in enumerate(columns):
-        if each and each.stem not in _MEASURES and each.stem in stems[:k]:
-            columns[k] = None  # the first of several is taken
+    stems = [column.stem if column else "" for column in columns]
+    for k, column in enumerate(columns):
+        if column and column.stem not in _MEASURES and column.stem in stems[:k]:
+            columns[k] = None  # the first of several columns is used
     return Header(tuple(columns), language, tuple(named))
 
 
 def _in_order(titles: Titles, columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:
-    """Return columns below one title of their order, as ``Maße (B x T x H)`` above three of them, each as its side."""
-    levels, found = [levels_of(title) for title in titles], list(columns)
+    """Return columns with sides from a common title of their order, such as ``Maße (B x T x H)`` above three."""
+    levels, sided = [levels_of(title) for title in titles], list(columns)
     for first, column in enumerate(columns):
         if column is None or column.stem != "size" or levels[first] in levels[:first]:
             continue
-        places = [k for k, each in enumerate(levels) if each == levels[first]]
-        if len(places) == len(column.fields):
-            for k, side in zip(places, column.fields, strict=True):
-                found[k] = replace(column, stem=side, fields=(side,))
-    return found
+        members = [k for k, other_levels in enumerate(levels) if other_levels == levels[first]]
+        if len(members) == len(column.fields):
+            for k, side in zip(members, column.fields, strict=True):
+                sided[k] = replace(column, stem=side, fields=(side,))
+    return sided
 
 
 def _sided(columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:
-    """Return columns with each length as the side that is not given."""
-    known = {field for each in columns if each for field in each.fields}
-    free = [way for way in ("width", "depth") if way not in known]
-    for k, each in enumerate(columns):
-        if each and "length" in each.fields and free:
+    """Return columns with lengths assigned to the missing sides."""
+    known_fields = {field for column in columns if column for field in column.fields}
+    free = [side for side in ("width", "depth") if side not in known_fields]
+    for k, column in enumerate(columns):
+        if column and "length" in column.fields and free:
             side = free.pop(0)
-            columns[k] = replace(each, fields=tuple(side if f == "length" else f for f in each.fields))
+            columns[k] = replace(column, fields=tuple(side if f == "length" else f for f in column.fields))
     return columns
 
 
 def names_of(titles: Titles) -> list[tuple[str, ...]]:
-    """Return the names by which a user may state each column: its whole title, and its lowest if no other has that.
+    """Return the names of each column for users: its full title, and its lowest title if unique.
 
     >>> names_of([("Base (cm)", "Width"), ("Size (cm)", "Width"), ("Size (cm)", "Height")])
     [('base cm width',), ('size cm width',), ('size cm height', 'height')]
@@ -314,24 +315,24 @@ def names_of(titles: Titles) -> list[tuple[str, ...]]:
 
 
 def _targets(titles: Titles, mapped: Mapping[str, str]) -> list[str | None]:
-    """Return what the user states of each column."""
+    """Return the user's meaning of each column, or None."""
     targets = {plain(title): target for title, target in mapped.items()}
     return [next((targets[name] for name in names if name in targets), None) for names in names_of(titles)]
 
 
 def _language_of(titles: Titles) -> str:
-    """Return the language of most titles, as they are written; of equals that which stands first."""
-    parts = list(dict.fromkeys(
-        (place, part)
+    """Return the language of most titles; of equal ones the first."""
+    pieces = list(dict.fromkeys(
+        (position, piece)
         for title in titles for level in levels_of(title)
-        for place, part in enumerate(filter(None, map(str.strip, re.split(r"[/|()\[\]\n\u2013\u2014]| - ", level))))
+        for position, piece in enumerate(filter(None, map(str.strip, re.split(r"[/|()\[\]\n\u2013\u2014]| - ", level))))
     ))  # fmt: skip
 
-    words = [(place, plain(part).split()) for place, part in parts]
+    words = [(position, plain(piece).split()) for position, piece in pieces]
 
     def votes(code: str) -> tuple[int, int, int]:
-        places = [place for place, part in words if _stem_in(part, _HEADERS[code])[0]]
-        return len(places), -sum(places), sum(token in _TOKENS[code] for _, part in words for token in part)
+        positions = [position for position, piece in words if _stem_in(piece, _HEADERS[code])[0]]
+        return len(positions), -sum(positions), sum(token in _TOKENS[code] for _, piece in words for token in piece)
 
     return str(max(_HEADERS, key=votes))
 
@@ -350,131 +351,133 @@ class _Level:
     def of(cls, title: str, language: str) -> "_Level":
         stem, unit = _stem(title, language)
         order = order_of(title, language)
-        words, last = _bare(plain(title).split())
+        title_words, last = _bare(plain(title).split())
         if order:
             stem = "size"
             unit = unit or next(
                 (UNITS[word] for word in reversed(plain(title).split()) if word in UNITS and len(word) > 1), ""
             )
-        stated = not words or set(words) <= _FILLERS  # nothing but a unit
-        return cls(stem, unit or (last if stated and not stem else ""), order, tuple(words))
+        stated = not title_words or set(title_words) <= _FILLERS  # nothing but a unit
+        return cls(stem, unit or (last if stated and not stem else ""), order, tuple(title_words))
 
     @property
     def is_neutral(self) -> bool:
-        """Whether it says nothing of what the column holds, as a unit, or that it is of the object itself."""
+        """True if the title does not describe the column, such as a unit or a word for the object itself."""
         return not self.stem and (set(self.words) <= _FILLERS or bool(_WITHOUT.intersection(self.words)))
 
     @property
     def is_other(self) -> bool:
-        """Whether it is of something that is not the object."""
+        """True if the title belongs to something other than the object."""
         other = any(word in _OTHERS or word.startswith(_BEGINNINGS) for word in self.words)
         return not self.stem and other and not _WITHOUT.intersection(self.words)
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether it looks like a measure and is not understood."""
+        """True if the title resembles a size but is unknown."""
         return not self.stem and bool(_TELLING.intersection(self.words)) and not _WITHOUT.intersection(self.words)
 
 
 def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn | None:
-    """Return what a column is by its titles, of a group and of its own; None of one that is not understood."""
+    """Return the meaning of a column from the titles of its group and its own; None if unknown."""
     levels = [_Level.of(text, language) for text in texts]
     last = levels[-1] if levels else None
     if last and len(levels) > 1 and UNITS.get(plain(texts[-1])) in _units_of(levels[-2].stem):
         levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), words=())
     stem = ""
-    for each in levels:
-        is_unit = stem == "count" and " ".join(each.words) in _INSTEAD  # Q.tà, n.
-        stem = stem if each.is_neutral or is_unit else _IN_GROUP.get((stem, each.stem), each.stem)
-    words = [each.words for each in levels if each.words]
-    both = next((found for order in (words, words[::-1]) if len(words) > 1 and (found := _joined(order, language))), "")
+    for level in levels:
+        is_unit = stem == "count" and " ".join(level.words) in _INSTEAD  # Q.tà, n.
+        stem = stem if level.is_neutral or is_unit else _IN_GROUP.get((stem, level.stem), level.stem)
+    words_by_level = [level.words for level in levels if level.words]
+    orders = (words_by_level, words_by_level[::-1]) if len(words_by_level) > 1 else ()
+    both = next(filter(None, (_joined(order, language) for order in orders)), "")
     stem = both or stem
     if not stem:
         return None
     if stem not in {*_MEASURES, "size"}:
         return InventoryColumn(stem, (stem,), 1.0, title)
-    if not both and stem != "weight" and any(each.is_other or each.is_doubtful for each in levels):
+    if not both and stem != "weight" and any(level.is_other or level.is_doubtful for level in levels):
         return None
-    own = next(each for each in reversed(levels) if each.stem or both)
+    own = next(level for level in reversed(levels) if level.stem or both)
     if own.unit and own.unit not in _units_of(stem):
         return None
-    unit = next((each.unit for each in reversed(levels) if each.unit in _units_of(stem)), "")
-    order = next((each.order for each in reversed(levels) if each.order), ())
+    unit = next((level.unit for level in reversed(levels) if level.unit in _units_of(stem)), "")
+    order = next((level.order for level in reversed(levels) if level.order), ())
     fields = order if stem == "size" else _FIELDS.get(stem, (stem,))
     return InventoryColumn(stem, fields, FACTORS[unit] if unit else None, title)
 
 
 def _units_of(stem: str) -> Collection[str]:
-    """Return the units that a measure may have."""
+    """Return the allowed units of a quantity."""
     return WEIGHTS if stem == "weight" else LENGTH_UNITS if stem in {*LENGTHS, "size"} else ()
 
 
 def _joined(titles: Sequence[Sequence[str]], language: str) -> str:
-    """Return what the titles of a group and of its column name together, as of ``Basis`` above ``Breite``."""
+    """Return the joint quantity of the titles of a group and its column, such as ``Basis`` above ``Breite``."""
     words = [word for title in titles for word in title]
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
-    return next((fields[whole] for fields in tables if (whole := " ".join(words)) in fields), "")
+    phrase = " ".join(words)
+    return next((fields[phrase] for fields in tables if phrase in fields), "")
 
 
 def check_header(header: Header, titles: Titles, source: str, dismissed: Collection[str] = ()) -> None:
-    """Refuse a field that two columns give, and an unknown column that looks like a measure: it might decide."""
-    fields = [field for each in header.columns if each and each.stem != "size" for field in each.fields]
-    for each in fields:
-        if fields.count(each) > 1:
-            raise InvalidValueError("two columns give the {field}", field=each.replace("_", " "), hint="leave one").at(
-                source
-            )
+    """Refuse a field of two columns, and an unknown column that resembles a size."""
+    fields = [field for column in header.columns if column and column.stem != "size" for field in column.fields]
+    for field in fields:
+        if fields.count(field) > 1:
+            raise InvalidValueError(
+                "two columns contain the {field}", field=field.replace("_", " "), hint="Remove one."
+            ).at(source)
     if "length" in fields:
-        length = next(each.title for each in header.columns if each and "length" in each.fields)
+        length = next(column.title for column in header.columns if column and "length" in column.fields)
         raise InvalidValueError(
-            "column {column!r:.60} is not known but looks like a measure, beside width and depth", column=length,
+            "unknown column {column!r:.60} resembles a size, in addition to width and depth", column=length,
             hint=_remedy(length),
         ).at(source)  # fmt: skip
-    passed = {plain(title) for title in dismissed}
+    ignored = {plain(title) for title in dismissed}
     for title, column in zip(titles, header.columns, strict=True):
         levels = levels_of(title)
-        if column is not None or passed.intersection(map(plain, (title_of(title), *levels[-1:]))):
+        if column is not None or ignored.intersection(map(plain, (title_of(title), *levels[-1:]))):
             continue
-        if len(levels) == 1 or not any(_Level.of(each, header.language).is_other for each in levels[:-1]):
+        if len(levels) == 1 or not any(_Level.of(level, header.language).is_other for level in levels[:-1]):
             _refuse_measure(title_of(title), source, header.language)
 
 
 def _remedy(title: str) -> str:
-    return f'rename the column, or add --map-columns "{title:.60}=NAME_mm"; nothing after "=" ignores the column'
+    return f'Rename the column, or add --map-columns "{title:.60}=NAME_mm". An empty NAME_mm ignores the column.'
 
 
 _PEDESTAL, _HEIGHT = re.compile("sockel|pedestal|plinth|piedistallo|zoccolo|peana"), re.compile("hoe?he|height|alt")
 
 
 def _refuse_measure(title: str, source: str, language: str) -> None:
-    words = plain(title)
-    stem, _, unit = words.rpartition(" ")
+    plain_title = plain(title)
+    stem, _, unit = plain_title.rpartition(" ")
     if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size", "pedestal"}:
-        return  # it does not decide, or says no more than others
-    if _PEDESTAL.search(words) and _HEIGHT.search(words):
-        return  # of what an object stands on; the report says that it was not read
-    close = difflib.get_close_matches(stem if stem and unit in UNITS else words, _MEASURED, n=1, cutoff=0.8)
-    tokens = words.split()
-    told = _TELLING.intersection(tokens) or any(part in token for part in _WITHIN for token in tokens)
-    if not ((stem and unit in UNITS) or close or told):
+        return  # it does not affect the result, or repeats other columns
+    if _PEDESTAL.search(plain_title) and _HEIGHT.search(plain_title):
+        return  # height of a support; the report lists the column as ignored
+    close = difflib.get_close_matches(stem if stem and unit in UNITS else plain_title, _MEASURED, n=1, cutoff=0.8)
+    tokens = plain_title.split()
+    is_measure = _TELLING.intersection(tokens) or any(word in token for word in _WITHIN for token in tokens)
+    if not ((stem and unit in UNITS) or close or is_measure):
         return
-    if (known := _stem(stem, language)[0]) in LENGTHS:
-        units = ", ".join(f"{known}_{each}" for each in LENGTH_UNITS)
-        raise InvalidValueError("column {column!r:.60} must name its unit: {units}", column=title, units=units).at(
+    if (quantity := _stem(stem, language)[0]) in LENGTHS:
+        units = ", ".join(f"{quantity}_{unit}" for unit in LENGTH_UNITS)
+        raise InvalidValueError("column {column!r:.60} must state its unit: {units}", column=title, units=units).at(
             source
         )
-    own = (stem or words).replace(" ", "_")
+    own = (stem or plain_title).replace(" ", "_")
     near = difflib.get_close_matches(own, _MEASURES, n=1, cutoff=0.8)
     near = near or difflib.get_close_matches(own, _MEASURES, n=3, cutoff=0.5) or list(_MEASURES)
-    names = ", ".join(f"{each}_{'kg' if each == 'weight' else 'cm'}" for each in near)
+    names = ", ".join(f"{name}_{'kg' if name == 'weight' else 'cm'}" for name in near)
     raise InvalidValueError(
-        "column {column!r:.60} is not known but looks like a measure; {names}? {remedy}", column=title, names=names,
+        "unknown column {column!r:.60} resembles a size (similar: {names}). {remedy}", column=title, names=names,
         remedy=_remedy(title),
     ).at(source)  # fmt: skip
 
 
 def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
-    """Return what a user says of columns, own titles to ours; an empty one is not read, one with a comma is quoted.
+    """Return the user's map of own titles to package titles; empty: ignored; titles with a comma are quoted.
 
     >>> mapping_of("Objekt=name, Maß B=width_cm, Rahmenbreite=")
     {'Objekt': 'name', 'Maß B': 'width_cm', 'Rahmenbreite': ''}
@@ -485,19 +488,19 @@ def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
         return {}
     if not isinstance(text, Mapping):
         fields = next(csv.reader([" ".join(text.split())], skipinitialspace=True), [])
-        parts = [part.rpartition("=") for part in fields if part.strip()]
-        if odd := next((ours for _, mark, ours in parts if not mark), ""):
+        pairs = [field.rpartition("=") for field in fields if field.strip()]
+        if odd := next((ours for _, mark, ours in pairs if not mark), ""):
             raise InvalidValueError(
-                '{parameter} must say own title = ours, as in "Objekt=name, Maß B=width_cm", got {value}',
+                '{parameter} must have the form "own title=name", as in "Objekt=name, Maß B=width_cm", got {value}',
                 parameter="map_columns", value=odd.strip(),
             )  # fmt: skip
-        text = {own: ours for own, _, ours in parts}
-    found = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
-    for own, ours in found.items():
+        text = {own: ours for own, _, ours in pairs}
+    mapped = {str(own).strip(): str(ours).strip() for own, ours in text.items()}
+    for own, ours in mapped.items():
         if not own or (ours and _column(own, (ours,), "en") is None):
             raise InvalidValueError(
-                "{parameter}: {own!r:.60} cannot be {value}; ours are {texts}, and with a unit, as in width_cm: "
+                "{parameter}: {own!r:.60} cannot be {value}. Allowed are {texts}, or with a unit, as in width_cm: "
                 "{measures}, or an order: height x width x depth cm", parameter="map_columns", own=own, value=ours,
                 texts=", ".join((*TEXTS, "count", "friction")), measures=", ".join(_MEASURES),
             )  # fmt: skip
-    return found
+    return mapped

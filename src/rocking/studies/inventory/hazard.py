@@ -1,4 +1,4 @@
-"""How strong the shaking is, and with which motions: what an inventory is assessed against."""
+"""Hazard of an inventory: the motions and their intensity level."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -21,10 +21,10 @@ VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
 """Units of a peak ground velocity [m/s]."""
 
 MOST_MOTIONS = 5000
-"""No hazard has more motions: all of them are held in memory."""
+"""Largest number of motions of a hazard; all are kept in memory."""
 
 FAMILY, COUNT, SEED = "firm-ground", 200, 1
-"""What serves where nobody says otherwise."""
+"""Defaults of synthetic motions."""
 
 _LEVEL = re.compile(r"((?:[0-9]+(?:[.,][0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
 _THOUSANDS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
@@ -34,14 +34,14 @@ _THOUSANDS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 class IntensityLevel:
     """Peak ground acceleration or velocity to which motions are scaled."""
 
-    kind: str  # which of the two
+    kind: str  # "PGA" or "PGV"
     value: float  # the level [m/s2 or m/s]
 
     def __post_init__(self) -> None:
         if self.kind not in {"PGA", "PGV"}:
             raise InvalidValueError("a level is a PGA or a PGV, got {value}", parameter="kind", value=self.kind)
         unit, most = ("m/s2", 1000.0) if self.kind == "PGA" else ("m/s", 100.0)
-        value = checks.within(self.kind, self.value, 0.0, most, unit=unit, open_low=True, hint="wrong unit?")
+        value = checks.within(self.kind, self.value, 0.0, most, unit=unit, open_low=True, hint="Check the unit.")
         object.__setattr__(self, "value", value)
 
     def __str__(self) -> str:
@@ -59,37 +59,37 @@ class IntensityLevel:
         return Message("PGV {value:.4g} m/s", {"value": self.value})
 
     @classmethod
-    def of(cls, kind: str, words: str) -> "IntensityLevel":
-        """Return a level from a number with its unit, such as ``0.3g``, ``0,3g`` or ``25cm/s``: it is never guessed."""
+    def of(cls, kind: str, level: str) -> "IntensityLevel":
+        """Return a level from a number with its unit, such as ``0.3g``, ``0,3g`` or ``25cm/s``."""
         if kind not in {"PGA", "PGV"}:
             raise InvalidValueError("a level is a PGA or a PGV, got {value}", parameter="kind", value=kind)
         units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
-        text: object = words
+        text: object = level
         match = _LEVEL.fullmatch(text.strip()) if isinstance(text, str) else None
         if match is None or match[2] not in units:
             example = "0.3g" if kind == "PGA" else "25cm/s"
             raise InvalidValueError(
-                parameter=kind, value=words,
+                parameter=kind, value=level,
                 allowed=f"a number with its unit, one of {', '.join(units)}, such as {example}",
             )  # fmt: skip
         if _THOUSANDS.fullmatch(match[1]):
-            decimal, whole = match[1].replace(",", "."), match[1].replace(",", "")
+            decimal, integer = match[1].replace(",", "."), match[1].replace(",", "")
             raise InvalidValueError(
-                "{parameter} is ambiguous: {value} could be {decimal} or {whole} {unit}", parameter=kind, value=words,
-                decimal=decimal, whole=whole, unit=match[2], hint="write one of them",
+                "{parameter} is ambiguous: {value} could be {decimal} or {whole} {unit}", parameter=kind, value=level,
+                decimal=decimal, whole=integer, unit=match[2], hint="Write one of them.",
             )  # fmt: skip
         return cls(kind, float(match[1].replace(",", ".")) * units[match[2]])
 
 
 @dataclass(frozen=True, eq=False)
 class Hazard:
-    """Motions that shake every object of an inventory."""
+    """Motions of all objects of an inventory."""
 
     motions: tuple[GroundMotion, ...]  # the motions, scaled
-    level: IntensityLevel | None  # to what they are scaled; None for records as they are
-    source: Message  # where they come from
+    level: IntensityLevel | None  # level of the scaled motions; None for unscaled records
+    source: Message  # source of the motions
     description: dict[str, Any]  # the same as plain values
-    # horizontal components at right angles to the motions, which objects in space feel too; None where there is none
+    # horizontal components at right angles to the motions, for objects in 3D; None if missing
     across: tuple[GroundMotion | None, ...] = ()
 
     @classmethod
@@ -102,7 +102,7 @@ class Hazard:
         seed: int = SEED,
         progress: Callable[[int], None] | None = None,
     ) -> "Hazard":
-        """Return synthetic motions scaled to a level: the families do not say how strong the shaking is."""
+        """Return synthetic motions scaled to a level; the families define no level."""
         count = checks.whole("count", count, 1, MOST_MOTIONS)
         motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
         shaken = []
@@ -120,7 +120,7 @@ class Hazard:
 
     @classmethod
     def of_records(cls, records: Sequence[Any], level: IntensityLevel | None = None) -> "Hazard":
-        """Return records, each scaled with its other components if a level is given, which is of the leading one."""
+        """Return records; with a level, all components are scaled by the factor of the leading component."""
         pairs = [_apart(record) for record in records]
         checked = [checked_motion(record, f"records[{k}]") for k, (record, _) in enumerate(pairs)]
         if not 1 <= len(checked) <= MOST_MOTIONS:
@@ -135,21 +135,21 @@ class Hazard:
             facts = {"count": len(checked), "level": level.message}
             source = Message("{count} record, each scaled to {level}", facts, "{count} records, each scaled to {level}")
         names = [record.name for record in checked]
-        plain = {"kind": "records", "names": names, "provenance": [list(one.provenance) for one in scaled]}
-        return cls(tuple(scaled), level, source, plain, across if any(each is not None for each in across) else ())
+        plain = {"kind": "records", "names": names, "provenance": [list(motion.provenance) for motion in scaled]}
+        return cls(tuple(scaled), level, source, plain, across if any(motion is not None for motion in across) else ())
 
     @property
     def synthetic(self) -> bool:
-        """Whether the motions are synthetic."""
+        """True for synthetic motions."""
         return self.description.get("kind") == "synthetic"
 
     @property
     def vertical(self) -> bool:
-        """Whether any motion has a vertical component."""
+        """True if a motion has a vertical component."""
         return any(motion.vertical is not None for motion in self.motions)
 
     def words(self, code: str = "en") -> str:
-        """Return how strong the shaking is, in a language: the level, or the range of the records' own."""
+        """Return the level as text in a language, or the range of the PGA of unscaled records."""
         say = language(code)
         if self.level is not None:
             return self.level.words(code)
@@ -163,13 +163,13 @@ class Hazard:
         return max(peak_ground_acceleration(motion) for motion in self.motions)
 
     def velocity(self) -> tuple[float, float]:
-        """Return the least and the most of the peak ground velocity [m/s]."""
+        """Return the smallest and largest peak ground velocity [m/s]."""
         peaks = [peak_ground_velocity(motion) for motion in self.motions]
         return min(peaks), max(peaks)
 
 
 def _apart(record: Any) -> tuple[Any, GroundMotion | None]:
-    """Return the leading horizontal component with the vertical one, and what is a quarter turn from it towards y."""
+    """Return the leading horizontal component with the vertical one, and the other horizontal component."""
     motion = together(record)
     if not isinstance(motion, Components):
         return motion, None

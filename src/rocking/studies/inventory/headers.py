@@ -1,4 +1,4 @@
-"""The header of a table: the rows that name its columns, below which most measures are found."""
+"""Locate the header of a table: the title rows above most measures."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,37 +16,37 @@ from rocking.studies.inventory.columns import (
 )  # fmt: skip
 from rocking.studies.inventory.sheets import Cell, Sheet
 
-_HIGHEST = 50  # rows of titles above it
+_HIGHEST = 50  # rows above the header
 _TALLEST = 4
-_SAMPLE = 200  # rows below it that are looked at
+_SAMPLE = 200  # examined rows below the header
 
 
 @dataclass(frozen=True)
-class FoundHeader:
-    """A header and where it is."""
+class LocatedHeader:
+    """A header and its position."""
 
-    first: int  # place of its first row in the table
-    end: int  # place of the row below it
+    first: int  # index of its first row in the table
+    end: int  # index of the row below it
     header: Header
-    titles: tuple[tuple[str, ...], ...]  # of each column, those of a group of columns first
-    measures: int  # cells below that are measures
+    titles: tuple[tuple[str, ...], ...]  # by column, titles of column groups first
+    measures: int  # number of measures below
 
     @property
     def score(self) -> tuple[bool, int, int, int, int]:
-        """Whether the columns needed are there, measures below, what is understood; the lower and higher of equals."""
+        """Sort key: required columns present, number of measures, number of known columns, position."""
         header = self.header
-        units = sum(each is not None and each.factor not in {None, 1.0} for each in header.columns)
+        units = sum(column is not None and column.factor not in {None, 1.0} for column in header.columns)
         return (
-            not header.missing, self.measures, len(header.known) + units, self.first - self.end, -self.first
+            not header.missing, self.measures, len(header.fields) + units, self.first - self.end, -self.first
         )  # fmt: skip
 
 
-def find_header(sheet: Sheet, mapped: Mapping[str, str]) -> FoundHeader | None:
-    """Return the rows that name what a list must have, or those that name most; None of an empty table."""
-    return max(_candidates(sheet, mapped), key=lambda each: each.score, default=None)
+def find_header(sheet: Sheet, mapped: Mapping[str, str]) -> LocatedHeader | None:
+    """Return the header with the required columns, or with most known columns; None for an empty table."""
+    return max(_candidates(sheet, mapped), key=lambda candidate: candidate.score, default=None)
 
 
-def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[FoundHeader]:
+def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[LocatedHeader]:
     rows = [(line, [text_of(cell) for cell in cells]) for line, cells in sheet.rows[: _HIGHEST + _TALLEST]]
     for first in range(min(len(rows), _HIGHEST)):
         for end in range(first + 1, min(first + _TALLEST, len(rows)) + 1):
@@ -58,56 +58,56 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[FoundHeader
                 continue
             titles = _ordered(_titles(rows[first:end], sheet.spans), [cells for _, cells in sheet.rows[end:][:_SAMPLE]])
             header = header_of(titles, mapped)
-            if header.known:
+            if header.fields:
                 measures = 0 if header.missing else _count_measures(header, sheet, end)
-                yield FoundHeader(first, end, header, titles, measures)
+                yield LocatedHeader(first, end, header, titles, measures)
 
 
 def _belongs(above: tuple[int, list[str]], below: tuple[int, list[str]]) -> bool:
-    """Return whether a row above a row of a header belongs to it: words without numbers, next to it, and no title."""
-    words = not any(text[:1].isdigit() for text in above[1])
-    return above[0] + 1 == below[0] and words and not _is_title_line(above[1], below[1])
+    """Return True if an adjacent row above a header row belongs to it: text without numbers, and no title."""
+    is_text = not any(text[:1].isdigit() for text in above[1])
+    return above[0] + 1 == below[0] and is_text and not _is_title_line(above[1], below[1])
 
 
 def _is_title_line(texts: Sequence[str], below: Sequence[str]) -> bool:
-    """Return whether a row is one text that begins where the table does: a title of all, and of no group of columns."""
-    places = [k for k, text in enumerate(texts) if text]
-    return len(places) == 1 and places[0] <= next((k for k, text in enumerate(below) if text), 0)
+    """Return True if a row has one text above the first column: a title of the table, not of a column group."""
+    filled = [k for k, text in enumerate(texts) if text]
+    return len(filled) == 1 and filled[0] <= next((k for k, text in enumerate(below) if text), 0)
 
 
 def _titles(rows: Sequence[tuple[int, list[str]]], spans: Mapping[tuple[int, int], int]) -> tuple[tuple[str, ...], ...]:
-    """Return the titles of each column, those of a group for each of its columns."""
+    """Return the titles of each column, with the titles of its group."""
     width = max([len(rows[-1][1]), *(k + 1 for _, texts in rows for k, text in enumerate(texts) if text)])
     table = [(texts + [""] * (width - len(texts)))[:width] for _, texts in rows]
     spread = [_spread(table, k, line, spans) for k, (line, _) in enumerate(rows)]
-    return tuple(levels_of([row[place] for row in spread]) for place in range(width))
+    return tuple(levels_of([row[column] for row in spread]) for column in range(width))
 
 
 def _ordered(titles: tuple[tuple[str, ...], ...], below: Sequence[Sequence[Cell]]) -> tuple[tuple[str, ...], ...]:
-    """Return titles with one of an order, such as ``Maße (B x T x H)``, above each of as many columns of numbers."""
-    found = list(titles)
+    """Return titles with a title of an order, such as ``Maße (B x T x H)``, above all its number columns."""
+    ordered = list(titles)
     for first, levels in enumerate(titles):
-        places = range(first + 1, first + max(1, max((len(order_of(each)) for each in levels), default=0)))
-        if places and places.stop <= len(titles) and not any(titles[k] for k in places):
-            rows = [[text_of(cells[k]) for k in places] for cells in below if len(cells) >= places.stop]
+        columns = range(first + 1, first + max(1, max((len(order_of(title)) for title in levels), default=0)))
+        if columns and columns.stop <= len(titles) and not any(titles[k] for k in columns):
+            rows = [[text_of(cells[k]) for k in columns] for cells in below if len(cells) >= columns.stop]
             if any(all(text[:1].isdigit() for text in row) for row in rows):
-                found[places.start : places.stop] = [levels] * len(places)
-    return tuple(found)
+                ordered[columns.start : columns.stop] = [levels] * len(columns)
+    return tuple(ordered)
 
 
 def _spread(table: list[list[str]], k: int, line: int, spans: Mapping[tuple[int, int], int]) -> list[str]:
-    """Return a row of a header with each title over all of its columns: those merged, or as far as no other stands."""
+    """Return a row of a header with each title over all its columns: merged ones, or up to the next title."""
     row = list(table[k])
-    merged = {place: spans[line, place] for place in range(len(row)) if (line, place) in spans and row[place]}
-    for place, many in merged.items():
-        row[place : place + many] = [row[place]] * min(many, len(row) - place)
+    merged = {column: spans[line, column] for column in range(len(row)) if (line, column) in spans and row[column]}
+    for column, count in merged.items():
+        row[column : column + count] = [row[column]] * min(count, len(row) - column)
     if merged or (k == len(table) - 1 and not _is_of_units(row)):
         return row
-    for place in range(1, len(row)):
-        above = any(table[j][place] for j in range(k))
-        below = any(each[place] and not _is_of_units(each) for each in table[k + 1 :])
-        if not row[place] and (above if _is_of_units(table[k]) else below and not above):
-            row[place] = row[place - 1]
+    for column in range(1, len(row)):
+        above = any(table[j][column] for j in range(k))
+        below = any(lower_row[column] and not _is_of_units(lower_row) for lower_row in table[k + 1 :])
+        if not row[column] and (above if _is_of_units(table[k]) else below and not above):
+            row[column] = row[column - 1]
     return row
 
 
@@ -116,19 +116,21 @@ def _is_of_units(row: Sequence[str]) -> bool:
 
 
 def _count_measures(header: Header, sheet: Sheet, end: int) -> int:
-    """Return how many sizes the rows below a header give, none of them by two columns."""
+    """Return the number of sizes in the rows below a header; 0 if two columns have the same size."""
     columns = [
-        (k, each) for k, each in enumerate(header.columns) if each and each.stem in {*SIZES, "size", "body_file"}
+        (k, column)
+        for k, column in enumerate(header.columns)
+        if column and column.stem in {*SIZES, "size", "body_file"}
     ]
-    fields = [field for _, each in columns if each.stem in SIZES for field in each.fields]
+    fields = [field for _, column in columns if column.stem in SIZES for field in column.fields]
     if len(set(fields)) < len(fields):
         return 0
     rows = (cells for _, cells in sheet.rows[end : end + _SAMPLE])
-    return sum(min(3, sum(_count_sizes(each, cells[k]) for k, each in columns if k < len(cells))) for cells in rows)
+    return sum(min(3, sum(_count_sizes(column, cells[k]) for k, column in columns if k < len(cells))) for cells in rows)
 
 
 def _count_sizes(column: InventoryColumn, cell: Cell) -> int:
-    """Return how many sizes a cell may give."""
+    """Return the possible number of sizes in a cell."""
     if column.stem == "body_file":
         return 3 if text_of(cell) else 0
     numbers = len(re.findall(r"\d+(?:[.,]\d+)?", text_of(cell)))
@@ -136,7 +138,7 @@ def _count_sizes(column: InventoryColumn, cell: Cell) -> int:
 
 
 def text_of(cell: Cell) -> str:
-    """Return what a cell shows.
+    """Return the text of a cell.
 
     >>> text_of(12.0), text_of(" a ")
     ('12', 'a')

@@ -1,4 +1,4 @@
-"""Traffic lights: what counts as safe, in numbers that stand in every report."""
+"""Traffic lights of an inventory, with the thresholds that every report lists."""
 
 import math
 from dataclasses import dataclass, replace
@@ -9,13 +9,13 @@ from rocking.language import language
 from rocking.messages import Message
 from rocking.statistics.counts import share_interval
 
-# 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
+# 0.07 * 100 is 7.000000000000001: 7 of 100 must reach the threshold
 _ROUNDING = 1e-9
-_MOST = 0.99  # no larger share is green, whatever the consequence
+_MOST = 0.99  # largest fraction of green for all consequences
 
 
 class Light(Enum):
-    """What a light says; the value is the letter that stands beside the colour."""
+    """Light of an object; the value is the letter of the colour."""
 
     GREEN = "G"
     AMBER = "A"
@@ -23,7 +23,7 @@ class Light(Enum):
 
     @property
     def word(self) -> str:
-        """The light in a word."""
+        """The light as a word."""
         return self.name.lower()
 
     @property
@@ -39,40 +39,41 @@ LIGHT_LETTERS = {
     Light.AMBER: Message("A", context="light"),
     Light.RED: Message("R", context="light"),
 }
-"""Names, marks and letters of the lights: they are for eyes that do not see colours."""
+"""Names, marks and letters of the lights, for readers with colour blindness."""
 
 _MEANINGS = {
     Light.RED: Message("At least {red:.10g}% of the motions overturn the object."),
     Light.AMBER: Message(
-        "Neither red nor green: it rocks notably, overturns now and then, slides often, or there are too few motions "
-        "to rule overturning out."
+        "Neither red nor green: it rocks clearly, overturns under some motions, slides often, or there are too few "
+        "motions to exclude overturning."
     ),
     Light.GREEN: Message(
-        "No motion lifts it; or none overturns it, the upper end of the {level:.10g}% interval of the overturning "
-        "share is at most {green:.10g}% (which takes at least {needed} motions), and 84 % of the motions turn it by "
-        "less than {rocking:g} of its slenderness angle. Nor do {red:.10g}% of the motions make it slide."
+        "No motion lifts the object. Or no motion overturns it, the upper end of the {level:.10g}% interval of the "
+        "overturning fraction is at most {green:.10g}% (needs at least {needed} motions), and its peak rotation is "
+        "below {rocking:g} of the slenderness angle in 84 % of the motions. Fewer than {red:.10g}% of the motions make "
+        "it slide."
     ),
 }
 
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Where one light ends and the next begins.
+    """Limits between the lights.
 
-    They are a convention of this package, not of a code: change them where another one is agreed.
+    They are a convention of this package, not of a code. Change them if another convention is agreed.
 
     Parameters
     ----------
     rocking : float
-        Green needs the 84 % quantile of the peak rotation over the slenderness angle below this [-].
+        Limit of green for the 84 % quantile of the peak rotation over the slenderness angle [-].
     overturning_green : float
-        Green needs the upper end of the interval of the overturning share at or below this [-].
+        Limit of green for the upper end of the interval of the overturning fraction [-].
     overturning_red : float
-        Red from this share of motions that overturn [-].
+        Smallest overturning fraction of red [-].
     level : float
         Confidence of the interval [-].
     low_consequence, high_consequence : float
-        What both shares are multiplied by for an object whose fall is of low or of high consequence [-].
+        Factor of both fractions for an object with low or high consequence of a fall [-].
 
     Raises
     ------
@@ -104,12 +105,12 @@ class Thresholds:
         checks.within("high_consequence", self.high_consequence, 0.0, 1.0, open_low=True)
 
     def factor(self, consequence: str) -> float:
-        """Return by what the shares of a consequence are multiplied; how much a fall weighs is its inverse.
+        """Return the factor of the fractions for a consequence; its inverse is the weight of a fall.
 
         Parameters
         ----------
         consequence : {"low", "medium", "high"}
-            How bad it is if the object falls.
+            Consequence of a fall of the object.
 
         Returns
         -------
@@ -124,12 +125,12 @@ class Thresholds:
         Parameters
         ----------
         consequence : {"low", "medium", "high"}
-            How bad it is if the object falls.
+            Consequence of a fall of the object.
 
         Returns
         -------
         Thresholds
-            With its shares.
+            Thresholds with the fractions of the consequence.
 
         Examples
         --------
@@ -145,20 +146,20 @@ class Thresholds:
     def light(
         self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0, slid: int = 0
     ) -> Light:
-        """Return the light of what was counted.
+        """Return the light from the counts of motions.
 
         Parameters
         ----------
         lifted, overturned : int
-            How many motions lift the object, how many overturn it [-].
+            Number of motions that lift the object, and that overturn it [-].
         count : int
-            How many motions there are that could be computed, at least one [-].
+            Number of computed motions, at least one [-].
         high_rotation : float or None
-            The 84 % quantile of the peak rotation over the slenderness angle, None if it overturns there [-].
+            The 84 % quantile of the peak rotation over the slenderness angle, None if overturned [-].
         failed : int
-            How many motions could not be computed: with any there is no green [-].
+            Number of motions that could not be computed; green requires 0 [-].
         slid : int
-            How many motions make it slide, whose way is not computed: from the share of red on there is no green [-].
+            Number of motions with sliding; green requires a fraction below that of red [-].
 
         Returns
         -------
@@ -176,7 +177,7 @@ class Thresholds:
         return Light.GREEN if small and overturned == 0 and sure and failed == 0 else Light.AMBER
 
     def sentences(self, code: str = "en") -> dict[Light, str]:
-        """Return what each light means.
+        """Return the meaning of each light.
 
         Parameters
         ----------
@@ -196,7 +197,7 @@ class Thresholds:
         return {light: say(meaning.text, **numbers) for light, meaning in _MEANINGS.items()}
 
     def conventions(self, code: str = "en") -> list[str]:
-        """Return how the shares depend on the consequence of a fall, and that all of this is a convention.
+        """Return sentences on the fractions by consequence of a fall, and on the convention.
 
         Parameters
         ----------
@@ -210,14 +211,14 @@ class Thresholds:
         """
         say, low, high = language(code), self.of("low"), self.of("high")
         shares = {
-            f"{colour}_{name}": 100.0 * getattr(each, f"overturning_{colour}")
-            for name, each in (("low", low), ("high", high)) for colour in ("green", "red")
+            f"{colour}_{name}": 100.0 * getattr(thresholds, f"overturning_{colour}")
+            for name, thresholds in (("low", low), ("high", high)) for colour in ("green", "red")
         }  # fmt: skip
         return [
             say(
-                "The shares are those of a fall of medium consequence. Of low consequence they are "
-                "{green_low:.10g}% and {red_low:.10g}%, of high consequence {green_high:.10g}% and "
-                "{red_high:.10g}%; that takes at least {needed_high} motions.",
+                "These fractions apply to a medium consequence of a fall. They are {green_low:.10g}% and "
+                "{red_low:.10g}% for a low, {green_high:.10g}% and {red_high:.10g}% for a high consequence (needs at "
+                "least {needed_high} motions).",
                 needed_high=high.needed,
                 **shares,
             ),
@@ -226,5 +227,5 @@ class Thresholds:
 
     @property
     def needed(self) -> int:
-        """How many motions, none of which overturns an object that they lift, can make it green at best [-]."""
+        """Smallest number of motions, all with uplift and none with overturning, that can give green [-]."""
         return math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))  # Eq. 187

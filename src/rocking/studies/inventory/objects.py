@@ -1,4 +1,4 @@
-"""One object of an inventory: what a tape measure says, and the two plane bodies that it stands for."""
+"""An object of an inventory: its measured sizes, and its plane body in each direction."""
 
 import math
 from collections.abc import Mapping
@@ -38,52 +38,52 @@ _CHORDS, _LEVELS = 32, 16
 
 @dataclass(frozen=True, kw_only=True)
 class InventoryObject:
-    """A rigid object that stands freely on level ground.
+    """A free-standing rigid object on level ground.
 
-    In either direction it is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller than
-    the body, the feet stand inside. If the height of the centre of mass is known, the mass below it and the mass above
-    it are each spread evenly, in the one ratio that puts the centre there. The weight does not change how it rocks.
+    In each direction it is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller than
+    the body, the feet lie inside. For a known height of the centre of mass, the masses below and above it are each
+    uniform, in the ratio of this height. The weight does not affect rocking.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name of the object.
     width, depth, height : float
         Outer size [m].
     mass : float, optional
         Its mass [kg].
     base_width, base_depth : float, optional
-        Size of the base that stands on the floor, at most that of the body [m].
+        Size of the base on the floor, at most that of the body [m].
     centre_of_mass_height : float, optional
-        Height of the centre of mass above the floor; half the height if not given [m].
+        Height of the centre of mass above the floor; default: half the height [m].
     count : int
-        How many alike [-].
+        Number of equal pieces [-].
     note : str
-        Anything.
+        Note of the list.
     row : int
-        Line of the file that it comes from, 0 for none [-].
+        Line of the object in the file, 0 for none [-].
     friction : float, optional
-        Coefficient of friction between it and the ground, with which it moves in three dimensions [-].
+        Coefficient of friction between object and ground; with friction it moves in three dimensions [-].
     solid : Solid, optional
-        The body itself, standing as it does, where more is known than its size, which it then gives: it moves in three
-        dimensions, and without friction it does not slide.
+        3D body in its pose, which defines the size: it moves in three dimensions, and without friction it does not
+        slide.
     shape : {"box", "round"}
-        Of its outline from above; a round one is a circle or an ellipse with its width and depth as axes.
+        Outline from above; a round one is a circle or an ellipse with width and depth as axes.
     consequence : {"low", "medium", "high"}
-        How bad it is if it falls.
+        Consequence of a fall.
     photo : Path, optional
-        Where a picture of it is.
+        Path of a picture.
     approximate : mapping of str to float, optional
-        Half the width of the interval of a size that is not known well, by the name of the field [m].
+        Half width of the interval of approximate sizes, by the name of the field [m].
     remarks : tuple of str or Message
-        What was assumed of it, or left aside, in one sentence each.
+        Assumptions and ignored values, one sentence each.
     number : str
-        Its inventory number, possibly nothing.
+        Inventory number, may be empty.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range; it names what was measured.
+        If a value is outside its range; the message names the field.
 
     Examples
     --------
@@ -135,13 +135,13 @@ class InventoryObject:
             object.__setattr__(self, "mass", self._checked_mass(self.mass))
         if self.friction:
             checks.within("friction", self.friction, 0.0, NEVER_SLIDES)
-        for name, words in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
-            checks.one_of(name, getattr(self, name), words)
+        for name, allowed in (("shape", ("box", "round")), ("consequence", ("low", "medium", "high"))):
+            checks.one_of(name, getattr(self, name), allowed)
         object.__setattr__(self, "count", checks.whole("count", self.count, 1, 1_000_000))
 
     @property
     def label(self) -> str:
-        """Its inventory number and its name, which tell it from others of the same name."""
+        """Inventory number and name."""
         return labelled(self.number, self.name)
 
     def base(self, direction: Direction) -> float:
@@ -155,13 +155,13 @@ class InventoryObject:
         Returns
         -------
         float
-            That of the body if no other was given [m].
+            Size of the base; default: that of the body [m].
         """
         size = self.base_width if direction == "width" else self.base_depth
         return self._size(direction) if size is None else size
 
     def uplift_acceleration(self, direction: Direction, gravity: float = g) -> float:
-        """Return the ground acceleration ``g b / h`` below which the object stays still, with half the base.
+        """Return the ground acceleration of uplift, ``g b / h``, with half the base ``b``.
 
         Parameters
         ----------
@@ -189,7 +189,7 @@ class InventoryObject:
         Returns
         -------
         Body
-            A `Block`, or a `Section` if the base says otherwise; of a round object the `MassPoints` of a cylinder.
+            A `Block`, a `Section` if the base is smaller, or the `MassPoints` of a cylinder if the object is round.
         """
         if self.shape == "round":
             return self._cylinder(self._size(direction), self.base(direction))
@@ -200,18 +200,18 @@ class InventoryObject:
         return body if base == size else body.with_feet(0.5 * (size - base), 0.5 * (size + base))
 
     def as_solid(self) -> Solid:
-        """Return the body in three dimensions, along x its width and along y its depth.
+        """Return the 3D body with its width along x and its depth along y.
 
         Returns
         -------
         Solid
-            The one given, or a box or cylinder, of which the mass below and above the centre is spread evenly; a round
-            one narrows to a smaller base at 45 degrees.
+            The solid of the object, or a box or cylinder with uniform masses below and above the centre; a round body
+            narrows to a smaller base at 45 degrees.
 
         Raises
         ------
         InvalidValueError
-            If its base is smaller than itself and not round as it is, or it is an ellipse: the shape must be known.
+            If the object has a smaller base and is not round, or is an ellipse: the shape is unknown.
         """
         if self.solid is not None:
             return self.solid
@@ -219,15 +219,15 @@ class InventoryObject:
             return self._turned()
         if self.shape == "round" or any(self.base(way) < self._size(way) for way in DIRECTIONS):
             raise InvalidValueError(
-                "with friction it moves in three dimensions, and its shape above a smaller base is not known: leave "
-                "the base out, or name its body file"
+                "With friction it moves in three dimensions, but its shape above the smaller base is unknown. Remove "
+                "the base, or add its body file."
             )
         height = self.height
         middle = 0.5 * height if self.centre_of_mass_height is None else self.centre_of_mass_height
         heights, densities = (middle, height - middle), ((height - middle) ** 2, middle**2)
         low, high = (
-            Part(box(self.width, self.depth, tall), 1000.0 * each / max(densities))
-            for tall, each in zip(heights, densities, strict=True)
+            Part(box(self.width, self.depth, tall), 1000.0 * density / max(densities))
+            for tall, density in zip(heights, densities, strict=True)
         )
         return Solid([low, high.moved(0.0, 0.0, middle)])
 
@@ -243,17 +243,17 @@ class InventoryObject:
         dense = 0.5 * above / (below.mass / DEFAULT_DENSITY)
         light = (middle - below.centre[2]) / (0.25 * math.pi * self.width**2 * above)
         most = max(dense, light)
-        low = [Part(each.shape, 1000.0 * dense / most).moved(*each.translation) for each in low]
+        low = [Part(part.shape, 1000.0 * dense / most).moved(*part.translation) for part in low]
         return Solid([*low, Part(cylinder(self.width, above), 1000.0 * light / most).moved(0.0, 0.0, middle)])
 
     def _halves(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the heights below and above the centre, and shares of the mass there that put it there."""
+        """Return the heights below and above the centre of mass, and the mass fractions of both."""
         middle = 0.5 * self.height if self.centre_of_mass_height is None else self.centre_of_mass_height
         above = self.height - middle
         return (middle, above), (above / self.height, middle / self.height)
 
     def _cylinder(self, size: float, base: float) -> MassPoints:
-        """Return the mass points of a cylinder seen from the side: their second moments are its own, exactly.
+        """Return the mass points of a cylinder in side view, with its exact second moments.
 
         The chords of an ellipse are in the same proportions as those of a circle.
         """
@@ -266,7 +266,7 @@ class InventoryObject:
         shares = 0.5 * np.concatenate([masses[0] * weights, masses[1] * weights])
         volume = 0.25 * math.pi * self.width * self.depth * self.height
         mass = DEFAULT_DENSITY * volume if self.mass is None else self.mass
-        x, y = (each.ravel() for each in np.meshgrid(0.5 * size * across, levels))
+        x, y = (grid.ravel() for grid in np.meshgrid(0.5 * size * across, levels))
         points = mass * np.outer(shares, chords / chords.sum()).ravel()
         return MassPoints(np.column_stack([x, y]), points, (-0.5 * base, 0.5 * base))
 
@@ -279,7 +279,7 @@ class InventoryObject:
         if size > most * (1.0 + 1e-9):
             raise InvalidValueError(
                 "{parameter} must be at most the {side} of the body, {most}, got {size}; "
-                "an object fixed to a wider plinth is measured together with it",
+                "measure an object on a wider plinth together with the plinth",
                 parameter=name,
                 value=size,
                 side=Message(name.removeprefix("base_")),
@@ -293,8 +293,8 @@ class InventoryObject:
         density = mass / (self.width * self.depth * self.height)
         if not LIGHTEST <= density <= DENSEST:
             raise InvalidValueError(
-                "weight must give between {low} and {high} over the box of the object, got {mass}, that is {density}; "
-                "wrong unit of the weight or of a length?",
+                "The weight over the volume of the bounding box must be between {low} and {high}, got {mass}, that is "
+                "{density}. Check the units of weight and lengths.",
                 low=Amount(LIGHTEST),
                 high=Amount(DENSEST, "kg/m3"),
                 mass=Amount(mass, "kg"),
@@ -305,27 +305,27 @@ class InventoryObject:
 
 @dataclass(frozen=True)
 class NotAssessed:
-    """A row that could not be assessed, or is no object."""
+    """A row without a verdict, or without an object."""
 
     row: int  # line of the file [-]
-    name: str  # what the row says the object is called, possibly nothing; all that it says where it is no object
-    reason: str | Message  # why not, in one sentence
-    number: str = ""  # its inventory number, possibly nothing
-    note: str = ""  # what the list notes about it
+    name: str  # name of the object, may be empty; the text of the row if it is no object
+    reason: str | Message  # reason, in one sentence
+    number: str = ""  # its inventory number, may be empty
+    note: str = ""  # note of the list
 
     @property
     def label(self) -> str:
-        """Its inventory number and its name."""
+        """Inventory number and name."""
         return labelled(self.number, self.name)
 
     @classmethod
     def of(cls, item: InventoryObject, reason: str | Message) -> "NotAssessed":
-        """Return an object as one that could not be assessed."""
+        """Return an object as a row without a verdict."""
         return cls(item.row, item.name, reason, item.number, item.note)
 
 
 def labelled(number: str, name: str) -> str:
-    """Return an inventory number and a name; one of them where the other is missing or the same.
+    """Return inventory number and name; only one if the other is missing or equal.
 
     >>> labelled("A-17", "Vase"), labelled("A-17", "A-17")
     ('A-17 Vase', 'A-17')
@@ -334,4 +334,4 @@ def labelled(number: str, name: str) -> str:
 
 
 def _length(name: str, value: float) -> float:
-    return checks.within(name, value, SMALLEST, LARGEST, unit="m", hint="wrong unit in the name of the column?")
+    return checks.within(name, value, SMALLEST, LARGEST, unit="m", hint="Check the unit of the column.")

@@ -1,4 +1,4 @@
-"""Rows of a list: which of them are no objects, and the measures, shape and remarks of those that are."""
+"""Rows of a list: reasons why rows are no objects, and the sizes, shape and remarks of objects."""
 
 import itertools
 import math
@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Amount, Message
 from rocking.studies.inventory.cells import CellMeasure, is_missing
 from rocking.studies.inventory.columns import SIZES, WORDS, plain, stem_of, words_of
-from rocking.studies.inventory.headers import FoundHeader, text_of
+from rocking.studies.inventory.headers import LocatedHeader, text_of
 from rocking.studies.inventory.sheets import Cell, Row, Sheet
 
 _SHAPES = {word: shape for shape, text in WORDS["shapes"].items() for word in words_of(text)}
@@ -32,31 +32,31 @@ FIELD_NAMES = {
     ("base_width", "base_depth"): Message("base width and base depth"), ("weight",): Message("weight"),
     ("count",): Message("count"), ("friction",): Message("friction"),
 }  # fmt: skip
-"""Names of the fields that a column gives."""
+"""Names of the fields of a column."""
 
 
 class RowKinds:
-    """Which rows below a header are no objects: headings, sums, remarks, and the header again."""
+    """Classification of rows below a header that are no objects: headings, sums, remarks, repeated headers."""
 
-    def __init__(self, sheet: Sheet, found: FoundHeader, rows: Sequence[Row]) -> None:
-        self.sheet, self.header = sheet, found.header
-        self.titles = [{plain(level) for level in levels} for levels in found.titles]
-        self.above = {plain(_row_text(cells)) for _, cells in sheet.rows[: found.first]}
+    def __init__(self, sheet: Sheet, location: LocatedHeader, rows: Sequence[Row]) -> None:
+        self.sheet, self.header = sheet, location.header
+        self.titles = [{plain(level) for level in levels} for levels in location.titles]
+        self.above = {plain(_row_text(cells)) for _, cells in sheet.rows[: location.first]}
         measured = [row for row in rows if self._is_measured(row[1]) and not self._is_sum_or_title(row[1])]
         self.last = measured[-1][0] if measured else 0
         self.number_patterns = {_number_pattern(self._text(cells, "number")) for _, cells in measured} - {""}
         self.numbered = bool(measured) and sum(bool(self._text(cells, "number")) for _, cells in measured) > 0.8 * len(
             measured
         )
-        lines = [sheet.rows[found.end - 1][0], *(line for line, _ in rows)]
-        self.after_gap = {line for before, line in itertools.pairwise(lines) if line > before + 1}
+        lines = [sheet.rows[location.end - 1][0], *(line for line, _ in rows)]
+        self.after_gap = {line for previous, line in itertools.pairwise(lines) if line > previous + 1}
 
     def reason(self, line: int, cells: Sequence[Cell]) -> Message | None:
-        """Return why a row is no object; None of one that may be."""
+        """Return the reason why a row is no object; None for a possible object."""
         texts = _texts(cells)
         first, measured = next(iter(texts.values())), self._is_measured(cells)
         if self._is_title_row(cells):
-            return Message("the header again")
+            return Message("a repeated header")
         if first in _TOTALS or (not measured and _begins_with(first, _TOTALS)):
             return Message("a sum or an average")
         if measured:
@@ -73,21 +73,21 @@ class RowKinds:
         return self._reason_unmeasured(line, cells, texts)
 
     def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> Message | None:
-        """Return why a row without measures, and without a number like the others, is no object."""
+        """Return the reason why a row without sizes and regular number is no object; None if it may be an object."""
         first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
         stems, alone = {self._stem(k) for k in texts}, len(texts) == 1
         if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in _row_text(cells):
             return _REMARK
         if not stems & {"name", "number"}:
-            return Message("neither name nor number nor measure")
+            return Message("no name, number or size")
         if alone and stems == {"number"} and first.replace(" ", "").isdigit():
-            return Message("nothing but a number")
-        apart = self.numbered or line in self.after_gap
+            return Message("only a number")
+        is_separate = self.numbered or line in self.after_gap
         merged = any((line, k) in self.sheet.spans for k in texts)
         if line > self.last:
-            return _REMARK if apart or merged or own.endswith(":") or _begins_with(first, _HEADINGS) else None
-        long = len(own) > _LONGEST_NAME
-        return _HEADING if alone and (apart or merged or "name" not in stems or long) else None
+            return _REMARK if is_separate or merged or own.endswith(":") or _begins_with(first, _HEADINGS) else None
+        is_long = len(own) > _LONGEST_NAME
+        return _HEADING if alone and (is_separate or merged or "name" not in stems or is_long) else None
 
     def _is_sum_or_title(self, cells: Sequence[Cell]) -> bool:
         return next(iter(_texts(cells).values())) in _TOTALS or self._is_title_row(cells)
@@ -96,17 +96,17 @@ class RowKinds:
         texts = _texts(cells)
         if any(text[:1].isdigit() for text in texts.values()) and self._is_measured(cells):
             return False  # most rows
-        again = sum(self._is_title(k, text) for k, text in texts.items())
-        return again >= 0.7 * len(texts) or plain(_row_text(cells)) in self.above
+        repeated = sum(self._is_title(k, text) for k, text in texts.items())
+        return repeated >= 0.7 * len(texts) or plain(_row_text(cells)) in self.above
 
-    def _is_title(self, place: int, text: str) -> bool:
-        known = self._stem(place)
-        return place < len(self.titles) and (
-            text in self.titles[place] or bool(known and known == stem_of(text, self.header.language))
+    def _is_title(self, column: int, text: str) -> bool:
+        stem = self._stem(column)
+        return column < len(self.titles) and (
+            text in self.titles[column] or bool(stem and stem == stem_of(text, self.header.language))
         )
 
-    def _stem(self, place: int) -> str:
-        column = self.header.columns[place] if place < len(self.header.columns) else None
+    def _stem(self, index: int) -> str:
+        column = self.header.columns[index] if index < len(self.header.columns) else None
         return column.stem if column else ""
 
     def _text(self, cells: Sequence[Cell], stem: str) -> str:
@@ -117,7 +117,7 @@ class RowKinds:
 
 
 def _texts(cells: Sequence[Cell]) -> dict[int, str]:
-    """Return the words of the cells that are not empty, by their places."""
+    """Return the plain text of the non-empty cells by column index."""
     return {k: plain(text) or text for k, cell in enumerate(cells) if (text := text_of(cell))}
 
 
@@ -126,8 +126,8 @@ def _row_text(cells: Sequence[Cell]) -> str:
     return " ".join(filter(None, map(text_of, cells)))
 
 
-def _begins_with(text: str, words: Collection[str]) -> bool:
-    return any(text == word or text.startswith(f"{word} ") for word in words)
+def _begins_with(text: str, beginnings: Collection[str]) -> bool:
+    return any(text == word or text.startswith(f"{word} ") for word in beginnings)
 
 
 def _number_pattern(text: str) -> str:
@@ -140,7 +140,7 @@ def _number_pattern(text: str) -> str:
 
 
 class RowValues:
-    """What the cells of a row say."""
+    """Values of the cells of a row."""
 
     def __init__(self, row: int) -> None:
         self.fields: dict[str, Any] = {"row": row}
@@ -149,24 +149,24 @@ class RowValues:
         self.approximate: dict[str, float] = {}
         self.remarks: list[Message] = []
 
-    def take(self, fields: Sequence[str], one: CellMeasure, title: str, cell: Cell) -> None:
-        for each in fields:
-            if abs(self.fields.get(each, one.value) - one.value) > 1e-9 * abs(one.value):
+    def take(self, fields: Sequence[str], size: CellMeasure, title: str, cell: Cell) -> None:
+        for field in fields:
+            if abs(self.fields.get(field, size.value) - size.value) > 1e-9 * abs(size.value):
                 raise InvalidValueError(
-                    "{title} and {other} say another {side}; leave one out",
-                    title=self.titles[each],
+                    "{title} and {other} state different values of {side}. Remove one.",
+                    title=self.titles[field],
                     other=title,
-                    side=FIELD_NAMES[each,],
+                    side=FIELD_NAMES[field,],
                 )
-        self.fields |= dict.fromkeys(fields, one.value)
+        self.fields |= dict.fromkeys(fields, size.value)
         self.titles |= dict.fromkeys(fields, title)
-        if one.half_width:
-            self.approximate |= dict.fromkeys(fields, one.half_width)
+        if size.half_width:
+            self.approximate |= dict.fromkeys(fields, size.half_width)
             facts = {
                 "title": title, "cell": f"{cell!r:.60}", "size": FIELD_NAMES[tuple(fields)],
-                "value": Amount(one.value, "m", ".4g"), "half": Amount(one.half_width, "m", ".2g"),
+                "value": Amount(size.value, "m", ".4g"), "half": Amount(size.half_width, "m", ".2g"),
             }  # fmt: skip
-            self.remarks.append(Message("{title} {cell}: {size} taken as {value}, give or take {half}", facts))
+            self.remarks.append(Message("{title} {cell}: {size} is {value} ± {half}", facts))
 
     def optional(self, field: str, value: Any, remark: Message) -> None:
         if value is None:
@@ -175,7 +175,7 @@ class RowValues:
             self.fields[field] = value
 
     def settle_shape(self) -> None:
-        """Bring a diameter, a pedestal and the shape that is said to what an object has."""
+        """Convert diameter, pedestal and shape to fields of an object."""
         fields, word = self.fields, self.fields.pop("shape", "")
         shape = "" if is_missing(word) else _SHAPES.get(plain(word), "unknown")
         if (across := fields.pop("diameter", None)) is not None:
@@ -184,10 +184,10 @@ class RowValues:
             )
             title, cell = self.titles["diameter"], f"{word!r:.40}"
             if shape == "box":
-                raise InvalidValueError("it has a {title} and the shape {cell}: leave one out", title=title, cell=cell)
+                raise InvalidValueError("It has a {title} and the shape {cell}. Remove one.", title=title, cell=cell)
             if other:
                 side = FIELD_NAMES[other,]
-                raise InvalidValueError("it has a {title} and another {side}: leave one out", title=title, side=side)
+                raise InvalidValueError("It has a {title} and a different {side}. Remove one.", title=title, side=side)
             fields |= {"width": across, "depth": across}
             if half := self.approximate.pop("diameter", 0.0):
                 self.approximate |= {"width": half, "depth": half}
@@ -197,8 +197,8 @@ class RowValues:
             return
         if shape == "unknown":
             raise InvalidValueError(
-                "shape {cell} is not known, and a box of its size might stand better; known are round, oval, "
-                "rectangular, triangular and polygonal; left empty, a box is taken",
+                "Unknown shape {cell}. Use round, oval, rectangular, triangular or polygonal; a box is not "
+                "conservative. An empty cell is a box.",
                 cell=f"{word!r:.40}",
             )
         sides = [way for way in ("width", "depth") if way in fields]
@@ -209,15 +209,15 @@ class RowValues:
                 self.approximate[other] = self.approximate[own]
         elif len(sides) < 2:
             return
-        if shape != "round" and min(fields["width"], fields["depth"]) > 0.0:  # others are refused as they are
+        if shape != "round" and min(fields["width"], fields["depth"]) > 0.0:  # other sizes are refused later
             self._inscribe(shape, word)
         fields["shape"] = "round"
 
     def _inscribe(self, shape: str, word: str) -> None:
-        """Take the round body within an outline that has corners, about its centre: it lifts first, and turns fastest.
+        """Use the inscribed round body of an outline with corners: its uplift acceleration is the smallest.
 
-        It reaches as far as the nearest side: a third of the height over the longest side that a triangle may have, and
-        of a regular polygon of five sides or more at least the cosine of 36 degrees of half its size.
+        Its radius is the distance to the nearest side: a third of the height over the longest side of a triangle, and
+        at least the cosine of 36 degrees of half the size of a regular polygon with five or more sides.
         """
         fields = self.fields
         width, depth = fields["width"], fields["depth"]
@@ -231,7 +231,7 @@ class RowValues:
         for base in {"base_width", "base_depth"} & fields.keys():
             fields[base] = min(fields[base], across)
         facts = {"cell": f"{word!r:.40}", "across": Amount(across, "m", ".3g")}
-        self.remarks.append(Message("shape {cell}: the round body within it is taken, {across} across", facts))
+        self.remarks.append(Message("shape {cell}: the inscribed round body is used, diameter {across}", facts))
 
     def _settle_pedestal(self) -> None:
         fields, title = self.fields, self.titles.get("pedestal", "")
@@ -240,45 +240,45 @@ class RowValues:
             return
         size = min((fields[way] for way in ("width", "depth") if way in fields), default=0.0)
         if {"base_width", "base_depth", "solid"} & fields.keys() or pedestal > size:
-            self.remarks.append(left_aside(title, Message("it is no base within the object")))
+            self.remarks.append(ignored_remark(title, Message("it is larger than the object, or a base exists")))
         else:
             both = ("base_width", "base_depth")
             fields |= dict.fromkeys(both, pedestal)
             self.approximate |= dict.fromkeys(both, half) if half else {}
-            self.remarks.append(Message("{title} is taken as its base", {"title": title}))
+            self.remarks.append(Message("{title} is used as its base", {"title": title}))
 
     def settle_words(self, find: Callable[[str], Path] | None) -> None:
-        """Bring consequence and photo to what they mean."""
+        """Convert consequence and photo to fields of an object."""
         if (word := self.fields.pop("consequence", None)) and not is_missing(word):
-            self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # the careful side
+            self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # conservative
             if plain(word) not in _CONSEQUENCES:
                 facts = {"cell": f"{word!r:.40}"}
-                self.remarks.append(Message("consequence {cell} is not low, medium or high: high is taken", facts))
+                self.remarks.append(Message("consequence {cell} is not low, medium or high; high is used", facts))
         if photo := self.fields.pop("photo", None):
-            remark = Message("photo {cell} is no picture beside the list", {"cell": f"{photo!r:.80}"})
+            remark = Message("photo {cell} is no picture in the folder of the list", {"cell": f"{photo!r:.80}"})
             self.optional("photo", photo_of(photo, find), remark)
 
 
-def left_aside(title: str | Message, reason: Message) -> Message:
+def ignored_remark(title: str | Message, reason: Message) -> Message:
     """Return the remark on a value that is not used."""
-    return Message("{title} was left aside: {reason}", {"title": title, "reason": reason})
+    return Message("{title} was ignored: {reason}", {"title": title, "reason": reason})
 
 
 def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[str, object]:
     """Return the body of a file, and its size."""
     if find is None:
-        raise InvalidValueError("names the body file {cell}, but no file can be named here", cell=f"{name!r:.60}")
+        raise InvalidValueError("Body file {cell} is not allowed here. Use sizes.", cell=f"{name!r:.60}")
     body = read_body(find(name), units=units)
     if isinstance(body, (Block, Section)):
         body = Solid.from_section(body)
     if isinstance(body, Body):
-        raise InvalidValueError("{file}: mass points have no shape to stand on in three dimensions", file=name)
+        raise InvalidValueError("{file}: mass points define no shape in three dimensions", file=name)
     size = body.box[1] - body.box[0]
     return {"solid": body, **dict(zip(("width", "depth", "height"), size.tolist(), strict=True))}
 
 
 def photo_of(name: str, find: Callable[[str], Path] | None) -> Path | None:
-    """Return where a picture is; None if it is none, or not beside the list or in a folder there."""
+    """Return the path of a picture; None if it is no picture, or not in the folder of the list or below."""
     parts_of = PureWindowsPath(name).parts
     if find is None or PureWindowsPath(name).anchor or name.startswith("/") or ".." in parts_of:
         return None
@@ -290,6 +290,6 @@ def photo_of(name: str, find: Callable[[str], Path] | None) -> Path | None:
             return None
         with Image.open(path) as picture:
             picture.verify()
-    except Exception:  # noqa: BLE001 - a damaged picture raises whatever its reader trips over
+    except Exception:  # noqa: BLE001 - a damaged picture raises any error of its reader
         return None
     return path

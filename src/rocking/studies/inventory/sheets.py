@@ -1,4 +1,4 @@
-"""Lists in files: a workbook or text of any encoding to rows of cells, none larger than it should be."""
+"""Lists in files: read a workbook, or text in any encoding, to rows of cells, with limits on the size."""
 
 import contextlib
 import csv
@@ -16,7 +16,7 @@ from xml.parsers import expat
 from rocking.errors import InvalidValueError, RockingError, extra
 
 MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
-"""No inventory is longer, no file larger, packed or unpacked: it is something else."""
+"""Limits of rows and of bytes, packed or unpacked; larger files are no inventories."""
 
 MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS, _MOST_MERGED = 200, 1 << 20, 50, 1000
 
@@ -25,60 +25,58 @@ Cell = str | float
 
 
 class Shown(float):
-    """A number of a spreadsheet whose format writes something beside it, such as a unit; and how it writes 1."""
+    """A number of a spreadsheet with a text in its format, such as a unit; `unity` is 1 in this format."""
 
-    one = "1"
+    unity = "1"
 
 
 Row = tuple[int, list[Cell]]
-"""The line on which it begins, and its cells."""
+"""First line of the row, and its cells."""
 
 
 @dataclass(frozen=True)
 class Sheet:
     """A table of a file."""
 
-    source: str  # of which file, and which table or encoding of it
+    source: str  # name of the file, with table or encoding
     rows: list[Row]
     delimiter: str = ""  # of text
-    spans: Mapping[tuple[int, int], int] = field(default_factory=dict)  # columns merged from a line and place on
+    spans: Mapping[tuple[int, int], int] = field(default_factory=dict)  # number of merged columns by line and column
 
 
 def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
-    """Return the tables of a workbook; None for a file that is none."""
+    """Return the tables of a workbook; None for other files."""
     if content.startswith(b"\xd0\xcf\x11\xe0"):
-        raise InvalidValueError("an old .xls, or locked by a password", hint="save it as .xlsx, .ods or CSV UTF-8").at(
-            source
-        )
+        raise InvalidValueError(
+            "the file is an old .xls or has a password", hint="Save it as .xlsx, .ods or CSV UTF-8."
+        ).at(source)
     if not content.startswith(b"PK\x03\x04"):
         return None
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of what openpyxl leaves aside: styles, lists to choose from
-            names, size = archive.namelist(), sum(each.file_size for each in archive.infolist())
+            warnings.simplefilter("ignore")  # warnings about ignored styles and data validation
+            names, size = archive.namelist(), sum(entry.file_size for entry in archive.infolist())
             if size > MOST_BYTES:
                 raise InvalidValueError(
-                    "unpacked it is larger than {limit} MiB", limit=MOST_BYTES >> 20, hint="save it as CSV"
+                    "unpacked it is larger than {limit} MiB", limit=MOST_BYTES >> 20, hint="Save it as CSV."
                 ).at(source)
             if "xl/workbook.xml" in names:
-                found = list(_of_excel(archive, content))
+                tables = list(_of_excel(archive, content))
             elif "content.xml" in names:
-                found = _of_open_document(archive.read("content.xml"))
+                tables = _of_open_document(archive.read("content.xml"))
             else:
-                raise InvalidValueError("neither .xlsx nor .ods", hint="save it as one of them, or as CSV UTF-8").at(
-                    source
-                )
+                raise InvalidValueError("unsupported file", hint="Use .xlsx, .ods or CSV UTF-8.").at(source)
     except (RockingError, ModuleNotFoundError):
         raise
-    except Exception as error:  # damaged files raise whatever their readers trip over
+    except Exception as error:  # damaged files raise any error of their readers
         raise InvalidValueError(
             "a damaged workbook ({error})", error=type(error).__name__,
-            hint="open it in a spreadsheet and save it again",
+            hint="Open it in a spreadsheet and save it again.",
         ).at(source) from error  # fmt: skip
-    several = len(found) > 1
+    several = len(tables) > 1
     return (
         Sheet(f"{source} ({name})" if several else source, _filled(rows, merged, source), spans=_spans(merged))
-        for name, rows, merged in found
+        for name, rows, merged in tables
     )
 
 
@@ -91,17 +89,17 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
         if sheet.sheet_state != "visible":
             continue
         text = archive.read(sheet._worksheet_path)
-        marks = itertools.islice(
+        merges = itertools.islice(
             re.finditer(rb'<mergeCell ref="([A-Z]{1,3})(\d{1,7}):([A-Z]{1,3})(\d{1,7})"', text), _MOST_MERGED
         )
-        merged = [(int(mark[2]), _place(mark[1]), int(mark[4]), _place(mark[3])) for mark in marks]
+        merged = [(int(mark[2]), _place(mark[1]), int(mark[4]), _place(mark[3])) for mark in merges]
         yield sheet.title, _held(_lines(sheet)), merged
 
 
 def _lines(sheet: Any) -> Iterator[Row]:
     blank = None
     for line, cells in enumerate(sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS), start=1):
-        if cells is blank:  # a million of them may be the same
+        if cells is blank:  # up to a million equal rows
             continue
         if all(cell.value is None for cell in cells):
             blank = cells
@@ -114,27 +112,27 @@ _FORMAT = re.compile(rf"({_LITERAL}*)[#0?][#0?,.]*({_LITERAL}*)")
 
 
 def _shown(value: Cell, cell: Any) -> Cell:
-    """Return a number with what its format writes beside it."""
+    """Return a number with the text of its format."""
     if isinstance(value, str):
         return value
     written = _FORMAT.fullmatch(re.sub(r"_.|\*.|\[[^\]]*\]", "", cell.number_format.partition(";")[0]))
     before, after = (re.sub(_LITERAL, r"\1\2\3", written[k]) if written else "" for k in (1, 5))
-    return _beside(value, before, after)
+    return _with_format(value, before, after)
 
 
-def _beside(value: float, before: str, after: str) -> float:
+def _with_format(value: float, before: str, after: str) -> float:
     if not (before + after).strip():
         return value
     shown = Shown(value)
-    shown.one = f"{before}1{after}"
+    shown.unity = f"{before}1{after}"
     return shown
 
 
 def _place(letters: bytes) -> int:
-    place = 0
+    index = 0
     for letter in letters:
-        place = 26 * place + letter - 64
-    return place - 1
+        index = 26 * index + letter - 64
+    return index - 1
 
 
 def _cell(value: Any) -> Cell:
@@ -157,7 +155,7 @@ def _of_open_document(content: bytes) -> list[tuple[str, Iterable[Row], _Merged]
 
 
 class _OpenDocument:
-    """What ``content.xml`` says, element by element; its tables may repeat cells and rows a million times."""
+    """Parser of ``content.xml``; its tables may repeat cells and rows a million times."""
 
     def __init__(self) -> None:
         self.tables: list[tuple[str, list[Row], _Merged]] = []
@@ -165,16 +163,16 @@ class _OpenDocument:
         self.cell: dict[str, str] | None = None
 
     def doctype(self, *_: Any) -> None:
-        raise InvalidValueError("an .ods with a document type of its own is not read")
+        raise InvalidValueError("an .ods with its own document type is not supported")
 
-    def start(self, tag: str, given: dict[str, str]) -> None:
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
         if tag == "table:table" and len(self.tables) < _MOST_SHEETS:
-            self.tables.append((given.get("table:name", ""), [], []))
+            self.tables.append((attributes.get("table:name", ""), [], []))
             self.line = 0
         elif tag == "table:table-row":
-            self.row, self.repeated = [], int(given.get("table:number-rows-repeated", 1))
+            self.row, self.repeated = [], int(attributes.get("table:number-rows-repeated", 1))
         elif tag in {"table:table-cell", "table:covered-table-cell"}:
-            self.cell, self.text = given, []
+            self.cell, self.text = attributes, []
         elif tag == "office:annotation":
             self.depth += 1
         elif tag == "text:p" and self.text and not self.depth:
@@ -197,45 +195,45 @@ class _OpenDocument:
             self.line += self.repeated
 
     def _close(self) -> None:
-        given, text = self.cell or {}, "".join(self.text).strip()
+        attributes, text = self.cell or {}, "".join(self.text).strip()
         self.cell = None
-        down, across = (int(given.get(f"table:number-{way}-spanned", 1)) for way in ("rows", "columns"))
+        down, across = (int(attributes.get(f"table:number-{way}-spanned", 1)) for way in ("rows", "columns"))
         if max(down, across) > 1 and self.tables and len(self.tables[-1][2]) < _MOST_MERGED:
-            place = len(self.row)
-            self.tables[-1][2].append((self.line + 1, place, self.line + down, place + across - 1))
+            column = len(self.row)
+            self.tables[-1][2].append((self.line + 1, column, self.line + down, column + across - 1))
         value: Cell = text
-        if given.get("office:value-type") in {"float", "currency"} and not text.startswith("#"):
-            value = _cell(float(given.get("office:value", "nan")))
+        if attributes.get("office:value-type") in {"float", "currency"} and not text.startswith("#"):
+            value = _cell(float(attributes.get("office:value", "nan")))
             if isinstance(value, float) and (written := re.fullmatch(r"([^\d-]*)\d[\d.,' ]*(.*)", text)):
-                value = _beside(value, *written.groups())
-        elif given.get("office:value-type") == "date":
-            value = given.get("office:date-value", text)
-        many = min(int(given.get("table:number-columns-repeated", 1)), MOST_COLUMNS - len(self.row))
-        self.row += [value] * many
+                value = _with_format(value, *written.groups())
+        elif attributes.get("office:value-type") == "date":
+            value = attributes.get("office:date-value", text)
+        repeats = min(int(attributes.get("table:number-columns-repeated", 1)), MOST_COLUMNS - len(self.row))
+        self.row += [value] * repeats
 
 
 def _held(rows: Iterable[Row]) -> list[Row]:
-    """Return the rows that are not empty."""
-    held = (row for row in rows if any(cell != "" for cell in row[1]))
-    return list(itertools.islice(held, MOST_ROWS + 1))
+    """Return the non-empty rows."""
+    filled = (row for row in rows if any(cell != "" for cell in row[1]))
+    return list(itertools.islice(filled, MOST_ROWS + 1))
 
 
 def _filled(rows: Iterable[Row], merged: _Merged, source: str) -> list[Row]:
-    """Return rows of the same width, what cells that are merged downwards say in each of their rows."""
+    """Return rows of equal width; each row of vertically merged cells contains their value."""
     rows = list(rows)
     _check_number(rows, source)
     width = max((len(cells) for _, cells in rows), default=0)
     table = {line: cells + [""] * (width - len(cells)) for line, cells in rows}
-    for first, place, last, _ in merged:
-        if first in table and place < width:
+    for first, column, last, _ in merged:
+        if first in table and column < width:
             for line in range(first + 1, min(last, first + _MOST_MERGED) + 1):
                 if line in table:
-                    table[line][place] = table[first][place]
+                    table[line][column] = table[first][column]
     return list(table.items())
 
 
 def _spans(merged: _Merged) -> dict[tuple[int, int], int]:
-    """Return how many columns are merged from a line and place on."""
+    """Return the number of merged columns by line and column."""
     return {
         (line, first): last - first + 1
         for top, first, bottom, last in merged if last > first
@@ -249,37 +247,37 @@ def _check_number(rows: list[Row], source: str) -> None:
 
 
 ENCODINGS = ("cp1252", "cp1253", "cp1254", "gb18030", "mac_roman")
-"""Of older spreadsheets; which one it is the words of the header tell."""
+"""Encodings of older spreadsheets; the header decides between them."""
 
 
 def texts_in(content: bytes, source: str, encoding: str | None) -> Iterator[tuple[str, str]]:
-    """Yield what a text file may say, with its encoding: one where it is stated or can be told, or several."""
+    """Yield the possible texts of a file with their encodings; only one if the encoding is known."""
     marks = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
-    told = encoding or next((name for mark, name in marks.items() if content.startswith(mark)), None)
+    stated = encoding or next((name for mark, name in marks.items() if content.startswith(mark)), None)
     wide = ("utf-16-le", "utf-16-be") if b"\0" in content[:2000] else ()
-    found = 0
-    for name in (told,) if told else wide or ("utf-8", *ENCODINGS):
+    count = 0
+    for name in (stated,) if stated else wide or ("utf-8", *ENCODINGS):
         with contextlib.suppress(UnicodeDecodeError, LookupError, ValueError):
             text = content.decode(name)
-            found += 1
+            count += 1
             yield text, name
             if name == "utf-8":
                 return
-    if not found:
+    if not count:
         raise InvalidValueError(
-            '{file} is not text in {encodings}: save it as "CSV UTF-8", or name its encoding, such as cp1252',
-            file=source, encodings=told or "any encoding of spreadsheets",
+            '{file} is not text in {encodings}. Save it as "CSV UTF-8", or state its encoding, such as cp1252.',
+            file=source, encodings=stated or "any encoding of spreadsheets",
         )  # fmt: skip
 
 
 _DELIMITERS = (",", ";", "\t")
-# the line by which Excel is told, and tells, what separates the fields
+# separator line of Excel
 _SEPARATOR = re.compile(r'"?sep=(.)"?[ \t]*(?=\r?\n|$)', re.IGNORECASE)
 _BEGINNING, _LONGEST_LINE = 50, 10_000
 
 
 def tables_of(text: str) -> Iterator[tuple[str, list[list[str]], str]]:
-    """Yield each delimiter that a text may have, the rows of its beginning by it, and the text."""
+    """Yield each possible delimiter of a text, its first rows with this delimiter, and the text."""
     lines, allowed = text.removeprefix("\ufeff"), _DELIMITERS
     if separator := _SEPARATOR.match(lines):
         lines, allowed = lines[separator.end() :], (separator[1],)  # type: ignore[assignment]
@@ -291,7 +289,7 @@ def tables_of(text: str) -> Iterator[tuple[str, list[list[str]], str]]:
 
 
 def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
-    """Return the rows of CSV that are not empty before the first, with the line on which each begins."""
+    """Return the rows of CSV from the first non-empty one, with their first lines."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[tuple[int, list[str]]] = []
     line = 1
@@ -304,6 +302,6 @@ def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]
                 raise InvalidValueError("a list must have at most {limit} rows", limit=MOST_ROWS).at(source)
     except csv.Error as error:
         raise InvalidValueError(
-            "not a table, line {line}: {reason}", line=line, reason=str(error), hint="a quotation mark left open?"
+            "not a table, line {line}: {reason}", line=line, reason=str(error), hint="Check for an open quotation mark."
         ).at(source) from error
     return rows

@@ -1,4 +1,4 @@
-"""An object in three dimensions: its histories on the vertices of its hull, and what would help it."""
+"""An object in three dimensions: its histories, and the anchor forces against uplift."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -15,70 +15,70 @@ from rocking.studies.inventory.draws import Draws, slenderest
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.objects import InventoryObject
 from rocking.studies.motion_sets import MotionList
-from rocking.studies.remedies import parts_of
+from rocking.studies.remedies import accelerations_of
 
 
 class SpatialObject:
-    """An object that slides, rocks and falls, shaken along its width and along its depth; one body for each motion."""
+    """An object that slides, rocks and overturns under motions along its width and depth; one body per motion."""
 
     def __init__(
         self, item: InventoryObject, hazard: Hazard, draws: Draws, gravity: float, friction: float | None,
         threads: int | None,
     ) -> None:  # fmt: skip
         self.item, self.hazard, self.gravity, self.threads = item, hazard, gravity, threads
-        self.bodies = [each.as_solid() for each in draws.bodies(item)]
+        self.bodies = [variant.as_solid() for variant in draws.bodies(item)]
         self.number = draws.number(len(self.bodies))
         self.settings = study_settings(self.bodies[0], {"friction": friction}, gravity)
         self.friction = self.settings.friction
-        self._first = slenderest(item).as_solid()  # of approximate sizes, those that lift first
+        self._first = slenderest(item).as_solid()  # variant with the smallest uplift acceleration
 
-    def results(self, restitution: Any, which: IntArray, scale: float) -> tuple[np.ndarray, FloatArray]:
-        """Return outcomes, and peak rotations over the slenderness angle, of some motions and both directions."""
-        outcome, ratio = np.zeros((len(which), 2), np.int64), np.zeros((len(which), 2))
-        for own, rows in self.histories(restitution, which, scale):
-            found = results_of(rows, threads=self.threads)
-            outcome[own] = found["outcome"].reshape(-1, 2)
-            ratio[own] = np.abs(found["peak_rotation"]).reshape(-1, 2) / rows.sides["alpha_right"].item()
+    def results(self, restitution: Any, motions: IntArray, scale: float) -> tuple[np.ndarray, FloatArray]:
+        """Return outcomes, and peak rotations over the slenderness angle, of selected motions in both directions."""
+        outcome, ratio = np.zeros((len(motions), 2), np.int64), np.zeros((len(motions), 2))
+        for own, rows in self.histories(restitution, motions, scale):
+            arrays = results_of(rows, threads=self.threads)
+            outcome[own] = arrays["outcome"].reshape(-1, 2)
+            ratio[own] = np.abs(arrays["peak_rotation"]).reshape(-1, 2) / rows.sides["alpha_right"].item()
         return outcome, ratio
 
-    def histories(self, restitution: Any, which: IntArray, scale: float = 1.0) -> Iterator[tuple[IntArray, Product]]:
-        """Yield the histories of each body, over motion and direction, and which of the motions are its own."""
-        word = getattr(restitution, "name", restitution)
+    def histories(self, restitution: Any, indices: IntArray, scale: float = 1.0) -> Iterator[tuple[IntArray, Product]]:
+        """Yield the histories of each body, over motion and direction, with the indices of its motions."""
+        model = getattr(restitution, "name", restitution)
         for k, body in enumerate(self.bodies):
-            own = np.flatnonzero(self.number[which] == k)
+            own = np.flatnonzero(self.number[indices] == k)
             if not own.size:
                 continue
-            motions = MotionList([turned for one in which[own] for turned in self.turned(int(one))])
-            parameters = mechanics_of(self.settings).parameters(body, word, self.settings)
+            motions = MotionList([turned for index in indices[own] for turned in self.turned(int(index))])
+            parameters = mechanics_of(self.settings).parameters(body, model, self.settings)
             law: Any = parameters.law
-            _ = law.on_hull  # what it cannot be for this body is said here, before anything is computed
+            _ = law.on_hull  # raises an error for an unsuitable body before anything is computed
             sides = {name: values[None] for name, values in sides_of([parameters]).items()}
             yield own, Product(motions, sides, np.array([scale]), law=law, settings=self.settings)
 
-    def turned(self, which: int) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
-        """Return a motion along the width, and a quarter turn from there along the depth."""
-        x, _, up = components_of(self.hazard.motions[which])
-        y = self.hazard.across[which] if self.hazard.across else None
+    def turned(self, index: int) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
+        """Return a motion along the width, and rotated by 90 degrees along the depth."""
+        x, _, up = components_of(self.hazard.motions[index])
+        y = self.hazard.across[index] if self.hazard.across else None
         return (x, y, up), (None if y is None else y.scaled(-1.0), x, up)
 
     def moves(self) -> list[float]:
-        """Return which steady acceleration along x, and along y, lifts it over either side, or makes it slide."""
+        """Return the smallest steady accelerations along x and y with uplift or sliding [m/s2]."""
         return [min(self.friction * self.gravity, *pair) for pair in _uplift(self._first, self.gravity).tolist()]
 
     def pull(self) -> float:
-        """Return the force over the weight that anchors along one edge must hold, the other being the pivot [-]."""
+        """Return the force of the anchors along one edge over the weight, with the other edge as pivot [-]."""
         height = float(self._first.centre[2]) - self._first.ground
-        most = 0.0
+        max_force = 0.0
         for levers in _uplift(self._first, self.gravity) / self.gravity * height:
             for motion in self.hazard.motions:
-                across, up = parts_of(motion)
+                across, up = accelerations_of(motion)
                 moment = across * height - (self.gravity + up) * levers.min()
-                most = max(most, float(moment.max()) / (self.gravity * levers.sum()))  # Eq. 313
-        return most
+                max_force = max(max_force, float(moment.max()) / (self.gravity * levers.sum()))  # Eq. 313
+        return max_force
 
 
 def _uplift(body: Solid, gravity: float) -> FloatArray:
-    """Return which steady acceleration lifts a body over either side, along x and along y [m/s2]."""
+    """Return the steady accelerations that lift a body over either side, along x and along y [m/s2]."""
     pose = body.equilibria().settling([0.0, 0.0, -1.0])
-    lifts = pose.uplift_acceleration(0.5 * np.pi * np.arange(4.0)) * gravity / g
-    return np.asarray(lifts).reshape(2, 2).T
+    accelerations = pose.uplift_acceleration(0.5 * np.pi * np.arange(4.0)) * gravity / g
+    return np.asarray(accelerations).reshape(2, 2).T

@@ -1,4 +1,4 @@
-"""The ranked table: as plain values for JSON, as text for CSV and spreadsheets, and its sentences in a language."""
+"""The ranked table as values for JSON and as text for CSV and spreadsheets, with translated sentences."""
 
 import csv
 import io
@@ -33,34 +33,34 @@ _TITLES = {
     "high": Message("overturned, high [%]"),
     "median": Message("median rotation / angle"),
     "quantile": Message("84 % rotation / angle"),
-    "others": Message("light by other models"),
-    "words": Message("in words"),
-    "advice": Message("what to do"),
+    "others": Message("light with other models"),
+    "words": Message("description"),
+    "advice": Message("recommendation"),
     "note": Message("note"),
     "consequence": Message("consequence"),
     "remarks": Message("remarks"),
 }
 COLUMNS = tuple(_TITLES)
 PLAN_TITLES = (
-    Message("pieces that fall less"),
+    Message("falls prevented"),
     Message("gain"),
     Message("base wider, each side [cm]"),
     Message("centre lower [cm]"),
     Message("by ballast [kg]"),
-    Message("anchors of one edge [of its weight]"),
+    Message("anchors of one edge / weight [-]"),
     Message("anchors of one edge [N]"),
-    Message("all anchors across [of its weight]"),
-    Message("moved: at most [% of the shaking]"),
+    Message("horizontal force of all anchors / weight [-]"),
+    Message("largest allowed shaking [%]"),
 )
 _WORDS = COLUMNS.index("words")
 
 PLAN_NOTE = Message(
-    "A wider base reaches out as far on both sides, mass and moment of inertia about the centre as they "
-    "are. The centre comes down by ballast at the floor below it, whose mass and inertia count. Anchors, "
-    "body and floor are rigid: those of one edge pull straight down, the other edge is the pivot, and "
-    "there is no safety factor. Moved: to where the shaking is at most that part of the one here."
+    "A wider base extends equally on both sides; mass and moment of inertia about the centre do not change. "
+    "Ballast at the floor lowers the centre; its mass and inertia are included. Anchors, body and floor are rigid. "
+    "The anchors of one edge pull vertically, and the other edge is the pivot. No safety factor is included. The "
+    "largest allowed shaking is a percentage of the shaking here; it applies if the object is moved."
 )
-"""What the measures of the plan mean."""
+"""Definition of the measures of the plan."""
 
 DIRECTION_NAMES = {"width": Message("width"), "depth": Message("depth")}
 _CONSEQUENCES = {
@@ -69,37 +69,35 @@ _CONSEQUENCES = {
     "high": Message("high", context="consequence"),
 }
 
-_NO_ROCKING = Message(
-    "at {level} it does not rock in {motions}", many="at {level} it does not rock in any of {motions}"
-)
-_STILL = Message("at {level} it stood still in {motions}", many="at {level} it stood still in all of {motions}")
+_NO_ROCKING = Message("at {level} it does not rock in {motions}", many="at {level} it rocks in 0 of {motions}")
+_STILL = Message("at {level} no uplift in {motions}", many="at {level} no uplift in {motions}")
 _OVERTURNS = Message(
-    "at {level} it rocks, and fell over in {motions}",
-    many="at {level} it rocks, and fell over in {overturned} of {motions}",
+    "at {level} it rocks, and overturns in {motions}",
+    many="at {level} it rocks, and overturns in {overturned} of {motions}",
 )
 _ROCKS_BARELY = Message(
-    "at {level} it barely rocks, and did not fall over in {motions}",
-    many="at {level} it barely rocks, and fell over in none of {motions}",
+    "at {level} it rocks slightly, and does not overturn in {motions}",
+    many="at {level} it rocks slightly, and overturns in 0 of {motions}",
 )
 _ROCKS_LITTLE = Message(
-    "at {level} it rocks a little, and did not fall over in {motions}",
-    many="at {level} it rocks a little, and fell over in none of {motions}",
+    "at {level} it rocks moderately, and does not overturn in {motions}",
+    many="at {level} it rocks moderately, and overturns in 0 of {motions}",
 )
 _ROCKS = Message(
-    "at {level} it rocks, and did not fall over in {motions}",
-    many="at {level} it rocks, and fell over in none of {motions}",
+    "at {level} it rocks, and does not overturn in {motions}",
+    many="at {level} it rocks, and overturns in 0 of {motions}",
 )
-_RECORDS = Message("the one record", many="{count} records")
-_SIMULATED = Message("the one simulated earthquake", many="{count} simulated earthquakes")
+_RECORDS = Message("{count} record", many="{count} records")
+_SIMULATED = Message("{count} simulated earthquake", many="{count} simulated earthquakes")
 # by whether the base is the outer size, and whether there is vertical shaking
 _BASES = {
     (True, False): Message(
-        "Secure it, lower its centre of mass, or widen its base: its {way} is {size:.3g} cm, and {needed} cm "
-        "would not be lifted."
+        "Secure it, lower its centre of mass, or widen its base: its {way} is {size:.3g} cm; {needed} cm "
+        "prevent uplift."
     ),
     (False, False): Message(
-        "Secure it, lower its centre of mass, or widen its base: its base is {size:.3g} cm along the {way}, "
-        "and {needed} cm would not be lifted."
+        "Secure it, lower its centre of mass, or widen its base: its base is {size:.3g} cm along the {way}; "
+        "{needed} cm prevent uplift."
     ),
     (True, True): Message("Secure it, lower its centre of mass, or widen its base: its {way} is {size:.3g} cm."),
     (False, True): Message(
@@ -107,28 +105,27 @@ _BASES = {
     ),
 }
 
-# what every report says about the assumptions
+# assumptions of every report
 _LIMITS = (
     Message(
-        "Objects are rigid and stand freely on a rigid, level floor, at the shaking given: what a building, a"
-        " pedestal or a shelf adds to the motion of the ground must be in that shaking."
+        "Objects are rigid and free-standing on a rigid, level floor. The input motion must include the amplification"
+        " of a building, a pedestal or a shelf."
     ),
     Message(
-        "Each motion acts once along the width and once along the depth; the worse direction counts. Rocking "
-        "in both directions at once, twisting and rolling on the rim of a round base are not computed."
+        "Each motion acts once along the width and once along the depth; the worse direction decides. Simultaneous "
+        "rocking in both directions, twisting and rolling on the rim of a round base are not computed."
     ),
     Message(
-        "Each direction is a body of the outer size, on the base that is given; where no height of the centre"
-        " of mass is given it is half the height. With a friction or a body file the object moves in three "
-        "dimensions instead, with the default restitution model where no model is stated; no measurement exists there."
+        "Each direction is a body of the outer size on the base of the list. The default height of the centre of mass"
+        " is half the height. With a friction or a body file the object moves in three dimensions, by default with the "
+        "default restitution model; no measurement exists for this case."
     ),
     Message(
-        "Where no model of impact was asked for, the coefficient of restitution is not known exactly: each "
-        "motion has another one, drawn from what the measurements leave open, with the scatter of single "
-        "bodies."
+        "By default the coefficient of restitution is uncertain: it is sampled for each motion from the calibrated "
+        "model, including the scatter between bodies."
     ),
-    Message("Sizes that are approximate are drawn for every motion, evenly within their intervals."),
-    Message("Blows from neighbours, shaking loose, and damage without falling are not assessed."),
+    Message("Approximate sizes are sampled for every motion, uniform within their intervals."),
+    Message("Impacts of neighbouring objects, loosening, and damage without overturning are not assessed."),
 )
 
 
@@ -138,50 +135,50 @@ def header(say: Language) -> list[str]:
 
 
 def plan_header(say: Language) -> list[str]:
-    """Return the titles of the plan, beside the names of the objects."""
+    """Return the titles of the columns of the plan."""
     return [say(title) for title in PLAN_TITLES]
 
 
 def sliding(assessment: Assessment) -> str:
-    """Return whether objects slide, as a sentence or two."""
-    slides = [each.friction < NEVER_SLIDES for each in assessment.verdicts]
+    """Return one or two sentences on the sliding of the objects."""
+    slides = [verdict.friction < NEVER_SLIDES for verdict in assessment.verdicts]
     sentences = []
     if not slides or not all(slides):
         sentences.append(
             Message(
-                "Sliding is not assessed without a friction: an object on a smooth floor or shelf may slide before it"
-                " rocks, and slide off its support."
+                "Sliding is not assessed without a coefficient of friction. An object on a smooth floor or shelf may "
+                "slide before it rocks, and slide off its support."
             )
         )
     if any(slides):
         sentences.append(
             Message(
-                "Where a friction is given, sliding is computed and counted, but not how far: whether an object "
-                "slides off its support is to be checked."
+                "With a coefficient of friction, motions with sliding are counted, but the sliding distance is not "
+                "computed. Check that objects cannot slide off their support."
             )
         )
     return " ".join(map(words_of(assessment), sentences))
 
 
 def limits(assessment: Assessment) -> list[str]:
-    """Return what every report says about the assumptions."""
+    """Return the assumptions of every report."""
     return [sliding(assessment), *map(words_of(assessment), _LIMITS)]
 
 
 def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | int]]:
-    """Return one row an object, by `header`, the worst first, those without a verdict last; formulas are escaped.
+    """Return one row per object, by `header`: the worst first, rows without a verdict last; formulas are escaped.
 
     Sentences are in the language of the assessment, names of lights and directions in that of the code.
     """
-    say, own, plan = language(code), words_of(assessment), {id(each.item): each for each in assessment.plan}
+    say, own, plan = language(code), words_of(assessment), {id(entry.item): entry for entry in assessment.plan}
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
         lights = zip(assessment.comparisons, verdict.worse_compared, strict=True)
         others = "; ".join(f"{name}: {say(LIGHT_NAMES[other.light])}" for name, other in lights)
         rotations = (
-            rotation_words(each, say) if each is None else round(each, 3)
-            for each in (worse.median_rotation, worse.high_rotation)
+            rotation_words(rotation, say) if rotation is None else round(rotation, 3)
+            for rotation in (worse.median_rotation, worse.high_rotation)
         )
         measures = plan_row(plan[id(item)], say) if id(item) in plan else [""] * len(PLAN_TITLES)
         lines.append([
@@ -193,36 +190,36 @@ def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | in
             say(_CONSEQUENCES[item.consequence]), escaped(remarks(verdict, assessment)), *measures,
         ])  # fmt: skip
     for refused in assessment.not_assessed:
-        why = own("not assessed: {reason}", reason=own(refused.reason))
-        lines.append(_bare(refused, say("not assessed"), why))
-    passed = (_bare(each, say("not an object"), own(each.reason)) for each in assessment.not_objects)
-    return [*lines, *passed]
+        reason = own("not assessed: {reason}", reason=own(refused.reason))
+        lines.append(_bare(refused, say("not assessed"), reason))
+    skipped = (_bare(row, say("not an object"), own(row.reason)) for row in assessment.not_objects)
+    return [*lines, *skipped]
 
 
-def _bare(refused: NotAssessed, light: str, why: str) -> list[str | float | int]:
-    """Return the row of what has no verdict."""
-    told: dict[str, str | int] = {
-        "light": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": why,
+def _bare(refused: NotAssessed, light: str, reason: str) -> list[str | float | int]:
+    """Return a row without a verdict."""
+    values: dict[str, str | int] = {
+        "light": light, "number": refused.number, "name": refused.name, "row": refused.row, "words": reason,
         "note": refused.note,
     }  # fmt: skip
-    cells = [told.get(name, "") for name in COLUMNS]
-    line: list[str | float | int] = [escaped(each) if isinstance(each, str) else each for each in cells]
+    cells = [values.get(name, "") for name in COLUMNS]
+    line: list[str | float | int] = [escaped(cell) if isinstance(cell, str) else cell for cell in cells]
     return line + [""] * len(PLAN_TITLES)
 
 
 def plan_row(entry: PlanEntry, say: Language) -> list[str | float]:
-    """Return what is in the plan of an object, by `PLAN_TITLES`."""
-    ways = (entry.wider, entry.lower, entry.weaker)
-    wider, lower, moved = (say("does not serve") if each is None else round(100.0 * each, 3) for each in ways)
+    """Return the plan of an object, by `PLAN_TITLES`."""
+    changes = (entry.wider, entry.lower, entry.weaker)
+    wider, lower, moved = (say("not effective") if change is None else round(100.0 * change, 3) for change in changes)
     if entry.in_space:
         wider = lower = say("not computed")
     forces = (entry.ballast, entry.pull, entry.force, entry.shear)
-    ballast, *anchors = ("" if each is None else rounded_up(each) for each in forces)
+    ballast, *anchors = ("" if force is None else rounded_up(force) for force in forces)
     return [round(entry.spared, 3), round(entry.gain, 3), wider, lower, ballast, *anchors, moved]
 
 
 def plan_words(entry: PlanEntry, say: Language) -> str:
-    """Return what would make an object green, any one of it, as a sentence."""
+    """Return the alternative measures that make an object green, as a sentence."""
     assert entry.pull is not None
     options = []
     if entry.wider is not None:
@@ -236,33 +233,33 @@ def plan_words(entry: PlanEntry, say: Language) -> str:
             )
         )
     elif entry.lower is not None:
-        share = _demanded(entry.ballast_share or 0.0, say)
+        ballast = _demanded(entry.ballast_share or 0.0, say)
         options.append(
             say(
-                "centre of mass {lower} cm lower (by ballast of {share} of its weight at the floor)",
+                "centre of mass {lower} cm lower (with ballast of {share} of its weight at the floor)",
                 lower=_demanded(100.0 * entry.lower, say),
-                share=share,
+                share=ballast,
             )
         )
     if entry.weaker is not None:
-        options.append(say("a place with at most {share:.0f} % of this shaking", share=100.0 * entry.weaker))
+        options.append(say("a location with at most {share:.0f} % of this shaking", share=100.0 * entry.weaker))
     if not options:
-        options.append(say("Nothing that was looked at but anchors serves"))
-    weight = say("{share} of its weight", share=_demanded(entry.pull, say))
+        options.append(say("Only anchors are effective"))
+    weight = say("{share} times its weight", share=_demanded(entry.pull, say))
     pull = weight if entry.force is None else say("{force} N", force=_demanded(entry.force, say))
     if entry.pull or not entry.in_space:
-        options.append(say("anchors that hold {pull} along one edge", pull=pull))
+        options.append(say("anchors for {pull} along one edge", pull=pull))
     else:
         options.append(
-            say("a fixing that holds {share} of its weight across", share=_demanded(entry.shear or 0.0, say))
+            say("a fixing for a horizontal force of {share} times its weight", share=_demanded(entry.shear or 0.0, say))
         )
     if entry.in_space:
-        options.append(say("a wider base and a lower centre are not computed in three dimensions"))
+        options.append(say("a wider base and a lower centre of mass are not computed in three dimensions"))
     return say("{name}: {options}.", name=entry.item.label, options="; ".join(options))
 
 
 def as_csv(assessment: Assessment) -> str:
-    """Return the table as CSV; its last line names the columns of the list that were not read, if any."""
+    """Return the table as CSV; the last line lists the columns that were not read, if any."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     titles = header(language("en"))
@@ -276,14 +273,14 @@ def as_csv(assessment: Assessment) -> str:
 
 
 def answer_of(assessment: Assessment) -> Answer:
-    """Return everything that is shown of an assessment; text as it was typed."""
+    """Return the complete answer of an assessment; text without escapes."""
     hazard, thresholds, say = assessment.hazard, assessment.thresholds, words_of(assessment)
     low, high = hazard.velocity()
     return Answer(
         {
             "inventory": assessment.source,
             "hazard": {
-                # the description comes first: its pgv is the level asked for, not the range that came out
+                # the description comes first: its pgv is the requested level, not the range of the motions
                 **{_STATED.get(key, key): value for key, value in hazard.description.items()},
                 **{key: say(hazard.description[key]) for key in ("generator", "origin") if key in hazard.description},
                 "level": hazard.words(say.code),
@@ -296,12 +293,12 @@ def answer_of(assessment: Assessment) -> Answer:
             "comparisons": list(assessment.comparisons),
             "language": assessment.language,
             "thresholds": dict(vars(thresholds))
-            | {light.word: words for light, words in thresholds.sentences(assessment.language).items()},
+            | {light.word: sentence for light, sentence in thresholds.sentences(assessment.language).items()},
             "counts": {light.word: count for light, count in assessment.counts().items()}
             | {"not_assessed": len(assessment.not_assessed)},
             "pieces": {light.word: count for light, count in assessment.pieces().items()},
-            "objects": [_plain(rank, each, assessment) for rank, each in enumerate(assessment.verdicts, start=1)],
-            "plan": [_plan(each, words_of(assessment)) for each in assessment.plan],
+            "objects": [_plain(rank, verdict, assessment) for rank, verdict in enumerate(assessment.verdicts, start=1)],
+            "plan": [_plan(entry, words_of(assessment)) for entry in assessment.plan],
             "not_assessed": [
                 {
                     "row": refused.row,
@@ -313,7 +310,7 @@ def answer_of(assessment: Assessment) -> Answer:
                 for refused in assessment.not_assessed
             ],
             "not_objects": [
-                {"row": each.row, "text": each.name, "reason": say(each.reason)} for each in assessment.not_objects
+                {"row": row.row, "text": row.name, "reason": say(row.reason)} for row in assessment.not_objects
             ],
             "columns_not_read": list(assessment.ignored),
             "stated": list(map(say, assessment.stated)),
@@ -361,9 +358,9 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
         "uplift_acceleration": verdict.uplift_acceleration,
         "overturned_interval": list(verdict.interval),
         "friction": verdict.friction if math.isfinite(verdict.friction) else None,
-        "directions": [_direction(each) for each in verdict.results],
+        "directions": [_direction(result) for result in verdict.results],
         "directions_by_comparison": {
-            name: [_direction(each) for each in results]
+            name: [_direction(result) for result in results]
             for name, results in zip(assessment.comparisons, verdict.compared, strict=True)
         },
         "light_by_comparison": _lights(verdict, assessment),
@@ -377,7 +374,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
 # quantities by the keys of a stored description
 _STATED = {"pga_m_s2": "pga", "pgv_m_s": "pgv", "time_step_s": "time_step"}
 
-# names of a direction's results in JSON where they are not their own
+# JSON names of a direction's results that differ from the attributes
 _PLAIN = {
     "count": "motions",
     "median_rotation": "median_rotation_over_angle", "high_rotation": "high_rotation_over_angle",
@@ -399,29 +396,29 @@ def words_of(assessment: Assessment) -> Language:
 
 
 def untranslated(assessment: Assessment) -> str:
-    """Return that there are no translations into the language of a list, as a sentence; nothing where there are."""
+    """Return a sentence if the language of a list has no translation; else an empty text."""
     say = words_of(assessment)
     if say.requested == say.code:
         return ""
     return say(
-        "The list asks for a report in the language {code}, of which there are no words yet: this one is in English.",
+        "The list requests a report in the language {code}. No translation exists; this report is in English.",
         code=say.requested,
     )
 
 
 def remarks(verdict: Verdict, assessment: Assessment) -> str:
-    """Return what was assumed of an object, or left aside."""
-    return "; ".join(words_of(assessment)(each).rstrip(".") for each in verdict.item.remarks)
+    """Return the remarks on an object: assumptions and ignored values."""
+    return "; ".join(words_of(assessment)(remark).rstrip(".") for remark in verdict.item.remarks)
 
 
 def noted(verdict: Verdict, assessment: Assessment) -> str:
-    """Return the remarks as a sentence; nothing where there are none."""
-    said = remarks(verdict, assessment)
-    return words_of(assessment)("Noted: {remarks}.", remarks=said).replace("?.", "?") if said else ""
+    """Return the remarks as a sentence; empty without remarks."""
+    text = remarks(verdict, assessment)
+    return words_of(assessment)("Remarks: {remarks}.", remarks=text).replace("?.", "?") if text else ""
 
 
 def named(verdict: Verdict, say: Language) -> str:
-    """Return number and name of an object, with how many there are, its note, and a consequence that is not medium."""
+    """Return number and name of an object, with count, note, and a consequence other than medium."""
     item, name = verdict.item, verdict.item.label
     if item.count > 1:
         name = say("{name} (x {count})", name=name, count=item.count)
@@ -429,13 +426,13 @@ def named(verdict: Verdict, say: Language) -> str:
         name = say("{name}, {note}", name=name, note=item.note)
     if item.consequence != "medium":
         name = say(
-            "{name}, a fall of {consequence} consequence", name=name, consequence=say(_CONSEQUENCES[item.consequence])
+            "{name}, {consequence} consequence of a fall", name=name, consequence=say(_CONSEQUENCES[item.consequence])
         )
     return name
 
 
 def passed_over(assessment: Assessment) -> list[tuple[str, list[int]]]:
-    """Return why rows of the list are no objects, and which rows."""
+    """Return the reasons for skipped rows of the list, with their row numbers."""
     rows: dict[str, list[int]] = {}
     for passed in assessment.not_objects:
         rows.setdefault(words_of(assessment)(passed.reason), []).append(passed.row)
@@ -443,69 +440,69 @@ def passed_over(assessment: Assessment) -> list[tuple[str, list[int]]]:
 
 
 def stated(assessment: Assessment) -> str:
-    """Return what the list states beside its table and was used, as a sentence; nothing where it states nothing."""
+    """Return the used statements outside the table of the list, as a sentence; empty without any."""
     say = words_of(assessment)
-    said = "; ".join(map(say, assessment.stated))
-    return say("The list states beside its table: {stated}.", stated=said) if said else ""
+    text = "; ".join(map(say, assessment.stated))
+    return say("Used from the lines outside the table: {stated}.", stated=text) if text else ""
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:
-    """Return what an object does."""
+    """Return a sentence with the response of an object."""
     say, hazard, worse = words_of(assessment), assessment.hazard, verdict.worse
     limit = say.number(_in_g(verdict.uplift_acceleration))
     still = say(
-        "Stays still up to {limit} g of level shaking alone" if hazard.vertical else "Stays still up to {limit} g",
+        "No uplift below {limit} g of horizontal shaking alone" if hazard.vertical else "No uplift below {limit} g",
         limit=limit,
     )
-    failed, slides, pulls = worse.failed, worse.slid, worse.lost_contact
+    failed, sliding_count, pull_count = worse.failed, worse.slid, worse.lost_contact
     also = [
         say("{failed} of {whole} motions could not be computed.", failed=failed, whole=worse.count + failed),
-        say("It slides in {slides} of them.", slides=slides),
-        say("In {pulls} of them the ground would have to pull, and the verdict assumes contact.", pulls=pulls),
+        say("It slides in {slides} of them.", slides=sliding_count),
+        say("In {pulls} of them the contact force becomes tensile; the verdict assumes contact.", pulls=pull_count),
     ]
     return " ".join(
-        [f"{still}; {_fate(worse, hazard.words(say.code), hazard.synthetic, say)}."]
-        + [remark for remark, number in zip(also, (failed, slides, pulls), strict=True) if number]
+        [f"{still}; {_outcome(worse, hazard.words(say.code), hazard.synthetic, say)}."]
+        + [remark for remark, number in zip(also, (failed, sliding_count, pull_count), strict=True) if number]
     )
 
 
 def advice(verdict: Verdict, assessment: Assessment) -> str:
-    """Return what to do about an object."""
+    """Return the recommended measure for an object."""
     say, light = words_of(assessment), verdict.light
     if light is Light.GREEN:
-        return say("Nothing to do for rocking; check that it cannot slide off.")
-    how = (
+        return say("No measure against rocking is needed; check that it cannot slide off.")
+    measure = (
         say("Secure it, lower its centre of mass, or widen its base.")
         if math.isfinite(verdict.friction)
         else _base(verdict, assessment)
     )
     if verdict.worse.overturned == 0 and verdict.worse.slid:
-        return say("Keep it from sliding with a mat, a rim or a fixing: how far it slides is not computed.")
-    room = "Give it room to rock without touching its neighbours."
-    away = "Until then keep people and other objects out of its reach."
-    return f"{how} {say(room if light is Light.AMBER else away)}"
+        return say("Prevent sliding with a mat, a rim or a fixing; the sliding distance is not computed.")
+    room = "Leave a clearance for rocking without contact with neighbouring objects."
+    away = "Until then keep people and other objects out of its fall range."
+    return f"{measure} {say(room if light is Light.AMBER else away)}"
 
 
 def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
     pairs = zip(assessment.comparisons, verdict.worse_compared, strict=True)
-    return {name: each.light.word for name, each in pairs}
+    return {name: result.light.word for name, result in pairs}
 
 
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
-    """Return whether the model of impact decides, as a sentence; empty if all models show the same light."""
+    """Return a sentence if the light depends on the restitution model, else an empty text."""
     say, pairs = words_of(assessment), zip(assessment.comparisons, verdict.worse_compared, strict=True)
     others = [
         say(
-            "{name} shows {light} ({overturned} of {count} overturn)", name=name, light=say(LIGHT_NAMES[each.light]),
-            overturned=each.overturned, count=each.count,
+            "{name} gives {light} ({overturned} of {count} overturn)", name=name, light=say(LIGHT_NAMES[result.light]),
+            overturned=result.overturned, count=result.count,
         )
-        for name, each in pairs if each.light is not verdict.light
+        for name, result in pairs if result.light is not verdict.light
     ]  # fmt: skip
-    return say("The model of impact decides: {others}.", others=", ".join(others)) if others else ""
+    return say("The rating depends on the restitution model: {others}.", others=", ".join(others)) if others else ""
 
 
 def rotation_words(value: float | None, say: Language) -> str:
-    """Return a peak rotation over the slenderness angle in words; None overturns."""
+    """Return a peak rotation over the slenderness angle as text; None is an overturned object."""
     return say("overturns") if value is None else say.number(f"{value:.2f}")
 
 
@@ -514,7 +511,7 @@ def _demanded(value: float, say: Language) -> str:
 
 
 def rounded_down(value: float, digits: int) -> str:
-    """Return a limit with so many decimals that stays true in print: not above it, but for rounding.
+    """Return a limit with a number of decimals, rounded down to remain valid.
 
     >>> rounded_down(0.1299, 2), rounded_down(0.3, 2)
     ('0.12', '0.30')
@@ -527,25 +524,23 @@ def _in_g(acceleration: float) -> str:
 
 
 def _base(verdict: Verdict, assessment: Assessment) -> str:
-    """Return the base that no motion would lift, as ``g b / h`` has it, at the same height of the centre."""
+    """Return the advice with the smallest base without uplift, from ``g b / h`` at the same centre height."""
     say, way, peak = words_of(assessment), verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
-    needed = (
-        math.floor(100.0 * now * peak / verdict.worse.uplift_acceleration + 1e-9) + 1
-    )  # beyond what just does not lift it
+    needed = math.floor(100.0 * now * peak / verdict.worse.uplift_acceleration + 1e-9) + 1  # above the limit of uplift
     own = verdict.item.width if way == "width" else verdict.item.depth
     message = _BASES[now == own, assessment.hazard.vertical]
     return say(message.text, way=say(DIRECTION_NAMES[way]), size=100.0 * now, needed=needed)
 
 
-def _fate(result: DirectionResult, level: str, synthetic: bool, say: Language) -> str:
+def _outcome(result: DirectionResult, level: str, synthetic: bool, say: Language) -> str:
     high = result.high_rotation or 0.0
     if result.lifted == 0:
-        fate = _NO_ROCKING if result.slid else _STILL
+        message = _NO_ROCKING if result.slid else _STILL
     elif result.overturned:
-        fate = _OVERTURNS
+        message = _OVERTURNS
     else:
-        fate = _ROCKS_BARELY if high < 0.05 else _ROCKS_LITTLE if high < 0.2 else _ROCKS
+        message = _ROCKS_BARELY if high < 0.05 else _ROCKS_LITTLE if high < 0.2 else _ROCKS
     motions = _SIMULATED if synthetic else _RECORDS
     facts = {"level": level, "overturned": result.overturned, "count": result.count}
-    return say(fate.of({**facts, "motions": motions.of(facts)}))
+    return say(message.of({**facts, "motions": motions.of(facts)}))

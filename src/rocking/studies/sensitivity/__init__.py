@@ -1,4 +1,4 @@
-"""How the restitution changes a study: maps, spectra and fragility, with the verdicts that flip."""
+"""Sensitivity of maps, spectra and fragility to the restitution, with the changed verdicts."""
 
 from rocking.studies.sensitivity.comparison import (
     Sensitivity,

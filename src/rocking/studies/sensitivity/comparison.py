@@ -1,4 +1,4 @@
-"""Results of one study with several choices of restitution, compared in numbers and words."""
+"""Comparison of the results of a study with several choices of restitution."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -32,25 +32,25 @@ _COUNTS = ("count", "only_second", "only_first", "compared", "unknown", "share",
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sensitivity:
-    """Results of one study with several restitutions, compared.
+    """Comparison of the results of a study with several restitutions.
 
     Parameters
     ----------
     results : dict of str to result
-        Results by the name of the choice: datasets with an outcome, or analyses that have a `dataset`.
+        Results by the name of the choice: datasets with an outcome, or analyses with a `dataset`.
     baseline : str
-        The choice that the others are compared with.
+        The reference choice of the comparison.
     repetitions : int
-        Sets of motions that are drawn for the intervals of fragility curves.
+        Number of resampled sets of motions for the intervals of fragility curves.
     seed : int
-        Seed of these draws.
+        Random seed of the samples.
     drawn : collection of str
-        Names of the choices whose coefficients are drawn, so that other draws might flip other verdicts.
+        Names of the choices with random coefficients: other samples may change other verdicts.
 
     Raises
     ------
     InvalidValueError
-        If a result has no outcome, results are of different shapes, or there is no such choice.
+        If a result has no outcome, results have different shapes, or a choice is unknown.
     """
 
     results: dict[str, Any]
@@ -67,11 +67,11 @@ class Sensitivity:
             raise InvalidValueError(
                 "{parameter} must be of one shape, got {shape} with {choice}, {expected} with {baseline}",
                 parameter="results", shape=shapes[odd], choice=odd, expected=shapes[self.baseline],
-                baseline=self.baseline, hint="are they of the same study?",
+                baseline=self.baseline, hint="Check that all results belong to one study.",
             )  # fmt: skip
 
     def __repr__(self) -> str:
-        """Which choices are compared; `verdict` says how they differ."""
+        """Names of the compared choices."""
         return f"<Sensitivity: {', '.join(self.labels[1:])} against {self.baseline}>"
 
     @property
@@ -86,11 +86,11 @@ class Sensitivity:
 
     @property
     def cases(self) -> str:
-        """What is counted: histories where there are motions to count over, otherwise cells of a map."""
+        """Unit of the counts: histories if the study has motions, otherwise cells of a map."""
         return "histories" if "motion" in self.datasets[self.baseline]["outcome"].dims else "cells"
 
     def flips_between(self, first: str, second: str) -> Flips:
-        """Return how many verdicts differ between two choices.
+        """Return the number of different verdicts between two choices.
 
         Parameters
         ----------
@@ -100,28 +100,27 @@ class Sensitivity:
         Returns
         -------
         Flips
-            The counts; the interval takes motions for independent where there are several, otherwise the draws of
-            the histories, and is missing (NaN) where nothing is drawn. A choice compared with itself is known to flip
-            nothing.
+            The counts. In the interval, motions are independent if there are several, otherwise the samples of the
+            histories; without samples the interval is NaN. For a choice compared with itself it is zero.
         """
         first, second = (checks.one_of("choice", label, self.labels) for label in (first, second))
         a, b = (self.datasets[label]["outcome"] for label in (first, second))
         if first == second:
             return replace(flips_of(a.values, b.values), share_low=0.0, share_high=0.0)
-        drawn = not {first, second}.isdisjoint(self.drawn)
+        is_random = not {first, second}.isdisjoint(self.drawn)
         if "motion" not in a.dims:
-            return flips_of(a.values, b.values, drawn=drawn)
+            return flips_of(a.values, b.values, drawn=is_random)
         shape = [-1 if name == "motion" else 1 for name in a.dims]
-        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape), drawn=drawn)
+        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape), drawn=is_random)
 
     def flips(self) -> "xr.Dataset":
-        """Return how many verdicts differ between every two choices.
+        """Return the number of different verdicts between all pairs of choices.
 
         Returns
         -------
         xarray.Dataset
             Over ``first, second``: count, only_second (overturned in the second only), only_first, compared, unknown,
-            and the share with its 95 % interval, missing where there is no sample of motions or draws.
+            and the fraction with its 95 % interval, missing without several motions or random coefficients.
         """
         xarray = extra("xarray", "a table of flips")
         pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
@@ -133,18 +132,18 @@ class Sensitivity:
         return table.assign_attrs(cases=self.cases, independent=independent)
 
     def differences(self, name: str = "verdict") -> "xr.DataArray":
-        """Return how a value moves from the baseline to every other choice.
+        """Return the difference of a value between the baseline and every other choice.
 
         Parameters
         ----------
         name : str
-            ``verdict`` (-1 overturned with the baseline only, 0 the same, 1 overturned with the choice only, 2 one of
-            them failed), or a variable of the results such as ``peak_ratio``.
+            ``verdict`` (-1 overturned with the baseline only, 0 equal verdicts, 1 overturned with the choice only, 2
+            failed with one of them), or a variable of the results such as ``peak_ratio``.
 
         Returns
         -------
         xarray.DataArray
-            Over ``restitution`` and the dimensions of the study; values are missing where either did not stand.
+            Over ``restitution`` and the dimensions of the study; values are missing if either overturned or failed.
         """
         xarray = extra("xarray", "a map of differences")
         base, others = self.datasets[self.baseline], self.labels[1:]
@@ -155,7 +154,7 @@ class Sensitivity:
         return labelled.assign_attrs(maps[0].attrs, baseline=self.baseline)
 
     def curve_change(self, choice: str, state: str = "overturned", *, baseline: str | None = None) -> CurveChange:
-        """Return what changes of a fragility curve.
+        """Return the differences between two fragility curves.
 
         Parameters
         ----------
@@ -164,7 +163,7 @@ class Sensitivity:
         state : str
             Name of the state.
         baseline : str, optional
-            The choice to compare with; the baseline if not given.
+            The reference choice; default: the baseline of the comparison.
 
         Returns
         -------
@@ -177,20 +176,20 @@ class Sensitivity:
             If the study has no such curves.
         """
         both = (baseline or self.baseline, choice)
-        pair = [self.results[checks.one_of("choice", each, self.labels)] for each in both]
+        pair = [self.results[checks.one_of("choice", label, self.labels)] for label in both]
         if state not in self.states:
-            known = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
+            names = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
             raise InvalidValueError(
-                "{parameter} must be one of the study's, {names}; got {value}", parameter="state", names=known,
+                "{parameter} must be one of the study's, {names}; got {value}", parameter="state", names=names,
                 value=state,
             )  # fmt: skip
         first, second = (_curve(result.fits[state]) for result in pair)
-        reached = [one.responses.exceed(next(s for s in one.limit_states if s.name == state)) for one in pair]
+        reached = [result.responses.exceed(next(s for s in result.limit_states if s.name == state)) for result in pair]
         return curve_change((first, second), pair[0].levels, *reached, repetitions=self.repetitions, seed=self.seed)
 
     @property
     def states(self) -> tuple[str, ...]:
-        """Names of the states that have a fragility curve; none unless the study is of stripes."""
+        """Names of the states with a fragility curve; empty unless the study is by stripes."""
         results = self.results.values()
         if any(getattr(result, "kind", None) != MultipleStripeAnalysis.kind for result in results):
             return ()
@@ -202,18 +201,18 @@ class Sensitivity:
         for label, state in product(changes, self.states):
             try:
                 changes[label][state] = self.curve_change(label, state)
-            except InvalidValueError as error:  # data without a curve are an answer, not a mistake of the user
+            except InvalidValueError as error:  # data without a curve are a result, not an error of the user
                 changes[label][state] = str(error)
         return changes
 
     def summary(self) -> list[dict[str, Any]]:
-        """Return one row of plain values for every choice.
+        """Return one row of plain values per choice.
 
         Returns
         -------
         list of dict
-            The choice, the share that overturns, flips against the baseline with the 95 % interval of their share, and
-            for every state the change of its curve.
+            The choice, the overturning fraction, different verdicts from the baseline with the 95 % interval of their
+            fraction, and for every state the difference of its curve.
         """
         rows = []
         for label in self.labels:
@@ -221,7 +220,7 @@ class Sensitivity:
             good = int((outcome != Outcome.FAILED.code).sum())
             flips = self.flips_between(self.baseline, label)
             row = {"choice": label, "overturned": int((outcome == Outcome.OVERTURNED.code).sum()), "computed": good}
-            row |= {"flips" if name == "count" else name: _known(getattr(flips, name)) for name in _COUNTS}
+            row |= {"flips" if name == "count" else name: _or_none(getattr(flips, name)) for name in _COUNTS}
             for state, change in self._curve_changes.get(label, {}).items():
                 row |= _plain(state, change) | {f"{state}: fit": self.results[label].fits[state].method}
             rows.append(row)
@@ -229,66 +228,66 @@ class Sensitivity:
 
     @property
     def verdict(self) -> str:
-        """The comparison in words, a sentence for every choice but the baseline."""
+        """The comparison as text, one sentence per choice other than the baseline."""
         return self.told()
 
     def told(self, unit: tuple[str, float] | None = None) -> str:
-        """Return the comparison in words, with intensities in another unit.
+        """Return the comparison as text, with levels in another unit.
 
         Parameters
         ----------
         unit : tuple of str and float, optional
-            Name, and size [unit of the intensity measure]; otherwise that of the measure.
+            Name and size [unit of the intensity measure]; default: the unit of the measure.
 
         Returns
         -------
         str
-            A sentence for every choice but the baseline.
+            One sentence per choice other than the baseline.
         """
         return "\n".join(self._sentence(label, unit) for label in self.labels[1:])
 
     def _sentence(self, label: str, unit: tuple[str, float] | None) -> str:
         flips = self.flips_between(self.baseline, label)
-        share = percent(flips.share)
-        if _known(flips.share_low) is not None:
-            share += f", 95 % interval {percent(flips.share_low)} to {percent(flips.share_high)}"
-        words = [
+        fraction = percent(flips.share)
+        if _or_none(flips.share_low) is not None:
+            fraction += f", 95 % interval {percent(flips.share_low)} to {percent(flips.share_high)}"
+        clauses = [
             f"With {label} instead of {self.baseline}, the outcome differs in {flips.count:,} of {flips.compared:,} "
-            f"{self.cases} ({share})"
+            f"{self.cases} ({fraction})"
         ]
         if flips.count:
-            words.append(
+            clauses.append(
                 f"{flips.only_second:,} overturn only with {label}, {flips.only_first:,} only with {self.baseline}"
             )
         if flips.unknown:
-            words.append(f"{flips.unknown:,} could not be computed")
+            clauses.append(f"{flips.unknown:,} could not be computed")
         changes = self._curve_changes.get(label, {})
         unit = unit or ((self.results[label].subject.measure.unit, 1.0) if changes else ("-", 1.0))
-        words += [
+        clauses += [
             f"{state}: {change if isinstance(change, str) else change.told(*unit)}" for state, change in changes.items()
         ]
-        return "; ".join(words) + "."
+        return "; ".join(clauses) + "."
 
 
 def _dataset(label: str, result: Any) -> "xr.Dataset":
     data = getattr(result, "dataset", result)
     if not hasattr(data, "data_vars") or "outcome" not in data:
         raise InvalidValueError(
-            "the study must return a dataset with an outcome, or an analysis with one, got {value} with {choice}",
+            "the study must return a dataset or an analysis with an outcome, got {value} with {choice}",
             parameter="study", value=data, choice=label,
         )  # fmt: skip
     if data.sizes.get("restitution", 1) > 1:
-        raise InvalidValueError("the study varies the restitution itself: give one of its axes to the study instead")
+        raise InvalidValueError("the study already varies the restitution. Use a study with one restitution.")
     squeezed: xr.Dataset = data.squeeze("restitution", drop=True) if "restitution" in data.dims else data
     return squeezed
 
 
-def _known(value: float) -> float | None:
+def _or_none(value: float) -> float | None:
     return None if np.isnan(value) else value
 
 
 def _curve(fit: Any) -> tuple[float, float]:
-    """Return median and dispersion, or refuse with the fit's own words why there is no curve."""
+    """Return median and dispersion, or raise the verdict of the fit as error."""
     if fit.median is None or fit.dispersion is None:
         raise InvalidValueError("no curve to compare: {reason}", reason=fit.verdict.rstrip("."))
     return float(fit.median), float(fit.dispersion)
@@ -298,33 +297,33 @@ def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:
     if isinstance(change, str):
         return {f"{state}: no comparison": change}
     plain: dict[str, Any] = {}
-    for name, word in (("median", "median ratio"), ("dispersion", "dispersion"), ("distance", "largest distance")):
+    for name, label in (("median", "median ratio"), ("dispersion", "dispersion"), ("distance", "largest distance")):
         changed = getattr(change, name)
-        plain[f"{state}: {word}"] = changed.value
-        plain |= {f"{state}: {word} {end}": v for end, v in zip(("low", "high"), changed.interval or (), strict=False)}
+        plain[f"{state}: {label}"] = changed.value
+        plain |= {f"{state}: {label} {end}": v for end, v in zip(("low", "high"), changed.interval or (), strict=False)}
     return plain
 
 
 def sensitivity(
     study: Callable[..., Any], restitutions: Any, baseline: str | None = None, *, repetitions: int = 1000, seed: int = 0
 ) -> Sensitivity:
-    """Return the results of a study with several restitutions, compared.
+    """Compare the results of a study with several restitutions.
 
-    Everything else stays the same, motions and numbers of histories included: what differs is the restitution's.
+    All other inputs are equal, including motions and indices of histories.
 
     Parameters
     ----------
     study : callable
-        Takes ``restitution=`` and returns a dataset with an outcome, or an analysis that has one;
-        ``functools.partial`` makes one from `overturning_map`, `simulate_many` and their like.
+        Function with ``restitution=`` that returns a dataset or an analysis with an outcome, such as a
+        ``functools.partial`` of `overturning_map` or `simulate_many`.
     restitutions : list of choices, or dict of them by name
-        At least two models, coefficients [-], pairs by side, or laws of impact.
+        At least two models, coefficients [-], pairs by side, or impact laws.
     baseline : str, optional
-        Name of the choice that the others are compared with; the first if not given.
+        Name of the reference choice; default: the first.
     repetitions : int
-        Sets of motions that are drawn for the intervals of fragility curves.
+        Number of resampled sets of motions for the intervals of fragility curves.
     seed : int
-        Seed of these draws.
+        Random seed of the samples.
 
     Returns
     -------
@@ -334,7 +333,7 @@ def sensitivity(
     Raises
     ------
     InvalidValueError
-        If a choice is no restitution, or the results cannot be compared.
+        If a choice is no restitution, or the results have different shapes.
 
     Examples
     --------
@@ -342,8 +341,8 @@ def sensitivity(
     >>> import rocking as rk
     >>> blocks = [rk.Block(width=0.5, height=h) for h in (1.0, 2.0, 3.0)]
     >>> study = partial(rk.simulate_many, blocks, rk.pulses.sine(4.0, 0.6), scale=[0.5, 1.0, 1.5])
-    >>> found = sensitivity(study, ["housner", "ked"])
-    >>> found.flips()["compared"].values.tolist()
+    >>> comparison = sensitivity(study, ["housner", "ked"])
+    >>> comparison.flips()["compared"].values.tolist()
     [[9, 9], [9, 9]]
     """
     if not callable(study):
@@ -355,7 +354,7 @@ def sensitivity(
 
 
 def drawn_in(choices: Mapping[str, Any]) -> list[str]:
-    """Return the names of the choices whose coefficients are drawn at every impact."""
+    """Return the names of the choices with random coefficients at every impact."""
     kind = RandomRestitution.kind
     return [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == kind]
 
@@ -363,7 +362,7 @@ def drawn_in(choices: Mapping[str, Any]) -> list[str]:
 def map_sensitivity(
     body: Body, motion: Motion, x: Any, y: Any, restitutions: Any, *, baseline: str | None = None, **options: Any
 ) -> Sensitivity:
-    """Return how the restitution changes an overturning map.
+    """Return the sensitivity of an overturning map to the restitution.
 
     Parameters
     ----------
@@ -372,12 +371,12 @@ def map_sensitivity(
     restitutions, baseline
         As for `sensitivity`.
     **options
-        Those of `rocking.overturning_map`.
+        Options of `rocking.overturning_map`.
 
     Returns
     -------
     Sensitivity
-        Flips and differences, cell by cell.
+        Different verdicts and values, cell by cell.
 
     Raises
     ------
@@ -398,7 +397,7 @@ def map_sensitivity(
 
     along = axis_of(x), axis_of(y)
     if any(axis.name == "restitution" for axis in along):
-        raise InvalidValueError("restitution cannot be an axis where it is what is compared")
+        raise InvalidValueError("restitution cannot be an axis in a comparison of restitutions")
     return sensitivity(partial(overturning_map, body, motion, *along, **options), restitutions, baseline)
 
 
@@ -411,7 +410,7 @@ def spectrum_sensitivity(
     baseline: str | None = None,
     **options: Any,
 ) -> Sensitivity:
-    """Return how the restitution changes rocking spectra.
+    """Return the sensitivity of rocking spectra to the restitution.
 
     Parameters
     ----------
@@ -420,16 +419,16 @@ def spectrum_sensitivity(
     restitutions, baseline
         As for `sensitivity`.
     **options
-        Those of `rocking.rocking_spectrum`.
+        Options of `rocking.rocking_spectrum`.
 
     Returns
     -------
     Sensitivity
-        Flips and differences, block by block and motion by motion.
+        Different verdicts and values, by block and motion.
     """
     from rocking.studies._rocking_spectrum import rocking_spectrum
 
-    study = partial(rocking_spectrum, _kept(motions), slenderness_angles, periods, **options)
+    study = partial(rocking_spectrum, _reusable(motions), slenderness_angles, periods, **options)
     return sensitivity(study, restitutions, baseline)
 
 
@@ -444,27 +443,28 @@ def fragility_sensitivity(
     seed: int = 0,
     **options: Any,
 ) -> Sensitivity:
-    """Return how the restitution changes fragility by multiple stripes.
+    """Return the sensitivity of fragility by multiple stripes to the restitution.
 
     Parameters
     ----------
     body, motions, levels
         As for `rocking.fragility`.
     restitutions, baseline, repetitions, seed
-        As for `sensitivity`; no repetitions, no intervals.
+        As for `sensitivity`; 0 repetitions: no intervals.
     **options
         ``im``, ``limit_states`` and the other options of `rocking.studies.fragility_analysis`.
 
     Returns
     -------
     Sensitivity
-        Flips, and for every state the ratio of medians, difference of dispersions and distance of the curves.
+        Different verdicts, and for every state the ratio of medians, difference of dispersions and distance of the
+        curves.
     """
     from rocking.studies.histories import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)
     im, limit_states = options.pop("im", "pga"), options.pop("limit_states", (0.5,))
-    same_motions = _kept(motions)
+    same_motions = _reusable(motions)
 
     def study(*, restitution: Any) -> Any:
         subject = Subject.of(body, same_motions, restitution, im, options)
@@ -474,7 +474,7 @@ def fragility_sensitivity(
     return sensitivity(study, restitutions, baseline, repetitions=repetitions, seed=seed)
 
 
-def _kept(motions: Any) -> Any:
-    """Return motions that can be gone through again and again: a generator would be empty after the first choice."""
-    kept = isinstance(motions, (GroundMotion, Pulse, MotionSet)) or not isinstance(motions, Iterable)
-    return motions if kept else list(motions)
+def _reusable(motions: Any) -> Any:
+    """Return motions for repeated iteration: a generator would be empty after the first choice."""
+    is_reusable = isinstance(motions, (GroundMotion, Pulse, MotionSet)) or not isinstance(motions, Iterable)
+    return motions if is_reusable else list(motions)

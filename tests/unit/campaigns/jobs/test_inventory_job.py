@@ -132,14 +132,14 @@ def test_changed_list_is_refused(job, tmp_path):
     ("old", "new", "wanted"),
     [
         ('objects = "objects.csv"', 'objects = "none.csv"', r"none\.csv: No such file"),
-        ('pga = "0.3g"', "", "how strong is the shaking"),
+        ('pga = "0.3g"', "", "The intensity level is missing"),
         ('pga = "0.3g"', 'pga = "0.3"', r"inventory: PGA must be a number with its unit"),
         ('pga = "0.3g"', 'pga = "0.3g"\npgv = "20cm/s"', "not both"),
         ('pga = "0.3g"', 'pga = "0.3g"\nthresholds = { rocking = 7.0 }', "rocking"),
         ("seed = 4", "seed = 4\npga = 3.0", "stands in .inventory."),
         ("seed = 4", 'seed = 4\n[settings]\nengine = "fast"', r"settings\.engine does not go with"),
         ("seed = 4", 'seed = 4\n[restitution]\nmodels = ["ked", "housner"]', "takes one"),
-        ("seed = 4", "seed = 4\n[restitution.distribution]\nmean = 0.9\ndeviation = 0.1", "not a law of impacts"),
+        ("seed = 4", "seed = 4\n[restitution.distribution]\nmean = 0.9\ndeviation = 0.1", "not an impact law"),
         ("seed = 4", 'seed = 4\n[body]\nunits = "m"\nwidth = 1\nheight = 4', "objects stand in the file"),
         (
             'synthetic = "firm-ground"\ncount = 12\nseed = 4',

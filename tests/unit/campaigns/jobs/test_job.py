@@ -255,7 +255,7 @@ ELSEWHERE = {
         r"settings\.tolerance cannot be"),
     "restitution twice": ("overturning-map", '[map]\nx = { axis = "frequency_ratio", from = 1, to = 7, count = 9 }',
         '[restitution]\nmodels = ["housner", "ked"]\n[map]\nx = { axis = "restitution", values = [0.8, 0.9] }',
-        r"map: restitution cannot be an axis where it is what is compared"),
+        r"map: restitution cannot be an axis in a comparison of restitutions"),
     "spectrum": ("rocking-spectrum", "[spectrum]", '[body]\nunits = "m"\n[spectrum]', r"\[body\] makes no sense"),
     "angle": ("rocking-spectrum", "[0.15, 0.3]", "[0.15, 2.0]", r"spectrum: .*2"),
     "angles": ("rocking-spectrum", "[0.15, 0.3]", "[0.3, 0.15]", r"spectrum\.slenderness_angles must increase"),

@@ -149,7 +149,7 @@ def test_forecast_of_later_rounds(whole):
     assert low < told.histories - first < high
     large = forecast(Job.of_text(MAP.replace("count = 50", "count = 2000")))
     assert large.memory > forecast(whole.job).memory + 80 * 4_000_000
-    with pytest.raises(InvalidValueError, match="up to 10000000 points, which are in memory together, got 16000000"):
+    with pytest.raises(InvalidValueError, match="up to 10000000 points, got 16000000"):
         Job.of_text(MAP.replace("count = 50", "count = 4000"))
 
 

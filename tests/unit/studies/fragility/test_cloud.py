@@ -198,7 +198,7 @@ def test_share_of_what_was_clearly_lifted(found):
     def share(outcome, rotation):
         answers = Responses(np.array(outcome), np.asarray(rotation), np.zeros(5, np.int8))
         some = dataclasses.replace(found, responses=answers, motion_levels=levels, least=0.01)
-        return some.clear_share(np.array([1.0, 4.0])).tolist()
+        return some.clear_fraction(np.array([1.0, 4.0])).tolist()
 
     assert share(codes, rotation) == [0.75, 0.75]
     assert share(codes, np.maximum(rotation, 0.1)) == [1.0, 1.0]

@@ -234,9 +234,9 @@ FEW_LEVELS = np.linspace(2.0, 12.0, 11)
 
 
 def test_random_coefficients_have_no_crossing():
-    """Coefficients drawn anew for every history leave no crossing to search: refused, and stripes take them."""
+    """Sampled coefficients leave no crossing to search: refused, and stripes take them."""
     law = rk.dynamics.RandomRestitution(np.array([0.9, 1.0]), seed=3)
-    with pytest.raises(InvalidValueError, match="drawn anew"):
+    with pytest.raises(InvalidValueError, match="sampled coefficients"):
         fragility_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law, analysis="incremental")
     assert fragility_analysis(BLOCK, PULSES, FEW_LEVELS, restitution=law).failed == 0
 
@@ -261,7 +261,7 @@ def test_a_law_of_ones_own_is_taken_with_a_note():
     )
     plain = fragility_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=1.0, tolerance=1e-4, analysis="incremental")
     np.testing.assert_allclose(own.first_crossings, plain.first_crossings, rtol=2e-4)
-    assert "law of one's own" in own.summary()["restitution note"]
+    assert "user-defined law" in own.summary()["restitution note"]
     assert plain.summary()["restitution note"] == ""
-    with pytest.raises(InvalidValueError, match="drawn anew"):
+    with pytest.raises(InvalidValueError, match="sampled coefficients"):
         fragility_analysis(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Drawn(), analysis="incremental")

@@ -201,7 +201,7 @@ def test_levels_may_be_absent_or_above_one():
 
 def test_results_of_another_study_are_refused():
     """Arrays that do not fit the shape never become states."""
-    with pytest.raises(InvalidValueError, match="another study"):
+    with pytest.raises(InvalidValueError, match="belong to this study"):
         Responses.of(ARRAYS, ROCKER, (4,))
     with pytest.raises(InvalidValueError):
         Responses.of({"outcome": np.zeros(5)}, ROCKER, (5,))

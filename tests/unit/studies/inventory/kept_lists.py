@@ -77,7 +77,7 @@ LISTS = {
         masses={7: 61.0},
         bases={7: (0.4, 0.3), 8: (0.7, 0.12)},
     ),
-    # headings within, blank lines, the header again on each printed page, numbers of pages
+    # headings within, blank lines, a repeated header on each printed page, numbers of pages
     "pages": KeptList(
         "de",
         [

@@ -62,12 +62,10 @@ def test_counts_by_hand():
     # Clopper & Pearson for 3 of 10, as tables print it
     assert verdict.interval == pytest.approx((0.0667, 0.6525), abs=5e-5)
     assert table.sentence(verdict, found) == (
-        "Stays still up to 0.25 g; at PGA 0.5 g it rocks, and fell over in 3 of 10 records."
+        "No uplift below 0.25 g; at PGA 0.5 g it rocks, and overturns in 3 of 10 records."
     )
     # b / h = a / g along the width needs a base of 0.5 m * 2
-    assert "its width is 50 cm, and 101 cm would not be lifted" in table.advice(
-        verdict, found
-    )  # 100 cm is the limit itself
+    assert "its width is 50 cm; 101 cm prevent uplift" in table.advice(verdict, found)  # 100 cm is the limit itself
 
 
 def test_the_median_of_two_motions_is_their_mean():
@@ -103,8 +101,8 @@ def test_what_is_never_lifted_is_green():
     hazard = Hazard.of_records([rectangle(1.0, 0.24 * G)])
     (verdict,) = (found := assess([COLUMN], hazard)).verdicts
     assert (verdict.light, verdict.worse.lifted, verdict.worse.high_rotation) == (Light.GREEN, 0, 0.0)
-    assert table.sentence(verdict, found).endswith("at PGA 0.24 g it stood still in the one record.")
-    assert table.advice(verdict, found).startswith("Nothing to do")
+    assert table.sentence(verdict, found).endswith("at PGA 0.24 g no uplift in 1 record.")
+    assert table.advice(verdict, found).startswith("No measure")
 
 
 def test_share_lifted_grows_with_the_level(quakes):
@@ -164,7 +162,7 @@ def test_model_of_impact_is_flagged(quakes):
     for verdict in found.verdicts:
         note = table.model_note(verdict, found)
         assert bool(note) == (any(each.light is not verdict.light for each in verdict.worse_compared))
-    assert table.model_note(flagged[0], found).startswith("The model of impact decides: housner shows")
+    assert table.model_note(flagged[0], found).startswith("The rating depends on the restitution model: housner gives")
     assert assess(items[:1], quakes, restitution="housner").comparisons == ("ked",)
     usual = assess(items[:1], quakes)
     assert (usual.restitution, usual.comparisons) == ("calibrated", ("housner", "ked"))
@@ -209,7 +207,7 @@ def test_refusals(quakes):
         assess([COLUMN], quakes, restitution="no-such")
     with pytest.raises(InvalidValueError, match="restitution must be in"):
         assess([COLUMN], quakes, restitution=-0.5)
-    with pytest.raises(InvalidValueError, match="not a law"):
+    with pytest.raises(InvalidValueError, match="not an impact law"):
         assess([COLUMN], quakes, restitution=RandomRestitution([0.9, 1.0], times="ked", seed=1))
 
 
@@ -249,8 +247,8 @@ def test_table_and_plain_values_agree(quakes):
         assert int(line["overturned"]) == worse["overturned"]
         assert float(line["overturned, high [%]"]) == pytest.approx(100.0 * item["overturned_interval"][1], abs=0.005)
         assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration"] / G, abs=5e-5)
-        assert line["in words"] == item["in_words"]
-    assert lines[2]["in words"].startswith("not assessed: width_cm is '?'")
+        assert line["description"] == item["in_words"]
+    assert lines[2]["description"].startswith("not assessed: width_cm is '?'")
     assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
     assert plain["hazard"]["number_of_motions"] == 60
     assert any("Sliding is not assessed" in each for each in plain["assumptions"])
@@ -274,8 +272,8 @@ def test_advice_does_not_call_a_base_a_width(quakes):
     objects = [InventoryObject(name="urn", width=0.3, depth=0.4, height=1.0, base_width=0.08, base_depth=0.3)]
     objects.append(InventoryObject(name="stele", width=0.08, depth=0.4, height=1.0))
     told = {v.item.name: table.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
-    assert "its base is 8 cm along the width, and " in told["urn"]
-    assert "its width is 8 cm, and " in told["stele"]
+    assert "its base is 8 cm along the width; " in told["urn"]
+    assert "its width is 8 cm; " in told["stele"]
 
 
 LISTED = [
@@ -325,7 +323,7 @@ def test_a_round_object_with_friction_rocks_in_a_plane(quakes):
     assert by_name["drum"].results == alone.results
     assert by_name["drum"].friction == math.inf
     assert tuple(map(str, by_name["drum"].item.remarks)) == (
-        "its friction was not used: a round object rocks in a plane",
+        "its friction was ignored: a round object rocks in a plane",
     )
     assert (by_name["column"].friction, by_name["column"].item.remarks, alone.item.remarks) == (0.5, (), ())
 
@@ -340,6 +338,6 @@ def test_a_plan_that_ends_where_it_just_lifts(quakes):
     assert entry.wider is not None
     wider = InventoryObject(name="wider", width=0.3 + 2.0 * entry.wider, depth=0.3 + 2.0 * entry.wider, height=1.2)
     assert assess([wider], few).verdicts[0].light is Light.GREEN
-    needed = int(re.search(r"and (\d+) cm would not be lifted", table.advice(found.verdicts[0], found))[1])
+    needed = int(re.search(r"; (\d+) cm prevent uplift", table.advice(found.verdicts[0], found))[1])
     still = InventoryObject(name="still", width=needed / 100.0, depth=needed / 100.0, height=1.2)
     assert assess([still], few).verdicts[0].worse.lifted == 0

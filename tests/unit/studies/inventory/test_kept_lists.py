@@ -66,7 +66,7 @@ def test_the_header_is_where_most_measures_are_below():
     ]
     assert header_of(rows[0][1]).missing == []  # the first alone is complete by its words
     found = find_header(Sheet("list", rows), {})
-    assert (found.first, found.end, found.header.known) == (0, 2, {"number", "name", "width", "depth", "height"})
+    assert (found.first, found.end, found.header.fields) == (0, 2, {"number", "name", "width", "depth", "height"})
     whole = [(1, ["Nr.", "Objekt", "Maße (cm)"]), (2, ["1", "Uhr", "H 200 x B 40 x T 30"])]
     assert find_header(Sheet("list", whole), {}).end == 1
 
@@ -141,9 +141,9 @@ def test_a_unit_beside_the_table_is_used_and_named(line, place):
     found, rows = rows_of("\n".join(lines))
     assert [row[1:] for row in rows] == [("A1", "Uhr", 40, 30, 200)]
     assert str(found.stated[0]) == f"line {1 if place == 'above' else 4} of the list states the unit mm"
-    with pytest.raises(InvalidValueError, match="must name its unit"):
+    with pytest.raises(InvalidValueError, match="must state its unit"):
         parse_inventory("\n".join(table))
-    with pytest.raises(InvalidValueError, match="must name its unit"):
+    with pytest.raises(InvalidValueError, match="must state its unit"):
         parse_inventory("\n".join([*lines, "", "Alle Angaben in cm"]))
 
 
@@ -192,7 +192,7 @@ def test_rows_that_are_no_objects_have_a_reason():
     reasons = {each.row: str(each.reason) for each in found.not_objects}
     assert reasons == {
         2: "a heading", 4: "a sum or an average", 5: "a heading", 7: "a sum or an average",
-        8: "neither name nor number nor measure", 11: "nothing but a number", 12: "a remark or a signature",
+        8: "no name, number or size", 11: "only a number", 12: "a remark or a signature",
         13: "a sum or an average", 14: "a remark or a signature",
     }  # fmt: skip
 
@@ -219,6 +219,6 @@ def test_thousands_settled_by_their_column():
     text = "No.;Object;Width (mm);Depth (mm);Height (mm)\n1;Chest;1,250;800;900.5\n2;Box;350;300;900\n3;Box;360;300;900\n4;Box;370;300;900"
     found, rows = rows_of(text)
     assert rows[0] == (2, "1", "Chest", 125, 80, 90.05)
-    assert "read as one of thousands" in str(found.objects[0].remarks[0])
+    assert "the mark separates thousands" in str(found.objects[0].remarks[0])
     found, rows = rows_of(text.replace("370", "1.5"))  # negative control: one number of the column is near neither
     assert [each.number for each in found.not_assessed] == ["1"]

@@ -102,7 +102,7 @@ def test_the_restitution_is_no_axis_where_it_is_compared():
     """A map over the restitution itself would be the same for all choices: refused before anything is computed."""
     told = []
     for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], axis_of(("restitution", [0.8, 0.9])))):
-        with pytest.raises(InvalidValueError, match="restitution cannot be an axis where it is what is compared"):
+        with pytest.raises(InvalidValueError, match="restitution cannot be an axis in a comparison of restitutions"):
             map_sensitivity(BLOCK, PULSE, *axes, ["housner", "ked"], progress=told.append)
     assert told == []
 
@@ -199,11 +199,11 @@ def test_any_study_with_an_outcome_serves():
     [
         ("map", ["ked", 0.9], None, "function"),
         (given(KNOWN), ["ked", "housner"], "fixed", "baseline must be one of ked, housner"),
-        (lambda *, restitution: 3.0, ["ked", "housner"], None, "dataset with an outcome"),
-        (lambda *, restitution: xr.Dataset({"peak": 1.0}), ["ked", "housner"], None, "dataset with an outcome"),
+        (lambda *, restitution: 3.0, ["ked", "housner"], None, "analysis with an outcome"),
+        (lambda *, restitution: xr.Dataset({"peak": 1.0}), ["ked", "housner"], None, "analysis with an outcome"),
         (given({"ked": [[1, 2]], "housner": [[1, 2], [1, 2]]}), ["ked", "housner"], None, "one shape"),
         (given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("restitution", "x")), ["ked", "housner"], None, None),
-        (given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("y", "restitution")), ["ked", "housner"], None, "itself"),
+        (given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("y", "restitution")), ["ked", "housner"], None, "already varies the restitution"),
     ],
 )
 def test_what_cannot_be_compared_is_refused(study, restitutions, baseline, message):
