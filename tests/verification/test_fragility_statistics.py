@@ -97,7 +97,7 @@ def _profile_ends(levels, failures, trials, parameter, width=1.0):
     scale = LogScale.of(fit_lognormal(levels, failures[0], trials).counts)
     number = np.broadcast_to(np.asarray(trials, dtype=float), failures.shape)
     curves = find_curves(levels, scale, failures.astype(float), number)
-    assert curves.found.all()
+    assert curves.exists.all()
     theta, count = curves.theta, failures.shape[0]
     model = Probit(scale.position(levels)[None], failures.astype(float), number - failures)
     profile = Profile(model, curves.value, theta, 1.959963984540054 * width)
@@ -231,7 +231,7 @@ def test_naive_newton_runs_away_where_the_answer_is_honest(levels, failures):
     fit = fit_lognormal(levels, failures)
     assert fit.separation.step
     assert fit.method == "penalised"
-    assert "no likeliest curve" in fit.verdict
+    assert "no maximum-likelihood curve" in fit.verdict
 
 
 @pytest.mark.verifies("computed anew", "SciPy's brentq on the constrained maximum", within="1e-6")

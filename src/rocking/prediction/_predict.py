@@ -15,7 +15,7 @@ from rocking.motions.pulse import Motion
 from rocking.motions.summary import summaries_of
 from rocking.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
 from rocking.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
-from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
+from rocking.statistics.counts import MIN_CLUSTERS, share_interval
 from rocking.statistics.shares import REPETITIONS, SaltelliDesign
 
 COUNT = 128
@@ -239,7 +239,7 @@ def _chance(occurred: FloatArray, seed: int) -> Chance:
         max(float(valid_fractions.var(ddof=1)) - within, 0.0) ** 0.5 if valid_fractions.size > 1 else np.nan
     )  # Eq. 261
     wide_interval = (np.nan, np.nan)
-    if valid_fractions.size >= LEAST_CLUSTERS:
+    if valid_fractions.size >= MIN_CLUSTERS:
         random = np.random.default_rng(seed)
         resampled = (
             random.multinomial(

@@ -14,7 +14,7 @@ from rocking import checks
 from rocking.answers import Answer
 from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
-from rocking.statistics.counts import LEAST_CLUSTERS
+from rocking.statistics.counts import MIN_CLUSTERS
 from rocking.statistics.scores import REPETITIONS, Forecasts, Score, logistic_left_out
 from rocking.studies.inventory.cells import DecimalMark
 from rocking.studies.inventory.sheets import MOST_BYTES, rows_of
@@ -75,7 +75,7 @@ class Validation:
     @property
     def enough(self) -> bool:
         """True if both outcomes occur under enough motions for a bootstrap over motions."""
-        return min(self.either) >= LEAST_CLUSTERS
+        return min(self.either) >= MIN_CLUSTERS
 
     @cached_property
     def differences(self) -> dict[str, dict[str, Score]]:
@@ -105,7 +105,7 @@ class Validation:
             (with_event, without_event), verb = self.either, _HAPPENED[self.event]
             return (
                 f"Not resolved: of {self.clusters} motions the body {verb} under {with_event} and did not under "
-                f"{without_event}; a verdict requires {LEAST_CLUSTERS} motions of each."
+                f"{without_event}; a verdict requires {MIN_CLUSTERS} motions of each."
             )
         finding, subject = self.finding, f"The prediction of {self.event}"
         rivals = " and than ".join(

@@ -77,7 +77,7 @@ def goodness_of(
     own = ndtr(curves.theta[:, :1] + curves.theta[:, 1:] * position)
     failures, trials = resample(counts, own[0], "parametric", repetitions, seed)
     refits = find_curves(counts.levels, scale, failures, trials, penalised=bool(curves.penalised[0]))
-    fitted = np.flatnonzero(refits.found)
+    fitted = np.flatnonzero(refits.exists)
     if fitted.size < 0.5 * repetitions:
         raise InvalidValueError(
             "half of {repetitions} repetitions must be refitted, got {fitted}", repetitions=repetitions,

@@ -46,22 +46,23 @@ LARGEST_LOGARITHM = 690.0  # beyond this a median is no float64 [-]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LognormalFit:
-    """What outcomes say about a lognormal fragility curve; `fit_lognormal` makes one.
+    """Lognormal fragility curve of outcomes, from `fit_lognormal`.
 
-    Where no curve was fitted, `median` and `dispersion` are None, `verdict` says why, and what needs a curve raises.
+    Without a curve, `median` and `dispersion` are None, `verdict` contains the reason, and methods that need a curve
+    raise an error.
 
     Parameters
     ----------
     counts : Counts
         The outcomes.
     separation : Separation
-        How failures and survivals lie along the levels; its value is a sentence.
+        Arrangement of failures and survivals along the levels; its value is a sentence.
     method : {"maximum-likelihood", "penalised", "none"}
-        What was maximised; "none" where there is no curve.
+        Maximised likelihood; "none" without a curve.
     scale : LogScale, optional
         Scale of the coefficients; None with a single level.
     curves : FittedCurves, optional
-        The one curve; None where there is none.
+        The curve, or None.
     """
 
     counts: Counts
@@ -71,24 +72,24 @@ class LognormalFit:
     curves: FittedCurves | None = None
 
     def __repr__(self) -> str:
-        found = "no curve" if self.curve is None else "median {:.4g}, dispersion {:.3g}".format(*self.curve)
-        return f"<LognormalFit: {found}, from {self.observations:g} outcomes>"
+        curve = "no curve" if self.curve is None else "median {:.4g}, dispersion {:.3g}".format(*self.curve)
+        return f"<LognormalFit: {curve}, from {self.observations:g} outcomes>"
 
     @property
     def exists(self) -> bool:
-        """Whether a curve was fitted."""
+        """True if a curve was fitted."""
         return self.curves is not None
 
     @property
     def curve(self) -> tuple[float, float] | None:
-        """Median [unit of the levels] and dispersion [-]; None where there is no curve."""
+        """Median [unit of the levels] and dispersion [-]; None without a curve."""
         if self.curves is None or self.scale is None:
             return None
         return self.fractile(0.5), float(np.exp(log_dispersion(self.curves.theta, self.scale)[0]))
 
     @property
     def median(self) -> float | None:
-        """Level that half of the trials survive [unit of the levels]."""
+        """Level with a probability of failure of 0.5 [unit of the levels]."""
         return None if self.curve is None else self.curve[0]
 
     @property
@@ -105,15 +106,15 @@ class LognormalFit:
 
     @property
     def observations(self) -> int:
-        """Number of trials in all [-]."""
+        """Total number of trials [-]."""
         return self.counts.observations
 
     @property
     def median_interval(self) -> tuple[float | None, float | None]:
-        """Largest level survived and smallest failed, where no single median is likeliest [unit of the levels].
+        """Largest survived and smallest failed level, if the median is not unique [unit of the levels].
 
         After quasi-complete separation both are the level with mixed outcomes: the limit of the likelihood, not a
-        certainty. None where the data bound nothing; both None where a median is likeliest, or no curve rises.
+        certainty. None for a missing bound; both None for a unique median, or without a rising curve.
         """
         return median_interval(self.counts, self.separation)
 
@@ -136,7 +137,7 @@ class LognormalFit:
 
     @cached_property
     def verdict(self) -> str:
-        """What can be claimed, in plain words; levels are numbers without a unit, since a fit knows none."""
+        """Conclusions as sentences; levels are numbers without a unit."""
         return self.verdict_in("")
 
     def verdict_in(self, unit: str, size: float = 1.0, *, clusters: bool = True) -> str:
@@ -145,16 +146,16 @@ class LognormalFit:
         Parameters
         ----------
         unit : str
-            Name of the unit, as the text shows it; empty for none.
+            Name of the unit in the text; empty for none.
         size : float
             The unit of the levels in this unit [-].
         clusters : bool
-            Whether the sentence about outcomes of one cluster is included.
+            Include the sentence about outcomes of one cluster.
 
         Returns
         -------
         str
-            What can be claimed, in plain words.
+            Conclusions as sentences.
         """
         rise = None
         if self.curves is not None and self.method == "maximum-likelihood":
@@ -167,16 +168,16 @@ class LognormalFit:
 
     @property
     def interval_method(self) -> IntervalMethod:
-        """How intervals are found unless another way is asked for.
+        """Default method of intervals.
 
-        The bootstrap of whole clusters where a cluster has more than one outcome, since the likelihood takes them for
-        independent; the profile likelihood elsewhere, and where the clusters are too few (`verdict` says so).
+        The bootstrap of whole clusters if a cluster has more than one outcome, since the likelihood assumes independent
+        outcomes. Otherwise, and with too few clusters (see `verdict`), the profile likelihood.
         """
         return "bootstrap" if self.counts.is_clustered and not self.counts.scarcity else "profile"
 
     @property
     def _fitted(self) -> tuple[LogScale, FittedCurves]:
-        """The curve in its scale, for what cannot do without."""
+        """The curve and its scale, or an error without a curve."""
         if self.curves is None or self.scale is None:
             raise InvalidValueError("a fragility curve is needed, got none: {verdict}", verdict=self.verdict)
         return self.scale, self.curves
@@ -205,9 +206,9 @@ class LognormalFit:
             Probabilities, of the same shape [-].
         """
         scale, curves = self._fitted
-        levels, some = levels_of(im)
+        levels, positive = levels_of(im)
         result = np.zeros_like(levels)
-        result[some] = curve_probability(curves, scale, levels[some])
+        result[positive] = curve_probability(curves, scale, levels[positive])
         return result
 
     def fractile(self, probability: float) -> float:
@@ -251,17 +252,17 @@ class LognormalFit:
         level : float
             Confidence level, between 0 and 1 [-].
         method : {"profile", "bootstrap", "wald"}, optional
-            By the likelihood; by repeating the study as `bootstrap` does unless a kind is given; or from standard
-            errors on the logarithmic scale. `interval_method`, if not given.
+            By the likelihood, by the default `bootstrap`, or from standard errors on the logarithmic scale. Default:
+            `interval_method`.
         repetitions, seed : int
             Number of repetitions of the bootstrap, and its seed.
 
         Returns
         -------
         tuple of float
-            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where the data leave it open.
+            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite for an open end.
         """
-        used, sample = self._how(method, repetitions, seed)
+        used, sample = self._method_of(method, repetitions, seed)
         scale, curves = self._fitted
         quantile, variate = _quantile(level), _parameter(parameter)
         error = standard_errors(curves.theta, curves.curvature, scale, variate)[0]
@@ -311,13 +312,13 @@ class LognormalFit:
         tuple of ndarray
             Lower and upper ends, of the shape of `im` [-].
         """
-        used, sample = self._how(method, repetitions, seed)
+        used, sample = self._method_of(method, repetitions, seed)
         scale, _ = self._fitted
-        quantile, (levels, some) = _quantile(level), levels_of(im)
-        position = scale.position(levels[some])
+        quantile, (levels, positive) = _quantile(level), levels_of(im)
+        position = scale.position(levels[positive])
         ends = self._variates(position, quantile, used) if sample is None else sample.variate_band(position, level)
         result = np.zeros((2, *levels.shape))
-        result[:, some] = ndtr(np.stack(ends))
+        result[:, positive] = ndtr(np.stack(ends))
         return result[0], result[1]
 
     def _variates(self, position: FloatArray, quantile: float, method: str) -> tuple[FloatArray, FloatArray]:
@@ -329,14 +330,14 @@ class LognormalFit:
         if method != "profile" or not count:
             return middle - quantile * error, middle + quantile * error
         start = Profile(self._model, curves.value, curves.theta, quantile)
-        both = ProbabilityConstraint(np.tile(position, 2))
-        ends = start.ends(both, np.tile(middle, 2), np.tile(error, 2), np.repeat(SIDES, count))
+        constraint = ProbabilityConstraint(np.tile(position, 2))
+        ends = start.ends(constraint, np.tile(middle, 2), np.tile(error, 2), np.repeat(SIDES, count))
         return ends[:count], ends[count:]
 
-    def _how(
+    def _method_of(
         self, method: IntervalMethod | None, repetitions: int, seed: int
     ) -> tuple[str, BootstrapSample | CapacitySample | None]:
-        """Return the method of an interval, and the bootstrap that it needs: one for both ends of all parameters."""
+        """Return the method of an interval, and its bootstrap, common to all parameters."""
         used = self.interval_method if method is None else checks.one_of("method", method, get_args(IntervalMethod))
         if used != "bootstrap":
             return used, None
@@ -357,52 +358,52 @@ class LognormalFit:
         Parameters
         ----------
         kind : {"parametric", "cases", "clusters", "capacities"}, optional
-            How to draw. By default capacities from the curve where every cluster was tried once at every level and
-            fewer than 30 of them, whole clusters where they were named otherwise, else parametric.
+            Kind of resampling. Default: capacities from the curve for fewer than 30 clusters with one trial at every
+            level each, whole clusters for other named clusters, else parametric.
         repetitions, seed : int
-            How many, and the seed of the random numbers.
+            Number of repetitions and random seed.
 
         Returns
         -------
         BootstrapSample or CapacitySample
-            What finds the intervals.
+            Sample with methods for intervals.
 
         Raises
         ------
         InvalidValueError
-            If the kind is unknown, or the outcomes do not come as it needs them.
+            If the kind is unknown, or the outcomes do not fit the kind.
         """
         (scale, curves), counts = self._fitted, self.counts
         if kind == "capacities" or (kind is None and counts.draws_capacities):
             return draw_capacities(counts, curves, scale, repetitions, seed)
-        usual: Resampling = "parametric" if counts.cluster_trials is None else "clusters"
-        return bootstrap(counts, curves, scale, kind or usual, repetitions, seed)
+        default: Resampling = "parametric" if counts.cluster_trials is None else "clusters"
+        return bootstrap(counts, curves, scale, kind or default, repetitions, seed)
 
     def goodness(self, *, groups: int = 10, repetitions: int = 1000, seed: int = 0) -> Goodness:
-        """Return how well the curve agrees with the outcomes.
+        """Return the goodness of fit of the curve.
 
         Parameters
         ----------
         groups : int
-            Most groups of neighbouring levels that outcomes are gathered in.
+            Largest number of groups of neighbouring levels.
         repetitions, seed : int
-            Number of data sets drawn from the curve and refitted, and the seed of the random numbers.
+            Number of data sets simulated with the curve and refitted, and the random seed.
 
         Returns
         -------
         Goodness
-            Statistics with their p-values, and observed beside expected failures.
+            Statistics with p-values, and observed and expected failures.
         """
         scale, curves = self._fitted
         return goodness_of(self.counts, curves, scale, groups, repetitions, seed)
 
     def summary(self) -> dict[str, Any]:
-        """Return the fit as plain numbers and words.
+        """Return the fit as plain values.
 
         Returns
         -------
         dict
-            Ready for JSON: None where something does not exist or an interval is open.
+            Values for JSON: None for missing values and open ends.
         """
         ends = {name: self.interval(name) if self.exists else (0.0, np.inf) for name in ("median", "dispersion")}
         closed = {
@@ -435,19 +436,18 @@ def fit_lognormal(
     method: Method = "auto",
     clusters: Iterable[Hashable] | None = None,
 ) -> LognormalFit:
-    """Fit a lognormal fragility curve to outcomes, or say why there is none.
+    """Fit a lognormal fragility curve to outcomes; without a curve the verdict contains the reason.
 
     Parameters
     ----------
     levels : array_like
         Level of the intensity measure of each entry, in any order, > 0 [any unit].
     failures : array_like
-        How many trials of each entry failed; 0 or 1, or booleans, without `trials` [-].
+        Number of failures of each entry; 0 or 1, or booleans, without `trials` [-].
     trials : array_like, optional
-        How many trials each entry holds, at least 1; 1 each by default [-].
+        Number of trials of each entry, at least 1; default 1 [-].
     method : {"auto", "maximum-likelihood", "penalised"}
-        "auto" maximises the likelihood where a maximum exists, and Firth's penalised one where the outcomes form a
-        step.
+        "auto" maximises the likelihood if a maximum exists, and Firth's penalised likelihood for a step.
     clusters : iterable, optional
         Name of the cluster of each entry, such as its record: outcomes of one cluster are not independent.
 
@@ -459,7 +459,7 @@ def fit_lognormal(
     Raises
     ------
     InvalidValueError
-        If a value is refused, or "maximum-likelihood" is asked for where no maximum exists.
+        If a value is invalid, or "maximum-likelihood" is requested without a maximum.
 
     Examples
     --------
@@ -473,26 +473,25 @@ def fit_lognormal(
 
 
 def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
-    """Return the lognormal curve of outcomes that are counted already, by a method as for `fit_lognormal`."""
-    chosen = checks.one_of("method", method, get_args(Method))
+    """Return the lognormal curve of counted outcomes, by a method as for `fit_lognormal`."""
+    checked = checks.one_of("method", method, get_args(Method))
     separation = separation_of(counts)
-    if chosen == "maximum-likelihood" and separation is not Separation.OVERLAP:
+    if checked == "maximum-likelihood" and separation is not Separation.OVERLAP:
         raise InvalidValueError(
             '{parameter} must not be "maximum-likelihood" for these outcomes, whose likelihood has no maximum among '
-            "lognormal curves", parameter="method", value=chosen, hint=separation.value,
+            "lognormal curves", parameter="method", value=checked, hint=separation.value,
         )  # fmt: skip
     if separation is not Separation.OVERLAP and not separation.step:
         return LognormalFit(counts, separation, "none")
     scale = LogScale.of(counts)
     curves = find_curves(
-        counts.levels, scale, counts.failures[None], counts.trials[None], penalised=chosen == "penalised"
+        counts.levels, scale, counts.failures[None], counts.trials[None], penalised=checked == "penalised"
     )
-    if not curves.found[0] and not curves.penalised[0]:
+    if not curves.exists[0] and not curves.penalised[0]:
         raise InvalidValueError(
-            "outcomes must overlap by more than rounding for a maximum to be proven, got levels of failures and"
-            " survivals that all but coincide; round the levels"
+            "the maximum cannot be proven: failures and survivals overlap by rounding only. Round the levels."
         )
-    if not curves.found[0] or abs(float(log_fractile(curves.theta, scale, 0.0)[0])) > LARGEST_LOGARITHM:
+    if not curves.exists[0] or abs(float(log_fractile(curves.theta, scale, 0.0)[0])) > LARGEST_LOGARITHM:
         return LognormalFit(counts, separation, "none")
     used: str = "penalised" if curves.penalised[0] else "maximum-likelihood"
     return LognormalFit(counts, separation, used, scale, curves)
@@ -505,27 +504,27 @@ def lognormal_probability(level: FloatArray, median: float, dispersion: float) -
 
 
 def difference_extremes(log_median: FloatArray, dispersion: FloatArray) -> FloatArray:
-    """Return ln level at the two places, or twice the one, where both lognormal curves of a pair differ most.
+    """Return ln level of both extremes of the difference of two lognormal curves (repeated if there is one).
 
     >>> difference_extremes(np.zeros(2), np.array([0.5, 0.25])).round(4).tolist()
     [0.3399, -0.3399]
     """
     (m, n), (s, t) = log_median, dispersion
-    # where the densities are equal: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
+    # equal densities: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
     a, b = t**2 - s**2, s**2 * (n - m)
     c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)  # Eq. 189
     root = np.sqrt(np.maximum(b**2 - a * c, 0.0))
     q = -(b + np.where(b < 0.0, -root, root))
     with np.errstate(divide="ignore", invalid="ignore"):
-        places = m + np.array([np.where(a != 0.0, q / a, np.inf), np.where(q != 0.0, c / q, 0.0)])
-    return np.asarray(np.where(np.isfinite(places), places, m))
+        log_levels = m + np.array([np.where(a != 0.0, q / a, np.inf), np.where(q != 0.0, c / q, 0.0)])
+    return np.asarray(np.where(np.isfinite(log_levels), log_levels, m))
 
 
 def levels_of(im: Any) -> tuple[FloatArray, Any]:
-    """Return levels that are finite and >= 0, and which of them are above zero."""
+    """Return finite levels >= 0, and True for those above zero."""
     levels = checks.real_array("im", im)
     if not (np.isfinite(levels) & (levels >= 0.0)).all():
-        raise InvalidValueError("im must be finite and >= 0, got a value that is not")
+        raise InvalidValueError("im must be finite and >= 0")
     return levels, levels > 0.0
 
 

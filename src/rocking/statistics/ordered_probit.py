@@ -1,4 +1,4 @@
-"""Nested states of one body, whose curves cross if each is fitted by itself, and do not with one dispersion."""
+"""Nested states of one body: separate curves may cross, curves with a common dispersion do not."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -30,10 +30,10 @@ class OrderedProbit:
     """Log likelihood of states with falling thresholds a1 > a2 > ... and one slope b, concave in all (Pratt 1981)."""
 
     position: FloatArray  # positions of the levels [-]
-    ended: FloatArray  # how many trials ended in each state at each level, the harmless one first; one row a state [-]
+    ended: FloatArray  # number of trials by final state (row, mildest first) and level [-]
 
     def rows(self, index: Any) -> Self:
-        """Return itself: it is one function."""
+        """Return the function itself: there is only one."""
         return self
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
@@ -60,7 +60,7 @@ class OrderedProbit:
         return self._collected(float(value + np.sum(between * width)), first, bend, -between * p * q)  # Eq. 216
 
     def _collected(self, value: float, first: FloatArray, bend: FloatArray, across: FloatArray) -> Derivatives:
-        """Return the derivatives by thresholds and slope from those by the variate of each curve at each level."""
+        """Return derivatives with respect to thresholds and slope from those to the variates."""
         count = first.shape[0]
         moves = np.zeros((count, count + 1, self.position.size))
         moves[np.arange(count), np.arange(count)] = 1.0
@@ -72,13 +72,13 @@ class OrderedProbit:
 
 
 def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> list[Curve]:
-    """Return the curves of nested states with one dispersion, from how many trials reached each or a worse one."""
+    """Return the curves of nested states with one dispersion, from the counts of trials that reached each state."""
     fits = [fit_lognormal(levels, counts, trials) for counts in reached]
-    same = any(np.array_equal(one, other) for one, other in pairwise(reached))
-    if same or any(fit.method != "maximum-likelihood" for fit in fits):
+    has_equal = any(np.array_equal(lesser, worse) for lesser, worse in pairwise(reached))
+    if has_equal or any(fit.method != "maximum-likelihood" for fit in fits):
         raise InvalidValueError(
-            "{parameter} must not be 'common-dispersion' unless all states overlap with what is below them, and some "
-            "trials end in each; {verdicts}", parameter="method", value="common-dispersion",
+            "{parameter}='common-dispersion' requires overlapping states and trials in each state; {verdicts}",
+            parameter="method", value="common-dispersion",
             verdicts=" ".join(f"state {k}: {fit.verdict}" for k, fit in enumerate(fits, 1)),
         )  # fmt: skip
     scale = LogScale.of(fits[0].counts)
@@ -86,7 +86,7 @@ def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -
     best = maximise(OrderedProbit(scale.position(levels), ended), _start(fits, scale))
     *thresholds, slope = best.theta[0]
     if not best.proven[0] or slope <= 0.0:
-        raise InvalidValueError("outcomes must fix one dispersion, got a likelihood whose maximum cannot be proven")
+        raise InvalidValueError("outcomes do not determine one dispersion: the maximum cannot be proven")
     return [(float(np.exp(scale.log_level(np.array(-a / slope)))), float(scale.spread / slope)) for a in thresholds]
 
 
@@ -109,19 +109,19 @@ def _log_difference(high: FloatArray, low: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class OrderedFit:
-    """Curves of rocking at least and of overturning; `fit_ordered` makes one."""
+    """Curves of rocking (or worse) and of overturning, from `fit_ordered`."""
 
     counts: StateCounts  # the outcomes
-    separate: tuple[LognormalFit, LognormalFit]  # rocking at least, and overturning, each fitted by itself
-    method: str  # how `rocked` and `overturned` were found
-    # rocked, overturned: median [unit of the levels] and dispersion [-] of rocking at least and of overturning; None
-    # where there is none
+    separate: tuple[LognormalFit, LognormalFit]  # separate fits of rocking (or worse) and overturning
+    method: str  # method of `rocked` and `overturned`
+    # rocked, overturned: median [unit of the levels] and dispersion [-] of rocking (or worse) and of overturning, or
+    # None
     rocked: Curve | None
     overturned: Curve | None
 
     @property
     def crossing(self) -> float | None:
-        """Level where the curves cross; None if they do not, or one is missing [unit of the levels]."""
+        """Level at which the curves cross, or None [unit of the levels]."""
         if self.rocked is None or self.overturned is None:
             return None
         (m, s), (n, t) = self.rocked, self.overturned
@@ -133,37 +133,38 @@ class OrderedFit:
 
     @property
     def excess(self) -> float | None:
-        """By how much overturning is likelier than rocking, at worst among the levels tried [-]."""
+        """Largest excess of the probability of overturning over that of rocking, between the levels [-]."""
         if self.rocked is None or self.overturned is None:
             return None
         ends = np.log(self.counts.levels[[0, -1]])
-        both = np.array([self.rocked, self.overturned]).T
-        places = np.concatenate([ends, np.clip(difference_extremes(np.log(both[0]), both[1]), *ends)])
-        over, rocked = (lognormal_probability(np.exp(places), *curve) for curve in (self.overturned, self.rocked))
-        apart = over - rocked
-        return max(0.0, float(apart.max()))
+        medians, dispersions = np.array([self.rocked, self.overturned]).T
+        log_levels = np.concatenate([ends, np.clip(difference_extremes(np.log(medians), dispersions), *ends)])
+        over, rocked = (lognormal_probability(np.exp(log_levels), *curve) for curve in (self.overturned, self.rocked))
+        return max(0.0, float((over - rocked).max()))
 
     @property
     def verdict(self) -> str:
-        """What can be claimed, in plain words."""
-        parts = [f"{name}: {fit.verdict}" for name, fit in zip(("Rocking", "Overturning"), self.separate, strict=True)]
+        """Conclusions as sentences."""
+        sentences = [
+            f"{name}: {fit.verdict}" for name, fit in zip(("Rocking", "Overturning"), self.separate, strict=True)
+        ]
         excess, crossing = self.excess, self.crossing
         if excess is None:
-            parts.append("There are not two curves to compare.")
+            sentences.append("A curve is missing.")
         elif crossing is None:
-            parts.append("The curves do not cross.")
+            sentences.append("The curves do not cross.")
         elif excess > 0.0:
-            parts.append(
-                f"The curves cross at {crossing:.4g}, among the levels tried, and overturning would be likelier than"
-                f" rocking by up to {excess:.2g}: take one dispersion for both."
+            sentences.append(
+                f"The curves cross at {crossing:.4g}, between the levels: the probability of overturning would exceed"
+                f" that of rocking by up to {excess:.2g}. Use a common dispersion."
             )
         else:
-            parts.append(f"The curves cross at {crossing:.4g}, outside the levels tried.")
-        return " ".join(parts)
+            sentences.append(f"The curves cross at {crossing:.4g}, outside the levels.")
+        return " ".join(sentences)
 
     def probabilities(self, im: Any) -> FloatArray:
         """Return the probabilities of no rocking, rocking and overturned at levels >= 0, along the last axis [-]."""
-        # beyond a crossing overturning is held to the probability of rocking at least
+        # beyond a crossing the probability of overturning is limited to that of rocking
         if self.rocked is None or self.overturned is None:
             raise InvalidValueError("two fragility curves are needed, got fewer: {verdict}", verdict=self.verdict)
         level, _ = levels_of(im)
@@ -175,30 +176,30 @@ class OrderedFit:
 def fit_ordered(
     levels: Any, rocked: Any, overturned: Any, trials: Any = None, *, method: OrderedMethod = "separate"
 ) -> OrderedFit:
-    """Fit the curves of rocking at least and of overturning.
+    """Fit the curves of rocking (or worse) and of overturning.
 
     Parameters
     ----------
     levels : array_like
         Level of the intensity measure of each entry, in any order, > 0 [any unit].
     rocked : array_like
-        How many trials of each entry rocked to the chosen level or further, the overturned ones among them [-].
+        Number of trials of each entry that rocked to the chosen level or further, including overturned ones [-].
     overturned : array_like
-        How many trials of each entry overturned [-].
+        Number of trials of each entry that overturned [-].
     trials : array_like, optional
-        How many trials each entry holds, at least 1; 1 each by default [-].
+        Number of trials of each entry, at least 1; default 1 [-].
     method : {"separate", "common-dispersion"}
-        Each curve by itself, or both with one dispersion by the likelihood of all three states (ordered probit).
+        Separate curves, or one dispersion from the likelihood of all three states (ordered probit).
 
     Returns
     -------
     OrderedFit
-        The curves, and where they cross.
+        The curves and their crossing.
 
     Raises
     ------
     InvalidValueError
-        If a value is refused, or one dispersion is asked for where the likelihood has no maximum.
+        If a value is invalid, or a common dispersion is requested without a maximum of the likelihood.
 
     Examples
     --------
@@ -207,10 +208,10 @@ def fit_ordered(
     >>> fit.crossing is None, fit.rocked[1] == fit.overturned[1]
     (True, True)
     """
-    chosen = checks.one_of("method", method, ORDERED_METHODS)
+    checked = checks.one_of("method", method, ORDERED_METHODS)
     counts = count_states(levels, rocked, overturned, trials)
-    least, worst = (fit_lognormal(counts.levels, z, counts.trials) for z in (counts.rocked, counts.overturned))
-    if chosen == "separate":
-        return OrderedFit(counts, (least, worst), chosen, least.curve, worst.curve)
+    rocking, overturning = (fit_lognormal(counts.levels, z, counts.trials) for z in (counts.rocked, counts.overturned))
+    if checked == "separate":
+        return OrderedFit(counts, (rocking, overturning), checked, rocking.curve, overturning.curve)
     curves = nested_curves(counts.levels, np.stack([counts.rocked, counts.overturned]), counts.trials)
-    return OrderedFit(counts, (least, worst), chosen, curves[0], curves[1])
+    return OrderedFit(counts, (rocking, overturning), checked, curves[0], curves[1])

@@ -1,4 +1,4 @@
-"""How good probabilities were, once the outcomes are known: scores, reliability, and the plain curve to be beaten."""
+"""Scores of forecast probabilities: Brier, logarithmic, reliability, and a logistic reference forecast."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,133 +19,133 @@ REPETITIONS = 2000  # bootstrap samples of an interval
 
 @dataclass(frozen=True)
 class Score:
-    """A number with its interval: whole clusters, such as all outcomes under one motion, were drawn again."""
+    """A number with its interval from resampled clusters, such as all outcomes under one motion."""
 
     value: float  # the number [-]
-    low: float  # low, high: ends of the 95 % interval [-]; NaN where there are fewer than two clusters
+    low: float  # low, high: ends of the 95 % interval [-]; NaN for fewer than two clusters
     high: float
 
     @property
     def resolved(self) -> bool:
-        """Whether the interval leaves zero out: of a difference, whether one side is better."""
+        """True if the interval excludes zero: the difference is significant."""
         return self.low > 0.0 or self.high < 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class ReliabilityBin:
-    """Outcomes to which about the same probability was given."""
+    """Outcomes with similar forecast probabilities."""
 
-    count: int  # how many there are [-]
-    predicted: float  # mean of the probabilities given [-]
-    observed: float  # share that happened [-]
-    low: float  # low, high: exact 95 % interval of that share [-]
+    count: int  # number of outcomes [-]
+    predicted: float  # mean forecast probability [-]
+    observed: float  # observed fraction [-]
+    low: float  # low, high: exact 95 % interval of the observed fraction [-]
     high: float
 
 
 class Forecasts:
-    """Probabilities that were given before, and what then happened.
+    """Forecast probabilities and their outcomes.
 
-    Outcomes without a result, NaN, are left out and counted.
+    Outcomes without a result (NaN) are omitted and counted.
 
     Parameters
     ----------
     probability : array_like, shape (n,)
-        Probability given to each outcome [-].
+        Forecast probability of each outcome [-].
     outcome : array_like, shape (n,)
-        1 where it happened, 0 where not, NaN where nobody knows [-].
+        1 for an event, 0 for none, NaN if unknown [-].
     clusters : array_like, shape (n,), optional
-        What is not independent of each other, such as the name of the motion; each outcome by itself if not given.
+        Names of dependent groups, such as the motion; default: independent outcomes.
     repetitions : int
         Bootstrap samples of the intervals.
     seed : int
-        Of the bootstrap.
+        Random seed of the bootstrap.
 
     Attributes
     ----------
     left_out : int
-        How many had no outcome or no probability.
+        Number of entries without outcome or probability.
 
     Raises
     ------
     InvalidValueError
-        If the lengths differ, a probability is outside [0, 1], an outcome is none, or nothing is left.
+        If the lengths differ, a probability is outside [0, 1], an outcome is invalid, or no entry is complete.
 
     Examples
     --------
-    >>> given = Forecasts([0.9, 0.2, 0.6, 0.1], [1, 0, 0, 0])
-    >>> round(given.brier.value, 3), given.balanced_accuracy.value
+    >>> forecasts = Forecasts([0.9, 0.2, 0.6, 0.1], [1, 0, 0, 0])
+    >>> round(forecasts.brier.value, 3), forecasts.balanced_accuracy.value
     (0.105, 0.8333333333333333)
     """
 
     def __init__(
         self, probability: Any, outcome: Any, clusters: Any = None, *, repetitions: int = REPETITIONS, seed: int = 0
     ) -> None:
-        given, happened = (np.asarray(each, dtype=np.float64) for each in (probability, outcome))
-        names = np.arange(given.size) if clusters is None else np.asarray(clusters)
-        if given.ndim != 1 or not given.shape == happened.shape == names.shape:
+        forecast, happened = (np.asarray(values, dtype=np.float64) for values in (probability, outcome))
+        names = np.arange(forecast.size) if clusters is None else np.asarray(clusters)
+        if forecast.ndim != 1 or not forecast.shape == happened.shape == names.shape:
             raise InvalidValueError(
                 "probability, outcome and clusters must be rows of one length, got shapes {probability}, {outcome}, "
-                "{clusters}", probability=given.shape, outcome=happened.shape, clusters=names.shape,
+                "{clusters}", probability=forecast.shape, outcome=happened.shape, clusters=names.shape,
             )  # fmt: skip
-        known = ~(np.isnan(given) | np.isnan(happened))
-        self.left_out = int((~known).sum())
-        self.probability, self.outcome = given[known], happened[known]
-        if not known.any():
-            raise InvalidValueError("no outcome is known of {count}: there is nothing to score", count=given.size)
+        complete = ~(np.isnan(forecast) | np.isnan(happened))
+        self.left_out = int((~complete).sum())
+        self.probability, self.outcome = forecast[complete], happened[complete]
+        if not complete.any():
+            raise InvalidValueError("no outcome is known of {count}: there is nothing to score", count=forecast.size)
         if (bad := (self.probability < 0.0) | (self.probability > 1.0)).any():
             raise InvalidValueError(
                 parameter="probability", allowed=Range(0.0, 1.0), value=float(self.probability[bad][0]),
-                hint="in per cent?",
+                hint="Use fractions, not percent.",
             )  # fmt: skip
         if (bad := (self.outcome != 0.0) & (self.outcome != 1.0)).any():
             raise InvalidValueError(parameter="outcome", allowed="1, 0 or NaN", value=float(self.outcome[bad][0]))
-        self.cluster: IntArray = np.unique(names[known], return_inverse=True)[1]
+        self.cluster: IntArray = np.unique(names[complete], return_inverse=True)[1]
         count = int(self.cluster.max()) + 1
         draws = checks.within("repetitions", repetitions, 1, 10**6)
         random = np.random.default_rng(seed)
-        # how often each cluster is in each sample
+        # number of copies of each cluster in each sample
         self._weights = random.multinomial(count, np.full(count, 1.0 / count), size=int(draws)).astype(np.float64)
 
     @property
     def brier(self) -> Score:
-        """Mean square of probability less outcome; 0 is perfect, 1/4 is a coin's (Brier 1950) [-]."""
+        """Mean square of probability minus outcome; 0 is perfect, 1/4 is a probability of 0.5 (Brier 1950) [-]."""
         return self._mean(_brier(self.probability, self.outcome))
 
     @property
     def logarithmic(self) -> Score:
-        """Mean of -ln of the probability given to what happened; infinite if one was called impossible [nat]."""
+        """Mean of -ln of the probability of the outcome; infinite if an outcome had probability 0 [nat]."""
         return self._mean(_surprise(self.probability, self.outcome))
 
     @property
     def accuracy(self) -> Score:
-        """Share foreseen, a probability of one half and more being a yes [-]."""
-        return self._mean(self._foreseen())
+        """Fraction of correct forecasts; a probability of at least 0.5 forecasts the event [-]."""
+        return self._mean(self._correct())
 
     @property
     def balanced_accuracy(self) -> Score:
-        """Mean of the shares foreseen of what happened and of what did not; 1/2 is chance [-]."""
-        foreseen, yes = self._foreseen(), self.outcome == 1.0
-        return self._score(lambda sums: 0.5 * (sums(foreseen, yes) + sums(foreseen, ~yes)))  # Eq. 232
+        """Mean of the fractions of correct forecasts of events and of non-events; 1/2 is chance [-]."""
+        correct, events = self._correct(), self.outcome == 1.0
+        return self._score(lambda sums: 0.5 * (sums(correct, events) + sums(correct, ~events)))  # Eq. 232
 
     def skill(self, other: "Forecasts | float", measure: str = "brier") -> Score:
-        """Return by how much a score is better than that of another forecast of the same outcomes.
+        """Return the improvement of a score over that of another forecast of the same outcomes.
 
         Parameters
         ----------
         other : Forecasts or float
-            The other forecast, or one probability given to all [-].
+            The other forecast, or one probability for all outcomes [-].
         measure : str
             The score, "brier" or "logarithmic".
 
         Returns
         -------
         Score
-            Score of the other less that of this one, above zero where this one is better; drawn in pairs [- or nat].
+            Score of the other minus that of this forecast, positive if this one is better; paired [- or nat].
 
         Raises
         ------
         InvalidValueError
-            If the other one is of other outcomes, or there is no such score.
+            If the other forecast has other outcomes, or the score is unknown.
         """
         loss = _LOSSES[checks.one_of("measure", measure, _LOSSES)]
         if isinstance(other, Forecasts):
@@ -158,70 +158,70 @@ class Forecasts:
 
     @property
     def bias(self) -> Score:
-        """Mean of probability less outcome; above zero where more was said than happened [-]."""
+        """Mean of probability minus outcome; positive if events are overpredicted [-]."""
         return self._mean(self.probability - self.outcome)
 
     @property
     def sureness(self) -> Score:
-        """Mean of the terms above the fraction of `calibration`: above zero where forecasts are too sure [-]."""
+        """Mean of the terms in the numerator of `calibration`: positive if overconfident [-]."""
         return self._mean((self.outcome - self.probability) * (1.0 - 2.0 * self.probability))
 
     @property
     def calibration(self) -> float:
-        """Spiegelhalter's statistic: about standard normal if the probabilities are right as often as they say [-]."""
+        """Spiegelhalter's statistic: approximately standard normal for calibrated probabilities [-]."""
         p = self.probability
         excess = float(((self.outcome - p) * (1.0 - 2.0 * p)).sum())
         spread = float(((1.0 - 2.0 * p) ** 2 * p * (1.0 - p)).sum())
         return excess / spread**0.5 if spread > 0.0 else (np.inf if excess else 0.0)  # Eq. 233
 
     def reliability(self, bins: int = 10) -> list[ReliabilityBin]:
-        """Return the reliability diagram: what was said, and how often it then happened.
+        """Return the reliability diagram: forecast probabilities and observed fractions.
 
         Parameters
         ----------
         bins : int
-            How many equal steps of probability from 0 to 1; those without an outcome are left out.
+            Number of equal bins of probability from 0 to 1; empty bins are omitted.
 
         Returns
         -------
         list of ReliabilityBin
-            From the least probability up.
+            Bins in increasing order of probability.
         """
         steps = int(checks.within("bins", bins, 1, 1000))
         step = np.minimum((self.probability * steps).astype(np.int64), steps - 1)
-        found = []
+        diagram = []
         for k in np.unique(step):
             p, happened = self.probability[step == k], self.outcome[step == k]
             interval = share_interval(float(happened.sum()), happened.size)
-            found.append(ReliabilityBin(p.size, float(p.mean()), float(happened.mean()), *interval))
-        return found
+            diagram.append(ReliabilityBin(p.size, float(p.mean()), float(happened.mean()), *interval))
+        return diagram
 
-    def _foreseen(self) -> FloatArray:
+    def _correct(self) -> FloatArray:
         return np.where((self.probability >= 0.5) == (self.outcome == 1.0), 1.0, 0.0)
 
     def _mean(self, values: FloatArray) -> Score:
         return self._score(lambda sums: sums(values, np.ones(values.size, dtype=bool)))
 
-    def _score(self, made: "Callable[[Callable[[FloatArray, BoolArray], FloatArray]], FloatArray]") -> Score:
-        """Return a statistic of means over parts, of the outcomes as they are and of every sample of clusters."""
+    def _score(self, statistic: "Callable[[Callable[[FloatArray, BoolArray], FloatArray]], FloatArray]") -> Score:
+        """Return a statistic of subset means, with its interval from samples of clusters."""
         once = np.ones((1, self._weights.shape[1]))
 
         def means(weights: FloatArray) -> "Callable[[FloatArray, BoolArray], FloatArray]":
-            def mean(values: FloatArray, part: BoolArray) -> FloatArray:
+            def mean(values: FloatArray, subset: BoolArray) -> FloatArray:
                 total, count = (
-                    np.bincount(self.cluster, each, weights.shape[1])
-                    for each in (np.where(part, values, 0.0), part.astype(np.float64))
+                    np.bincount(self.cluster, terms, weights.shape[1])
+                    for terms in (np.where(subset, values, 0.0), subset.astype(np.float64))
                 )
                 with np.errstate(invalid="ignore", divide="ignore"):
                     return np.asarray((weights @ total) / (weights @ count))
 
             return mean
 
-        value = float(made(means(once))[0])
+        value = float(statistic(means(once))[0])
         if self._weights.shape[1] < 2:
             return Score(value, np.nan, np.nan)
-        drawn = made(means(self._weights))  # NaN: samples without one of the two outcomes
-        return Score(value, *quantiles(drawn, (0.025, 0.975)).tolist())
+        samples = statistic(means(self._weights))  # NaN: samples without one of the two outcomes
+        return Score(value, *quantiles(samples, (0.025, 0.975)).tolist())
 
 
 def _brier(p: FloatArray, yes: FloatArray) -> FloatArray:
@@ -236,26 +236,25 @@ _LOSSES = {"brier": _brier, "logarithmic": _surprise}
 
 
 def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
-    """Return what a logistic curve foresees of each cluster that was fitted to all the others.
+    """Return forecasts of each cluster by a logistic curve fitted to all other clusters.
 
-    It is the plain forecast that a mechanical one must beat: of outcomes under motions, with the logarithms of PGA and
-    PGV as features. Firth's penalty, half the logarithm of the information, keeps it finite where the others are
-    separated, and removes the bias of few outcomes.
+    It is the reference for mechanical forecasts, with the logarithms of PGA and PGV as features. Firth's penalty, half
+    the logarithm of the information, keeps it finite for separated outcomes, and removes the bias of few outcomes.
 
     Parameters
     ----------
     features : array_like, shape (n, k)
-        What is known of each outcome beforehand, such as ln PGA and ln PGV; with no columns the curve is the share of
-        the others, one half added to either count.
+        Features of each outcome, such as ln PGA and ln PGV; without columns the forecast is the fraction of the others,
+        with 0.5 added to both counts.
     outcome : array_like, shape (n,)
-        1, 0, or NaN where nobody knows [-].
+        1, 0, or NaN if unknown [-].
     clusters : array_like, shape (n,)
-        What is left out together, such as the name of the motion.
+        Names of the groups that are omitted together, such as the motion.
 
     Returns
     -------
     ndarray, shape (n,)
-        Probability of each outcome by the curve that has not seen its cluster [-]; NaN where nothing is left to fit.
+        Probability of each outcome by the curve without its cluster [-]; NaN without other outcomes.
 
     Raises
     ------
@@ -276,25 +275,25 @@ def logistic_left_out(features: Any, outcome: Any, clusters: Any) -> FloatArray:
     )
     if table.ndim != 2 or not table.shape[0] == happened.size == names.size:
         raise InvalidValueError(
-            "{parameter} must be a row for each outcome, got shape {shape} for {outcomes} outcomes",
+            "{parameter} must have one row per outcome, got shape {shape} for {outcomes} outcomes",
             parameter="features", shape=table.shape, outcomes=happened.size,
         )  # fmt: skip
     if not np.isfinite(table).all():
-        raise InvalidValueError("features must be finite; is one the logarithm of zero?")
+        raise InvalidValueError("features must be finite. Check for logarithms of zero.")
     probability = np.full(happened.size, np.nan)
     for name in np.unique(names):
         out = names == name
-        seen = ~out & np.isfinite(happened)
-        if seen.any():
-            middle, spread = table[seen].mean(axis=0), table[seen].std(axis=0)
+        training = ~out & np.isfinite(happened)
+        if training.any():
+            middle, spread = table[training].mean(axis=0), table[training].std(axis=0)
             scaled = (table - middle) / np.where(spread > 0.0, spread, 1.0)
             design = np.column_stack([np.ones(len(table)), scaled])
-            probability[out] = expit(design[out] @ _firth(design[seen], happened[seen]))
+            probability[out] = expit(design[out] @ _firth(design[training], happened[training]))
     return probability
 
 
 def _firth(design: FloatArray, outcome: FloatArray, steps: int = 100) -> FloatArray:
-    """Coefficients that maximise the penalised likelihood of a logistic curve (Firth 1993)."""
+    """Return the coefficients of maximum penalised likelihood of a logistic curve (Firth 1993)."""
     theta = np.zeros(design.shape[1])
 
     def value(at: FloatArray) -> float:

@@ -118,12 +118,12 @@ def test_words_do_not_overlap(picture):
 
 
 def test_separation_is_said():
-    """Outcomes that form a step get no band, and the caption says that there is no likeliest curve."""
+    """Outcomes that form a step get no band, and the caption says that there is no maximum-likelihood curve."""
     found = fragility_analysis(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
     figure = fragility_picture(found)
     told = figure.get_supxlabel()
     assert "separation" in told
-    assert "no likeliest curve" in told.replace("\n", " ")
+    assert "no maximum-likelihood curve" in told.replace("\n", " ")
     assert told == "" or len(max(told.split("\n"), key=len)) <= 84
     # negative control: outcomes that overlap have no caption
     assert caption(fragility_analysis(BLOCK, PULSES, LEVELS, 0.9, limit_states=())) == ""

@@ -128,7 +128,7 @@ def test_a_missing_state_is_said_not_made_up():
     assert fit.overturned is None
     assert fit.crossing is None
     assert fit.excess is None
-    assert "nothing failed" in fit.verdict.lower()
+    assert "no failures" in fit.verdict.lower()
     with pytest.raises(InvalidValueError, match="two fragility curves are needed"):
         fit.probabilities(0.3)
     with pytest.raises(InvalidValueError, match="method must not be 'common-dispersion'"):

@@ -69,7 +69,7 @@ def test_automatic_fit_claims_no_more_than_there_is(levels, failures, kind, inte
         assert fit.method == "penalised"
         assert levels[0] * (1 - 1e-9) <= fit.median <= levels[-1] * (1 + 1e-9)
         assert np.isfinite(fit.dispersion)
-        assert "no likeliest curve" in fit.verdict
+        assert "no maximum-likelihood curve" in fit.verdict
     elif kind is not Separation.OVERLAP:
         assert (fit.median, fit.dispersion, fit.log_likelihood, fit.covariance) == (None,) * 4
         assert fit.standard_errors is None
@@ -100,7 +100,7 @@ def test_penalised_curves_that_fall_are_not_reported():
     fit = fit_lognormal([0.8, 3.8], [0, 2], [1, 13])
     assert fit.separation is Separation.QUASI_COMPLETE
     assert fit.median is None
-    assert "no likeliest curve" in fit.verdict
+    assert "no maximum-likelihood curve" in fit.verdict
 
 
 def test_a_median_beyond_all_numbers_is_not_reported():

@@ -15,7 +15,7 @@ from rocking.conventions import DEFAULT_RESTITUTION, BoolArray, FloatArray, IntA
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure as measure_of
 from rocking.motions.summary import MotionSummary, summaries_of
-from rocking.statistics.counts import LEAST_CLUSTERS, share_interval
+from rocking.statistics.counts import MIN_CLUSTERS, share_interval
 from rocking.statistics.quantiles import quantiles
 from rocking.studies.code_methods.methods import CODE_METHODS, BodySides, CodeMethod, Shaking
 from rocking.studies.fragility.subject import checked_levels
@@ -149,7 +149,7 @@ class CodeComparison:
         if count and (alone or hits in {0, count}):  # none or all: all samples are equal
             independent = count if alone else int((rows[1] > 0.0).sum())
             interval = share_interval(min(hits, independent), independent)
-        elif count and (rows[1] > 0.0).sum() >= LEAST_CLUSTERS:
+        elif count and (rows[1] > 0.0).sum() >= MIN_CLUSTERS:
             resampled = np.stack(rows, axis=1)[self._samples].sum(axis=1)
             interval = _ends(resampled[:, 0] / np.where(resampled[:, 1] > 0.0, resampled[:, 1], np.nan))
         middle = float(quantiles(ratio[valid], 0.5))
@@ -180,7 +180,7 @@ class CodeComparison:
         sample[~good] = np.nan
         low, middle, high = np.maximum(quantiles(sample.ravel(), QUARTERS), 0.0).tolist()
         interval, scatter = (math.nan, math.nan), math.nan
-        if good.any(axis=1).sum() >= LEAST_CLUSTERS:
+        if good.any(axis=1).sum() >= MIN_CLUSTERS:
             medians = quantiles(sample[self._samples].reshape(REPETITIONS, -1), 0.5, axis=1)
             interval = _ends(np.maximum(medians, 0.0))
             scatter = 0.5 * math.log(high / low) if low > 0.0 else math.inf

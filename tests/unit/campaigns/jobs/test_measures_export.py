@@ -195,7 +195,7 @@ def test_nothing_to_export(finished, tmp_path):
             measure_comparison(made)
     weak = text_of().replace("scale = 1.5", "scale = 0.01")
     made = finished("cloud", words=weak)
-    with pytest.raises(InvalidValueError, match=r"nothing to export because .* too few rocked"):
+    with pytest.raises(InvalidValueError, match=r"nothing to export because .* Too few histories rocked"):
         export(made, tmp_path / "m.csv", "ims")
     assert list(tmp_path.glob("m.*")) == []
 

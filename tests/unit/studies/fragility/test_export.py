@@ -286,7 +286,7 @@ def separated():
 def test_a_penalised_curve_says_so_in_every_file(tmp_path):
     """Method and verdict of a curve that is a convention reach FEMA P-58, NRML, netCDF, MATLAB and CSV."""
     made, fit = separated()
-    told = "a convention, not a finding"
+    told = "a convention, not a result"
     assert told in fit.verdict
     rows = fema_p58_table(made)
     quality = rows.rows[0][rows.header.index("Data Quality and Relevance")]
