@@ -229,7 +229,7 @@ class MapAnswer:
                 arrays.attributes["restitution"], self.others, lambda maps: overturned(maps[0]["mode"]),
                 problem.bodies[0],
             ),
-        }, {which: Quantity(which, axis.unit, axis.words, label=axis.name) for which, axis in axis_of.items()}
+        }, {which: Quantity(which, axis.unit, axis.meaning, label=axis.name) for which, axis in axis_of.items()}
         | _RESTITUTIONS)  # fmt: skip
 
     def _sensitivity(self) -> dict[str, Any] | None:

@@ -195,7 +195,7 @@ def _names() -> Iterator[str]:
         for name, make in catalogue().items()
     ]
     for title, head, rows in (
-        ("Axes of a map", "axis", [(name, f"{axis.words} [{axis.unit}]") for name, axis in axes().items()]),
+        ("Axes of a map", "axis", [(name, f"{axis.meaning} [{axis.unit}]") for name, axis in axes().items()]),
         ("Measures of intensity", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
         ("Families of synthetic motions", "family", [(name, family.title) for name, family in families().items()]),
         ("Pulses", "pulse", pulses),

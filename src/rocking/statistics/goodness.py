@@ -129,7 +129,7 @@ class Agreement:
 
     # value and p-value of each of `STATISTICS`; NaN if missing [-]
     numbers: dict[str, tuple[float, float]] = field(default_factory=lambda: dict.fromkeys(STATISTICS, _NONE))
-    words: str = ""  # basis of the p-values, or reason of missing ones
+    basis: str = ""  # basis of the p-values, or reason of missing ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ class Repeated:
     dispersion_95: Ends | None = None
     # lower and upper ends of the 95 % intervals of the probability at the levels, or None [-]
     band: tuple[FloatArray, FloatArray] | None = None
-    words: str = ""  # kind of the bootstrap, or reason of a missing one
+    basis: str = ""  # kind of the bootstrap, or reason of a missing one
 
 
 def ends_of(interval: Ends | None) -> tuple[float, float]:
@@ -160,11 +160,11 @@ def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
     levels = fit.counts.levels.size
     repetitions = min(REPETITIONS, MOST_DRAWN // levels)
     if repetitions < FEWEST:
-        return Agreement(words=f"none: {levels} levels are too many for simulated p-values; use goodness()")
+        return Agreement(basis=f"none: {levels} levels are too many for simulated p-values; use goodness()")
     try:
         goodness = fit.goodness(repetitions=repetitions, seed=seed)
     except InvalidValueError as error:
-        return Agreement(words=f"none: {error}")
+        return Agreement(basis=f"none: {error}")
     basis = f"p-values from {goodness.repetitions} data sets simulated with the curve and refitted, seed {seed}"
     if fit.counts.is_clustered:
         basis += "; they assume independent outcomes of each motion"
@@ -176,14 +176,14 @@ def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed:
     count = repetitions * max(fit.counts.levels.size, levels.size)
     if count > MOST_REPEATED:
         size = fit.counts.levels.size
-        return Repeated(words=f"none: {repetitions} repetitions at {size} levels need too much memory; use fewer")
+        return Repeated(basis=f"none: {repetitions} repetitions at {size} levels need too much memory; use fewer")
     options: dict[str, Any] = {"repetitions": repetitions, "seed": seed}
     try:
         sample = fit.bootstrap(**options)
         ends = [fit.interval(name, 0.95, "bootstrap", **options) for name in ("median", "dispersion")]
         band = fit.band(levels, 0.95, "bootstrap", **options)
     except InvalidValueError as error:
-        return Repeated(words=f"none: {error}")
+        return Repeated(basis=f"none: {error}")
     basis = f"{sample.kind}, {sample.repetitions} repetitions, seed {seed}, {sample.ends} ends"
     if sample.undetermined:
         basis += f"; {sample.undetermined} repetitions have no rising curve and widen the intervals"

@@ -30,7 +30,7 @@ class Axis:
 
     name: str
     unit: str
-    words: str  # meaning
+    meaning: str
     sets: str  # parameter that the axis sets; two axes of a map must set different parameters
     stage: int  # order of application
     # changes of a case for the values of its variations
@@ -97,7 +97,7 @@ class Axis:
     @property
     def attributes(self) -> dict[str, str]:
         """Unit and meaning, for a coordinate of a dataset."""
-        return {"units": self.unit, "long_name": self.words}
+        return {"units": self.unit, "long_name": self.meaning}
 
 
 _SAMPLES = 4096

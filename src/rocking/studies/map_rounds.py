@@ -171,8 +171,8 @@ class MapSearch:
 
 def _points(points: RefinedMap, plane: Plane) -> Table:
     columns = {
-        plane.x.name: Column(points.x, plane.x.unit, plane.x.words, "x"),
-        plane.y.name: Column(points.y, plane.y.unit, plane.y.words, "y"),
+        plane.x.name: Column(points.x, plane.x.unit, plane.x.meaning, "x"),
+        plane.y.name: Column(points.y, plane.y.unit, plane.y.meaning, "y"),
         "mode": Column.of("mode", points.modes),
         "peak_ratio": Column.of("peak_ratio", points.peak_ratio),
         "base": Column(points.base.astype(np.int64), "1", "1 for points of the map itself, 0 for new ones"),
@@ -191,8 +191,8 @@ def _vertices(lines: list[Polyline], plane: Plane) -> Table:
         "line": Column(np.repeat(np.arange(len(lines)), sizes), "1", "number of the polyline"),
         "region": Column(regions, "1", "region inside"),
         "closed": Column(closed, "1", "1 if the polyline ends where it starts"),
-        x.name: Column(points[:, 0], x.unit, x.words, "x"),
-        y.name: Column(points[:, 1], y.unit, y.words, "y"),
+        x.name: Column(points[:, 0], x.unit, x.meaning, "x"),
+        y.name: Column(points[:, 1], y.unit, y.meaning, "y"),
         "mode_outside": Column(modes[:, 0], mode.unit, f"outside: {mode.meaning}"),
         "mode_inside": Column(modes[:, 1], mode.unit, f"inside: {mode.meaning}"),
     }

@@ -197,7 +197,7 @@ class Remedies:
                 "no_overturning": change.length_no_overturning,
                 "no_uplift": change.length_no_uplift,
                 "reason": change.reason,
-            }  # fmt: skip
+            }
             for name, change in (("wider", self.wider), ("lower", self.lower))
         }
         return Answer({

@@ -121,7 +121,7 @@ class MapQuestion(BodyQuestion):
         several = {"restitution": len(planes)} if len(planes) > 1 else {}
         # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
         attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
-        coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
+        coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.meaning) for axis in (y, x)}
         if several:
             coordinates["restitution"] = labels_along("restitution", problem.restitutions, "restitution")
         dims = several | {y.name: y.values.size, x.name: x.values.size}

@@ -418,7 +418,7 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
         value, p_value = np.array([agreement.numbers[name] for agreement in agreements]).T
         variables[name] = ("state", value, {"units": "1", "long_name": long_name})
         variables[f"{name}_p_value"] = ("state", p_value, {"units": "1", "long_name": f"p-value: {long_name}"})
-    variables["agreement"] = ("state", np.array([agreement.words for agreement in agreements]))
+    variables["agreement"] = ("state", np.array([agreement.basis for agreement in agreements]))
     if any(curve.alone for curve in curves):
         alone = [curve.alone or curve for curve in curves]
         about = {"long_name": "of the curve fitted to the state alone"}
@@ -435,7 +435,7 @@ def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> di
         "median_bootstrap_95": intervals([bootstrap.median_95 for bootstrap in bootstraps], unit, meaning),
         "dispersion_bootstrap_95": dispersion,
         "probability_bootstrap_95": (("state", "end", "level"), bands, dispersion[2]),
-        "bootstrap": ("state", np.array([bootstrap.words for bootstrap in bootstraps])),
+        "bootstrap": ("state", np.array([bootstrap.basis for bootstrap in bootstraps])),
     }
 
 

@@ -120,12 +120,12 @@ class Header:
     @property
     def missing(self) -> list[str]:
         """Missing columns that a list needs."""
-        known = self.fields
-        missing = [] if {"name", "number"} & known else ["name"]
-        if "body_file" in known or {"diameter", "height"} <= known or ("size" in known and "height" not in known):
+        fields = self.fields
+        missing = [] if {"name", "number"} & fields else ["name"]
+        if "body_file" in fields or {"diameter", "height"} <= fields or ("size" in fields and "height" not in fields):
             return missing
-        required = ("width", "height") if {"width", "shape"} <= known else objects.SIZES
-        return missing + [field for field in required if field not in known]
+        required = ("width", "height") if {"width", "shape"} <= fields else objects.SIZES
+        return missing + [field for field in required if field not in fields]
 
 
 def _bare(words: Sequence[str]) -> tuple[list[str], str]:

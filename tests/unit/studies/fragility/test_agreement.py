@@ -108,11 +108,11 @@ def test_bootstrap_in_files(tmp_path, end):
     """Bootstrap intervals stand in the files only where they were asked for, with kind, number and seed."""
     made, plain = model_from(RIGHT, bootstrap=200), model_from(RIGHT)
     told = made.curves[0].repeated
-    assert told.words == "parametric, 200 repetitions, seed 3, studentised ends"
+    assert told.basis == "parametric, 200 repetitions, seed 3, studentised ends"
     if end == ".csv":
         text = to_csv(made, tmp_path / "f.csv").read_text(encoding="utf-8")
         assert all(repr(value) in text for value in (*told.median_95, *told.dispersion_95))
-        assert told.words in text
+        assert told.basis in text
         points = table(made, "points")
         column = points.header.index("bootstrap 95 % to overturned [-]")
         assert [row[column] for row in points.rows] == told.band[1].tolist()
@@ -122,7 +122,7 @@ def test_bootstrap_in_files(tmp_path, end):
         found = loadmat(to_mat(made, tmp_path / "f.mat"), squeeze_me=True, struct_as_record=False)["fragility"]
         assert tuple(found.median_bootstrap_95) == told.median_95
         assert np.array_equal(found.probability_bootstrap_95, np.stack(told.band))
-        assert found.bootstrap == told.words
+        assert found.bootstrap == told.basis
     else:
         xr = pytest.importorskip("xarray")
         found = xr.load_dataset(to_netcdf(made, tmp_path / "f.nc"), engine="h5netcdf")
@@ -164,14 +164,14 @@ def test_too_few_clusters_and_too_many_levels():
     fit = fit_lognormal(np.tile([1.0, 2.0, 3.0, 4.0], 4), reached.ravel(), clusters=np.repeat(range(4), 4).tolist())
     few = repeated_of(fit, fit.counts.levels, 200)
     assert few.median_95 is few.band is None
-    assert few.words.startswith("none: kind must not be 'clusters' for 4 distinct clusters")
-    assert agreement_of(fit).words.endswith("they take the outcomes of one motion for independent")
+    assert few.basis.startswith("none: kind must not be 'clusters' for 4 distinct clusters")
+    assert agreement_of(fit).basis.endswith("they assume independent outcomes of each motion")
     random = np.random.default_rng(1)
     levels = np.exp(random.normal(size=25_000))
     many = fit_lognormal(levels, random.random(levels.size) < ndtr(np.log(levels)))
     assert np.isnan(list(agreement_of(many).numbers.values())).all()
-    assert agreement_of(many).words.startswith("none: 25000 levels are too many")
-    assert repeated_of(many, many.counts.levels, 3000).words.startswith("none: 3000 repetitions at 25000 levels")
+    assert agreement_of(many).basis.startswith("none: 25000 levels are too many")
+    assert repeated_of(many, many.counts.levels, 3000).basis.startswith("none: 3000 repetitions at 25000 levels")
 
 
 def test_ends_that_are_open_are_nothing():

@@ -203,7 +203,12 @@ def test_any_study_with_an_outcome_serves():
         (lambda *, restitution: xr.Dataset({"peak": 1.0}), ["ked", "housner"], None, "analysis with an outcome"),
         (given({"ked": [[1, 2]], "housner": [[1, 2], [1, 2]]}), ["ked", "housner"], None, "one shape"),
         (given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("restitution", "x")), ["ked", "housner"], None, None),
-        (given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("y", "restitution")), ["ked", "housner"], None, "already varies"),
+        (
+            given({"ked": [[1, 2]], "housner": [[1, 2]]}, ("y", "restitution")),
+            ["ked", "housner"],
+            None,
+            "already varies",
+        ),
     ],
 )
 def test_what_cannot_be_compared_is_refused(study, restitutions, baseline, message):
