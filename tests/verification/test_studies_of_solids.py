@@ -251,7 +251,7 @@ def test_azimuth_is_an_axis():
     wrong = {"x": PULSE.scaled(math.cos(0.7)), "y": PULSE.scaled(-math.sin(0.7))}
     other = rk.simulate(STATUE, wrong, "housner", scale=3.4, friction=0.8)
     assert float(found.peak_rotation.isel(azimuth=1, scale=1)) != pytest.approx(other.peak_tilt, rel=1e-3)
-    with pytest.raises(InvalidValueError, match="azimuth varies only for a body in space"):
+    with pytest.raises(InvalidValueError, match="azimuth varies only for a 3D body"):
         overturning_map(PLANE, PULSE, ("azimuth", angles), ("scale", turns))
 
 
@@ -496,7 +496,7 @@ def test_an_inventory_of_solids(records, answered):
         assert fell[row["statue"], j] == (one.overturned.values > 0).sum()
     assert slid[row["held"]].sum() == 0
     assert found.not_assessed.values.tolist() == ["gone", "both"]  # a friction that cannot be is left aside, and said
-    assert ["no such file" in found.reason.values[0], "Remove" in found.reason.values[1]] == [True, True]
+    assert ["no such file" in found.reason.values[0], "Clear" in found.reason.values[1]] == [True, True]
 
     clean = "\n".join(line for line in LIST.splitlines() if line.split(",")[0] not in {"gone", "both"})
     (folder / "clean.csv").write_text(clean)

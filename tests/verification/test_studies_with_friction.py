@@ -188,7 +188,7 @@ def test_refusals(how, says):
 @pytest.mark.verifies("damage")
 def test_friction_is_said_once():
     """As an axis or as a number."""
-    with pytest.raises(InvalidValueError, match="leave friction out"):
+    with pytest.raises(InvalidValueError, match="Remove friction"):
         overturning_map(BLOCK, PULSE, ("friction", [0.3]), ("scale", [1.0]), friction=0.3, restitution="ked")
     with pytest.raises(InvalidValueError, match="restitution"):
         overturning_map(BLOCK, PULSE, ("period", [0.6]), ("scale", [1.0]), None)

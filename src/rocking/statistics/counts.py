@@ -276,7 +276,9 @@ def _grid(levels: FloatArray, good: BoolArray, failed: BoolArray, cluster: IntAr
     rows, weights = np.vstack([rows, more]), np.append(weights, np.ones(len(more)))
     trials, failures = good[:, used].sum(axis=0), failed[:, used].sum(axis=0)
     by_cluster = np.split(rows, 2, axis=1)
-    return Counts(levels[used], failures.astype(np.float64), trials.astype(np.float64), *by_cluster, weights)
+    return Counts(
+        levels[used], failures.astype(np.float64), trials.astype(np.float64), by_cluster[0], by_cluster[1], weights
+    )
 
 
 def _distinct(failed: BoolArray, good: BoolArray, motions: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -82,7 +82,7 @@ def test_in_german_with_a_plan(printed, objects):
         assert words in out
     assert "No uplift below" not in out
     english = printed(objects, "--pga", "0.3g", *FEW, "--set", "inventory.language=el")
-    assert "in the language el, of which there are no words yet" in english
+    assert "in the language el. No translation exists" in english
     assert "First measures" in english
 
 

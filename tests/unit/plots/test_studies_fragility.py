@@ -248,7 +248,7 @@ def test_levels_below_uplift_alone():
     upper = figure.axes[0]
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() > upper.get_xlim()[1]
-    assert "Nothing failed" in figure.get_supxlabel()
+    assert "No failures" in figure.get_supxlabel()
     FigureCanvasAgg(figure).draw()
 
 

@@ -90,7 +90,7 @@ def test_files_are_in_the_language_and_keys_are_not(found, tmp_path):
 def test_a_language_without_words_says_so(found):
     """French: in English, and the report says that there are no words of it yet."""
     text = texts(inventory_document(replace(found, language="fr")))
-    assert "in the language fr, of which there are no words yet" in text
+    assert "in the language fr. No translation exists" in text
     assert "Overturning of objects in earthquakes" in text
 
 

@@ -114,8 +114,8 @@ def test_a_median_beyond_all_numbers_is_not_reported():
 
 def test_the_sentence_names_the_level_that_says_most():
     """Where all failed it is the lowest, where none did the highest, each with its own trials."""
-    assert fit_lognormal([1.0, 2.0, 4.0], [9, 8, 7], trials=[9, 8, 7]).verdict.count("At 1 none of 9 survived") == 1
-    assert fit_lognormal([1.0, 2.0, 4.0], [0, 0, 0], trials=[9, 8, 7]).verdict.count("At 4 none of 7 failed") == 1
+    assert fit_lognormal([1.0, 2.0, 4.0], [9, 8, 7], trials=[9, 8, 7]).verdict.count("At 1 0 of 9 survived") == 1
+    assert fit_lognormal([1.0, 2.0, 4.0], [0, 0, 0], trials=[9, 8, 7]).verdict.count("At 4 0 of 7 failed") == 1
 
 
 LEVELS = np.exp(np.linspace(-1.2, 1.2, 8))

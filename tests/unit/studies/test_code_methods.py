@@ -64,7 +64,7 @@ def comparison(truth, factors=1.0, fell=0.0):
     """Return one method of capacity 1 beside intensities that overturn, one row per motion."""
     truth = np.array(truth, dtype=np.float64)
     return CodeComparison(
-        (CODE_METHODS["static"],), tuple("b" * truth.shape[1]), tuple("m" * len(truth)), ("as they are",),
+        (CODE_METHODS["static"],), tuple("b" * truth.shape[1]), tuple("m" * len(truth)), ("as recorded",),
         np.ones((1, *truth.shape)), truth, factors * np.ones((*truth.shape, 1)), fell * np.ones((*truth.shape, 1)),
         np.zeros(truth.shape[1], dtype=bool), "",
     )  # fmt: skip

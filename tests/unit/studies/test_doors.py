@@ -151,7 +151,7 @@ def test_many_transitions_print_their_ends(motions):
     found = rk.minimum_overturning_acceleration(BODY, motions[0], "ked")
     count, least = len(found.overturning_intervals), found.minimum
     assert count > 3
-    assert f"overturns in {count} stretches from {least:.4g} to {found.max_pga:.4g} m/s2" in repr(found)
+    assert f"overturns in {count} intervals from {least:.4g} to {found.max_pga:.4g} m/s2" in repr(found)
     few = rk.minimum_overturning_acceleration(BODY, motions[0], "ked", max_pga=1.0001 * least)
     assert f"overturns from {least:.4g} to " in repr(few)
 

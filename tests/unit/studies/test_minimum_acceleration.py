@@ -213,7 +213,7 @@ def test_only_records_are_searched_again():
 def test_the_properties_say_that_they_hold_among_the_samples():
     """Minimum and certainty of a search are what was sampled, in the words that every reader of the class sees."""
     for words, where in ((Transitions.minimum.__doc__, "below"), (Transitions.certain.__doc__, "above")):
-        assert "sampled" in words
+        assert "sample" in words
         assert f"under a record narrower {'intervals' if where == 'below' else 'gaps'} may lie {where}" in words
 
 

@@ -148,7 +148,7 @@ def test_functions_without_a_name_are_refused():
     class Silent(Uniform):
         __repr__ = object.__repr__
 
-    with pytest.raises(InvalidValueError, match=r"must say what makes it by repr\(\)"):
+    with pytest.raises(InvalidValueError, match=r"must contain its parameters in repr\(\)"):
         SyntheticSet(own(first_m=Silent(1.0, 2.0)), 3, 1).description()
 
 

@@ -87,8 +87,8 @@ _ROCKS = Message(
     "at {level} it rocks, and does not overturn in {motions}",
     many="at {level} it rocks, and overturns in 0 of {motions}",
 )
-_RECORDS = Message("{count} record", many="{count} records")
-_SIMULATED = Message("{count} simulated earthquake", many="{count} simulated earthquakes")
+_RECORDS = Message("the one record", many="{count} records")
+_SIMULATED = Message("the one simulated earthquake", many="{count} simulated earthquakes")
 # by whether the base is the outer size, and whether there is vertical shaking
 _BASES = {
     (True, False): Message(

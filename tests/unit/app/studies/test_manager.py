@@ -163,7 +163,7 @@ def test_what_is_refused_leaves_nothing(tmp_path, records, map_job, idle):
     """A job whose axes do not fit, or whose record is unknown, is refused without a path, and its folder is gone."""
     manager = idle()
     both = {"axis": "pga", "values": [1.0, 2.0]}
-    with pytest.raises(InvalidValueError, match="map: x and y must set different things") as caught:
+    with pytest.raises(InvalidValueError, match="map: x and y must set different parameters") as caught:
         manager.create(None, map_job(map={"x": both, "y": both}))
     assert str(tmp_path) not in str(caught.value)
     with pytest.raises(NotFound, match="upload"):

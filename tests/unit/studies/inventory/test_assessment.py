@@ -101,7 +101,7 @@ def test_what_is_never_lifted_is_green():
     hazard = Hazard.of_records([rectangle(1.0, 0.24 * G)])
     (verdict,) = (found := assess([COLUMN], hazard)).verdicts
     assert (verdict.light, verdict.worse.lifted, verdict.worse.high_rotation) == (Light.GREEN, 0, 0.0)
-    assert table.sentence(verdict, found).endswith("at PGA 0.24 g no uplift in 1 record.")
+    assert table.sentence(verdict, found).endswith("at PGA 0.24 g no uplift in the one record.")
     assert table.advice(verdict, found).startswith("No measure")
 
 
