@@ -182,7 +182,7 @@ REFUSED = {
                         'pulse = "sine:amplitude=3,period=0.6"', r"motions: a map is of one motion, got 2"),
     "zero scale": ('scale = 0\npulse =', 'pulse =', r"motions\[0\]: scale must not be 0"),
     "unknown axis": ('axis = "frequency"', 'axis = "frequency_ratio"', r"map\.x: Unknown axis 'frequency'\. Axes are"),
-    "same axis": ('axis = "amplitude_ratio"', 'axis = "frequency_ratio"', r"map: x and y must set different parameters"),
+    "same axis": ('axis = "amplitude_ratio"', 'axis = "frequency_ratio"', r"map: x and y must set different"),
     "negative axis": ("from = -1, to = 9", "from = 1, to = 9", r"map\.y: amplitude_ratio must be in .*got -1"),
     "falling axis": ("from = 9, to = 1", "from = 1, to = 9", r"map\.y: amplitude_ratio must increase"),
     "no end": ("from = 1, count = 7", "from = 1, to = 9, count = 7", r"map\.y: give values = .*got from, count"),
