@@ -229,6 +229,24 @@ def test_the_first_peak_by_the_amplitude():
     assert derivative == pytest.approx(0.236936097334396549, rel=1e-13)
 
 
+@pytest.mark.verifies("computed anew", "an independent program of 40 digits", within="1e-12")
+@pytest.mark.parametrize("engine", ENGINES)
+def test_the_boundary_of_overturning_by_restitution_and_frequency(engine):
+    """At the boundary of one impact the unstable coordinate is zero; its derivatives give those of the amplitude."""
+    side = BLOCK.side("right", 9.81)
+    alpha, p = side.slenderness_angle, side.frequency_parameter
+    boundary = 1.403565355642782661
+    options = {"linear": True, "gravity": 9.81, "duration": 2.5 / p, "engine": engine}
+    response = rk.simulate(BLOCK, until(2.0 * math.pi / (3.0 * p), boundary), 0.9, **options)
+    assert len(response.impacts) == 1
+    rotation, velocity = response.rotation[-1], response.angular_velocity[-1]
+    assert abs(rotation) + abs(velocity) / p * np.sign(rotation * velocity) == pytest.approx(alpha, rel=1e-12)
+    by = {name: values[-1] @ [1.0, 1.0 / p] for name, values in response.tangent().by_parameter.items()}
+    by_amplitude = by["amplitude"] / boundary
+    assert -by["restitution"] / by_amplitude == pytest.approx(-0.429631378847441066, rel=1e-12)
+    assert -by["frequency"] / 3.0 / by_amplitude == pytest.approx(0.2495290741040314, rel=1e-12)
+
+
 @pytest.mark.verifies(
     "second engine", "twins of the engine with friction, as for the growth of predictions", within="1e-4"
 )
