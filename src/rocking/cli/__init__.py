@@ -94,7 +94,7 @@ def _refusal(error: Any) -> "RockingError":
     if hasattr(error, "possibilities") and (key := key_of(str(getattr(error, "option_name", "")))):
         return InvalidValueError(
             "{fault}", parameter=error.option_name, fault=message.rstrip("."),
-            hint=Message("it is a key: {key}", {"key": key}),
+            hint=Message("use {key}", {"key": key}),
         )  # fmt: skip
     if isinstance(error.__cause__, ValidationError) and getattr(error, "param", None) is not None:
         problems = error.__cause__.errors(include_url=False)

@@ -77,7 +77,7 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
         if table not in allowed:
             near = checks.nearest(table, list(allowed))
             raise UsageError(
-                "{parameter}: no table named {table!r:.60} here; there are {names}", parameter="--set", table=table,
+                "{parameter}: unknown table {table!r:.60}; tables: {names}", parameter="--set", table=table,
                 names=", ".join(allowed), hint=near,
             )  # fmt: skip
         if (new := present.get(f"{table}.{key}")) is not None:

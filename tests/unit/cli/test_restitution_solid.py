@@ -63,7 +63,7 @@ def test_round_base_says_that_it_rolls(run, answered, file):
     """Page and JSON say that the values of a drum hold in one plane only; a prism needs no such words."""
     drum, prism = file(DRUM, "drum.toml"), file(PRISM, "prism.toml")
     (note,) = answered(drum)["notes"]
-    assert "rolls round its rim" in note
+    assert "rolls on its rim" in note
     assert "one vertical plane" in note
     assert f"! {note}" in run(drum)[1]
     assert answered(prism)["notes"] == []
