@@ -56,7 +56,7 @@ found = read_body("vase.toml")
 print(f"{found.name}: {found.mass:.2f} kg, centre {found.centre.round(4)} m")
 for sentence in found.repairs:
     print("repaired:", sentence)
-assert any("turned round" in sentence for sentence in found.repairs)
+assert any("reversed" in sentence for sentence in found.repairs)
 write(solid_picture(found), "solid_from_a_file.png")
 
 # %%

@@ -173,7 +173,7 @@ def test_what_cannot_be_a_body_is_refused(open_page: Callable[..., Any], tmp_pat
     ask.click()
     refused = section.get_by_test_id("outcome")
     expect(refused).to_have_attribute("data-state", "refused")
-    expect(section.get_by_role("alert")).to_contain_text("the surface is not closed, it has 1 hole")
+    expect(section.get_by_role("alert")).to_contain_text("The surface is not closed: 1 hole")
     assert section.get_by_test_id("space-stage").count() == 0
 
 

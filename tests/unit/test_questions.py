@@ -34,7 +34,7 @@ def test_the_keys_of_a_body_are_documented():
     """The table of [body], which no description makes, has every key that may stand beside a file or an angle."""
     page = (ROOT / "docs" / "questions.md").read_text(encoding="utf-8")
     table = page.partition("### [body]")[2].partition("###")[0]
-    keys = {"file", *bodies._BESIDE_FILE, *bodies._OUTSIDE, "width", "height", *bodies._OF_ANGLE}
+    keys = {"file", *bodies._WITH_FILE, *bodies._OUTSIDE, "width", "height", *bodies._OF_ANGLE}
     assert {key for key in keys if f"`{key}`" not in table} == set()
 
 

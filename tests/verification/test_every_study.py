@@ -70,7 +70,7 @@ def test_a_block_of_known_depth_moves_along_y(files, run, answered):
     python = overturning_map(box_in_space, {"x": X, "y": Y}, ("scale", [0.8, 1.0, 1.2]), ("duration", [1.6]), "housner")
     assert shaken == pytest.approx(python.peak_ratio.values, rel=1e-6)
     _, _, err = run("map", *size[:4], "x.csv", "--motion", "y=y.csv", *axes)
-    assert "whose depth is given (--depth" in " ".join(err.split())
+    assert "section with a depth (--depth" in " ".join(err.split())
 
 
 @pytest.mark.verifies("invariant", "the object turned by a quarter, under the motions as they are", within="1e-6")

@@ -444,8 +444,8 @@ def test_fragilities_of_components_in_files_and_commands(records, answered):
 @pytest.mark.parametrize(
     ("motions", "says"),
     [
-        ("x = { record = 'x0.csv' }\nrecords = 'y0.csv'", "records stands with each of the motions along x, y and z"),
-        ("x = { record = 'x0.csv', vertical = 'UP' }\nz = { record = 'z0.csv' }", "vertical motion is given twice"),
+        ("x = { record = 'x0.csv' }\nrecords = 'y0.csv'", "Give records separately for the motions along x, y and z"),
+        ("x = { record = 'x0.csv', vertical = 'UP' }\nz = { record = 'z0.csv' }", "vertical motion appears twice"),
         ("x = { records = 'x0.csv' }", "unknown key"),
         ("x = { record = 'x0.csv' }\ny = { record = 'gone.csv' }", "motions\\[0\\]: y: gone.csv"),
     ],

@@ -143,10 +143,10 @@ class AnswerShape(BaseModel):
 def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    more: another table that it continues, and the names of quantities, with [] after lists of them.
-    fields: by key the type; type and words; or type, words and the quantity whose unit it has, "" for none. Of a key
-    that is a quantity the meaning stands in `rocking.quantities`, unless there are words. What else a key needs, such
-    as a default, is a `Field` in place of the words.
+    more: a base table, and the names of quantities, with [] for lists of them.
+    fields: by key the type, (type, description), or (type, description, quantity). The quantity has the unit of the
+    key, "" for no unit. The default description of a key is that in `rocking.quantities`. A `Field` in place of the
+    description adds, for instance, a default.
     """
     base = next((item for item in more if not isinstance(item, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
@@ -166,21 +166,23 @@ def _of_names(names: str) -> Iterator[tuple[str, Any]]:
 
 
 def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: Any) -> Any:
-    """Return a dataclass as a table of an answer; its annotations hold the words: `Annotated[str, "of what"]`."""
-    # more: keys as of `shape`, in place of those of the dataclass
+    """Return a dataclass as a table of an answer; `Annotated[str, "description"]` contains the descriptions."""
+    # more: keys as in `shape`, in place of those of the dataclass
     hints = {key: hint for key, hint in get_type_hints(kind, include_extras=True).items() if key not in without}
     types = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
     return shape(name, inspect.getdoc(kind) or "", **{**types, **more})
 
 
-def _field(key: str, kind: Any, words: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
+def _field(key: str, kind: Any, description: Any = None, quantity: str | None = None) -> tuple[Any, Any]:
     entry = quantity_of(key if quantity is None else quantity)
-    if words is None and entry is not None:
-        words = entry.meaning
-    if not isinstance(words, str):
-        return kind, ... if words is None else words
+    if description is None and entry is not None:
+        description = entry.meaning
+    if not isinstance(description, str):
+        return kind, ... if description is None else description
     unit = "" if entry is None else "-" if entry.unit == "1" else entry.unit
-    return kind, Field(description=f"{words} [{unit}]".strip() if unit and not words.endswith("]") else words)
+    return kind, Field(
+        description=f"{description} [{unit}]".strip() if unit and not description.endswith("]") else description
+    )
 
 
 Messages: Any = (
@@ -190,17 +192,17 @@ Messages: Any = (
 Units: Any = (dict[str, str], "unit of every number, by the name of its quantity")
 
 
-def answered(kind: Any, words: str, status: int = 200) -> dict[int | str, dict[str, Any]]:
+def answered(kind: Any, description: str, status: int = 200) -> dict[int | str, dict[str, Any]]:
     """Return the declaration of a JSON answer of an endpoint."""
-    return {status: {"model": kind, "description": words}}
+    return {status: {"model": kind, "description": description}}
 
 
-def answered_with_file(words: str, *endings: str) -> dict[int | str, dict[str, Any]]:
+def answered_with_file(description: str, *endings: str) -> dict[int | str, dict[str, Any]]:
     """Return the declaration of a file that an endpoint returns; endings: extensions of its names."""
     name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
     file = {"schema": {"type": "string", "format": "binary"}}
     content = {MEDIA_TYPES[ending].partition(";")[0]: file for ending in endings}
-    return {200: {"description": words, "headers": {"Content-Disposition": name}, "content": content}}
+    return {200: {"description": description, "headers": {"Content-Disposition": name}, "content": content}}
 
 
 Deleted: Any = shape("Deleted", "Identifier of the deleted item.", deleted=(str, "identifier in URLs"))
@@ -252,7 +254,7 @@ class ErrorAnswer(BaseModel):
 
 
 ERRORS: dict[int | str, dict[str, Any]] = {
-    status: {"model": ErrorAnswer, "description": words} for status, words in _ERRORS.items()
+    status: {"model": ErrorAnswer, "description": description} for status, description in _ERRORS.items()
 }
 """Error responses of every endpoint."""
 
@@ -268,7 +270,7 @@ def describe_api(app: FastAPI) -> None:
         components = schema.setdefault("components", {})
         components["securitySchemes"] = {"key": key}
         content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
-        errors = {status: {"description": words, "content": content} for status, words in _ERRORS.items()}
+        errors = {status: {"description": description, "content": content} for status, description in _ERRORS.items()}
         again = {"schema": {"type": "integer"}, "description": "waiting time before the next request [s]"}
         errors[429]["headers"] = {"Retry-After": again}
         components["responses"] = {f"Error{status}": error for status, error in errors.items()}

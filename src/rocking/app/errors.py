@@ -104,16 +104,16 @@ def room_on_disk() -> Iterator[None]:
         ) from error  # fmt: skip
 
 
-def check_room(folder: Path, wanted: int, limit: int, what: str) -> None:
+def check_room(folder: Path, needed: int, limit: int, items: str) -> None:
     """Refuse results larger than the free space of the disk or of their quota [bytes]."""
     used = 0
-    for where, _, names in os.walk(folder):
+    for folder_path, _, names in os.walk(folder):
         for name in names:
             with suppress(OSError):  # others are deleted meanwhile, and are not missed
-                used += Path(where, name).lstat().st_size
+                used += Path(folder_path, name).lstat().st_size
     room = min(shutil.disk_usage(folder).free, limit - used)
-    if wanted > room:
+    if needed > room:
         raise TooLarge(
             "the results need about {needed:.1f} MB, {free:.1f} MB are free; delete {items} that are no longer needed",
-            needed=wanted / 1e6, free=max(room, 0) / 1e6, items=what,
+            needed=needed / 1e6, free=max(room, 0) / 1e6, items=items,
         )  # fmt: skip

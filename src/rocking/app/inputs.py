@@ -118,10 +118,10 @@ def _refuse_subnormal(value: Any, key: str = "") -> None:
                 _refuse_subnormal(item, f"{key}[{index}]")
 
 
-def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
+def refuse_more(count: int, most: int, text: str, hint: str = "") -> None:
     """Refuse a count above a limit."""
     if count > most:
-        raise TooLarge(what + ", got {count}", most=most, count=count, hint=way_out)
+        raise TooLarge(text + ", got {count}", most=most, count=count, hint=hint)
 
 
 def check_size(table: BodyFile) -> None:

@@ -20,10 +20,10 @@ _ONE_LINE = 80  # longest list on one line [characters]
 
 
 def plain_line(text: str, longest: int = 160) -> str:
-    r"""Return a text as one line of characters that can be seen.
+    r"""Return a text as one line of visible characters.
 
-    Control characters, marks that turn the direction of writing, line breaks and tabs are what makes a name do
-    something in a terminal, a file of XML or a comment; none of them is left.
+    The result contains no control characters, direction marks, line breaks and tabs, which can have effects in a
+    terminal, an XML file or a comment.
 
     >>> plain_line("a\n[b]\x1b[31m\u202e")
     'a [b][31m'
@@ -64,7 +64,7 @@ def safe_name(name: str, fallback: str = "rocking") -> str:
 
 
 def record_file_name(name: str, otherwise: str = "record.txt") -> str:
-    r"""Return the name of a record file beside inputs or in a study: no folders, no pattern, no reserved word.
+    r"""Return a safe name of a record file: no folders, no pattern, no reserved name.
 
     >>> record_file_name(r"C:\records\Kobe 1995.AT2"), record_file_name("../../etc/passwd"), record_file_name("CON.txt")
     ('Kobe_1995.AT2', 'passwd', '_CON.txt')
@@ -81,7 +81,7 @@ def record_file_name(name: str, otherwise: str = "record.txt") -> str:
 
 
 def toml_of(document: Mapping[str, Any]) -> str:
-    r"""Return tables as TOML; numbers keep every digit, and what is None is left out."""
+    r"""Return tables as TOML, with all digits of numbers and without None."""
     return "\n".join(_lines(document, ())).strip("\n") + "\n"
 
 
@@ -112,8 +112,8 @@ def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
         if _is_table(value):
             yield from ("", f"[{head}]", *_lines(value, inside))
         elif _is_tables(value):
-            for one in value:
-                yield from ("", f"[[{head}]]", *_lines(one, inside))
+            for item in value:
+                yield from ("", f"[[{head}]]", *_lines(item, inside))
 
 
 def _is_table(value: Any) -> bool:

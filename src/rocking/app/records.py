@@ -54,9 +54,9 @@ def read_note(note: Path) -> StoredRecord | None:
 
 
 class RecordStore:
-    """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads.
+    """Thread-safe store of files in a folder by hash, with a note of each name.
 
-    One that forgets lets the oldest files go where a new one needs their room.
+    With `forgets`, a new file can replace the oldest files.
     """
 
     def __init__(self, folder: Path, limits: Limits, name: str = "records", *, forgets: bool = False) -> None:

@@ -114,7 +114,9 @@ class Remembered(Generic[T]):
             future.set_exception(error)
             raise
         with self._lock:
-            sizes = {key: self._size(one.result()) for key, one in self._held.items() if one.done()}
+            sizes = {
+                key: self._size(done_future.result()) for key, done_future in self._held.items() if done_future.done()
+            }
             for oldest in list(sizes)[:-1]:
                 if sum(sizes.values()) <= self._most:
                     break

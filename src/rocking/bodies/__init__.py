@@ -1,4 +1,4 @@
-"""What rocks: blocks, sections of any shape, mass points, solids."""
+"""Rigid bodies: blocks, sections of any shape, mass points, solids."""
 
 from lazy_loader import attach_stub
 

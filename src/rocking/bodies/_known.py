@@ -1,4 +1,4 @@
-"""Centre of mass and moment of inertia that somebody measured or computed, in place of those of the outline."""
+"""Measured or computed centre of mass and moment of inertia, in place of those of the outline."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,22 +12,22 @@ from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.messages import Amount, Message, Range
 
-_SLACK = 1e-6  # a moment may lie this far, relative to itself, beyond what its outline allows: rounding
+_SLACK = 1e-6  # largest relative excess of a moment over the largest possible value, for rounding
 
 
-Place = tuple[float, float]
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """What is known of a body beside its outline and mass; what is None is not."""
+    """Known centre of mass and moment of inertia; None if unknown."""
 
-    centre: Place | None = None  # centre of mass in the local frame [m]
+    centre: Point | None = None  # centre of mass in the local frame [m]
     moment_of_inertia: float | None = None  # polar, about the centre of mass [kg m2]
 
     @classmethod
-    def of(cls, centre: Any, moment_of_inertia: Any, origin: Place = (0.0, 0.0)) -> "Known | None":
-        """Return what was given, checked as numbers; None if nothing was. centre: in the user's frame [m]."""
+    def of(cls, centre: Any, moment_of_inertia: Any, origin: Point = (0.0, 0.0)) -> "Known | None":
+        """Return the checked values, or None without values; centre: in the user's frame [m]."""
         if centre is None and moment_of_inertia is None:
             return None
         if moment_of_inertia is not None:
@@ -41,17 +41,17 @@ class Known:
         x, y = checks.number("x of the centre", x, "m"), checks.number("y of the centre", y, "m")
         return cls((x - origin[0], y - origin[1]), moment_of_inertia)
 
-    def given(self, origin: Place = (0.0, 0.0)) -> dict[str, Any]:
-        """Return what is known by the names of the arguments, the centre in the user's frame."""
+    def arguments(self, origin: Point = (0.0, 0.0)) -> dict[str, Any]:
+        """Return the known values by argument name, the centre in the user's frame [m]."""
         centre = None if self.centre is None else (self.centre[0] + origin[0], self.centre[1] + origin[1])
         named = {"centre": centre, "moment_of_inertia": self.moment_of_inertia}
         return {name: value for name, value in named.items() if value is not None}
 
-    def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Place = (0.0, 0.0)) -> PlaneMoments:
-        """Return the moments of the body, from those of a homogeneous one and its vertices in the local frame [m]."""
-        # A moment of inertia that is not known is the share of the largest possible one that it is of the homogeneous
-        # body: of a rectangle that of four quarters about the centre, each homogeneous. How much of it is of width and
-        # how much of height follows in the same way.
+    def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Point = (0.0, 0.0)) -> PlaneMoments:
+        """Return the moments of the body from the homogeneous moments and the vertices in the local frame [m]."""
+        # An unknown moment of inertia is a fraction of the largest possible moment. The fraction is that of the
+        # homogeneous body. In a rectangle the result is that of four homogeneous quarters about the centre. The
+        # contributions of width and height follow in the same way.
         x, y = self.centre or (homogeneous.x, homogeneous.y)
         (left, low), (right, high) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         gyration = largest_gyration(vertices, x, y) if left < x < right and low < y < high else None
@@ -61,7 +61,7 @@ class Known:
                 "the centre of mass must lie within the outline, x {x_allowed}, y {y_allowed}, and within its convex "
                 "hull, got ({x}, {y})",
                 parameter="centre", value=(x + dx, y + dy),
-                hint="was it measured from another origin, or in another unit?",
+                hint="check the origin and the unit",
                 x_allowed=Range(left + dx, right + dx, "m", True, True),
                 y_allowed=Range(low + dy, high + dy, "m", True, True),
                 x=Amount(x + dx, "m", ".6g"), y=Amount(y + dy, "m", ".6g"),
@@ -72,9 +72,9 @@ class Known:
             polar = homogeneous.polar * (gyration / before if before else 1.0)  # Eq. 240
         elif polar > largest * (1.0 + _SLACK):
             raise GeometryError(
-                "{parameter} must be at most {largest}, as if all mass were in the corners of the outline, got {value}",
+                "{parameter} must be at most {largest} (all mass in the corners of the outline), got {value}",
                 parameter="moment_of_inertia", value=polar, largest=Amount(largest, "kg m2", ".6g"),
-                hint="it is the polar moment about the centre of mass: was it taken about a foot, or in other units?",
+                hint="check the unit, and that the moment is about the centre of mass",
             )  # fmt: skip
         xx = homogeneous.xx * (x - left) * (right - x) / ((homogeneous.x - left) * (right - homogeneous.x))
         yy = homogeneous.yy * (y - low) * (high - y) / ((homogeneous.y - low) * (high - homogeneous.y))
@@ -82,11 +82,11 @@ class Known:
         return PlaneMoments(homogeneous.mass, x, y, wide, polar - wide)
 
     def mirrored(self, twice_axis: float = 0.0) -> "Known":
-        """Return the same seen in a vertical mirror; twice_axis: twice its position [m]."""
+        """Return the mirrored values; twice_axis: twice the position of the vertical mirror axis [m]."""
         return self if self.centre is None else replace(self, centre=(twice_axis - self.centre[0], self.centre[1]))
 
     def scaled(self, size: float, density: float) -> "Known":
-        """Return the same with all lengths times size and all densities times density [-]."""
+        """Return the values for all lengths times size and all densities times density [-]."""
         centre, moment = self.centre, self.moment_of_inertia
         return Known(
             None if centre is None else (centre[0] * size, centre[1] * size),
@@ -95,22 +95,24 @@ class Known:
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What had to be assumed beside, in words."""
-        spread = Message(
-            "distribution of mass assumed by ked and horizontal-momentum, whatever the outline: even in each quarter "
-            "of the bounding box about the centre of mass, drawn together or put into its corners as far as the moment "
-            "of inertia asks"
+        """Further assumptions, as texts."""
+        distribution = Message(
+            "mass distribution assumed by ked and horizontal-momentum: uniform in each quarter of the bounding box "
+            "about the centre of mass, contracted or moved to the corners according to the moment of inertia"
         )
         if self.moment_of_inertia is not None:
-            return (spread,)
+            return (distribution,)
         return (
-            Message("moment of inertia assumed: the share of the most its outline allows that a homogeneous body has"),
-            spread,
+            Message(
+                "moment of inertia assumed: the same fraction of the largest possible value in the outline as for the "
+                "homogeneous body"
+            ),
+            distribution,
         )
 
 
 def largest_gyration(vertices: FloatArray, x: float, y: float) -> float | None:
-    """Return the largest squared radius of gyration about (x, y) of masses in a hull, None outside of it [m2]."""
+    """Return the largest squared radius of gyration about (x, y) of masses in the convex hull, None outside [m2]."""
     low, high, centre = vertices.min(axis=0), vertices.max(axis=0), np.array([x, y])
     corners = vertices[((vertices == low) | (vertices == high)).all(axis=1)]
     if len(np.unique(corners, axis=0)) == 4:  # the hull is the box
@@ -124,31 +126,31 @@ def _largest_of_polygon(vertices: FloatArray, centre: FloatArray) -> float | Non
     size = float(np.ptp(vertices, axis=0).max())
     arms = (vertices - centre) / size
     squares = (arms**2).sum(axis=1)
-    # the square of the arm is convex, so that the most is reached with all mass in vertices: a linear programme
+    # the squared arm is convex, so the maximum has all mass in vertices: a linear programme
     sums = np.vstack([arms.T, np.ones(len(arms))])
-    found = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))  # Eq. 239
-    if not found.success or found.x is None:
+    optimum = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))  # Eq. 239
+    if not optimum.success or optimum.x is None:
         return None
-    # the weights of the three corners again, in arithmetic that is the same on every processor
-    chosen = np.argsort(-found.x, kind="stable")[:3]
+    # recompute the weights of the three corners in arithmetic with equal results on every processor
+    chosen = np.argsort(-optimum.x, kind="stable")[:3]
     a, b, c = arms[chosen].tolist()
     weights = np.array([p[0] * q[1] - p[1] * q[0] for p, q in ((b, c), (c, a), (a, b))])
-    if abs(weights.sum()) < 1e-9:  # centre and corners in one line
-        return float((found.x * squares).sum()) * size**2
+    if abs(weights.sum()) < 1e-9:  # centre and corners are collinear
+        return float((optimum.x * squares).sum()) * size**2
     return float((weights * squares[chosen]).sum() / weights.sum()) * size**2
 
 
 def density_of(mass: float, volume: float, densities: tuple[float, ...]) -> float:
-    """Return the density [kg/m3] that makes a mass [kg] of a volume [m3]; densities: of which none may be given."""
+    """Return mass / volume [kg/m3] after a check that none of the densities is stated."""
     mass = checks.positive("mass", mass, "kg")
-    stated = next((each for each in densities if not isinstance(each, Assumed)), None)
+    stated = next((value for value in densities if not isinstance(value, Assumed)), None)
     if stated is not None:
         raise InvalidValueError(
-            "give mass = {mass:g} kg or density = {density:g} kg/m3, not both: one follows", mass=mass, density=stated
+            "Use mass = {mass:g} kg or density = {density:g} kg/m3, not both.", mass=mass, density=stated
         )
     density = mass / volume
     if not math.isfinite(density):
         raise InvalidValueError(
-            "mass = {mass:g} kg is too much for {volume:g} m3; wrong unit?", mass=mass, volume=volume
+            "mass = {mass:g} kg is too large for {volume:g} m3. Check the unit.", mass=mass, volume=volume
         )
-    return checks.density("density, which follows from mass and size,", density)
+    return checks.density("density from mass and size", density)

@@ -1,4 +1,4 @@
-"""The rectangular block: the body of Housner (1963) and of Mao et al. (2024), homogeneous if nothing else is known."""
+"""The rectangular block of Housner (1963) and of Mao et al. (2024), homogeneous by default."""
 
 import math
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, init=False)
 class Block(Body):
-    """A rectangular block, homogeneous if nothing else is known.
+    """A rectangular block, homogeneous by default.
 
-    The block stands on its whole base, or on two feet within it.
+    The contact with the ground is the complete base, or two feet within the base.
 
     Parameters
     ----------
@@ -33,30 +33,30 @@ class Block(Body):
     depth : float
         Depth out of the plane [m].
     density : float
-        Density [kg/m3]; plain concrete if not given. No coefficient of restitution depends on it.
+        Density [kg/m3]; the default is that of plain concrete. The coefficient of restitution is independent of it.
     mass : float, optional
-        Mass, if known, in place of the density [kg].
+        Known mass, in place of the density [kg].
     centre : (float, float), optional
-        Centre of mass, from the lower left corner, if known; the middle if not given [m].
+        Known centre of mass (x, y) from the lower left corner [m]; the default is the centre of the rectangle.
     moment_of_inertia : float, optional
-        Polar moment about the centre of mass, if known [kg m2].
+        Known polar moment about the centre of mass [kg m2].
     feet : (float, float), optional
-        Positions of the left and the right foot, from the lower left corner; the corners of the base if not given.
-        The base between them is flat [m].
+        Positions of the left and the right foot from the lower left corner [m]; the default is the corners of the base.
+        The base between the feet is flat.
 
     Raises
     ------
     InvalidValueError
         If a value is not a finite number above zero, or mass and density are both given.
     GeometryError
-        If a foot lies outside the base, the centre of mass lies outside the block or not between the feet, or no mass
-        within the block has such a moment of inertia.
+        If a foot lies outside the base, the centre of mass lies outside the block or not between the feet, or the
+        moment of inertia is impossible for masses within the block.
 
     Notes
     -----
-    A moment of inertia that is not given is that of four quarters about the centre of mass, each homogeneous:
-    ``m (x (B - x) + y (H - y)) / 3``, and of the homogeneous block if the centre is the middle. `assumed` says so, and
-    what the models take that ask how mass is spread.
+    The default moment of inertia is that of four homogeneous quarters about the centre of mass:
+    ``m (x (B - x) + y (H - y)) / 3``. For a central centre of mass it is that of the homogeneous block. `assumed`
+    contains this assumption, and the mass distribution for the models that need it.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Block(Body):
     >>> round(block.slenderness_angle, 10)
     0.2449786631
 
-    A cabinet of 300 kg whose centre of mass was found by tilting it, low and right of the middle:
+    A cabinet of 300 kg with the centre of mass from a tilt test, low and right of the middle:
 
     >>> cabinet = rk.Block(width=0.8, height=2.0, depth=0.6, mass=300.0, centre=(0.42, 0.7))
     >>> round(cabinet.side("left").slenderness_ratio, 12), round(cabinet.side("right").slenderness_ratio, 12)
@@ -129,7 +129,7 @@ class Block(Body):
 
     @classmethod
     def from_angle(cls, slenderness_angle: float, semi_diagonal: float, **options: Any) -> "Block":
-        """Return the block with a slenderness angle and a semi-diagonal, as papers on rocking give it.
+        """Return the block with a given slenderness angle and semi-diagonal, as in papers on rocking.
 
         Parameters
         ----------
@@ -143,12 +143,12 @@ class Block(Body):
         Returns
         -------
         Block
-            The block, its centre of mass in its middle.
+            Block with its centre of mass in the middle.
 
         Raises
         ------
         InvalidValueError
-            If a value is outside its range; an angle above pi/2 is most likely in degrees.
+            If a value is outside its range.
 
         Examples
         --------
@@ -164,26 +164,26 @@ class Block(Body):
             unit="rad",
             open_low=True,
             open_high=True,
-            hint="degrees?",
+            hint="check that the angle is in radians",
         )
         size = checks.positive("semi_diagonal", semi_diagonal, "m")
         for name in ("centre", "feet"):
             if options.get(name) is not None:
                 raise InvalidValueError(
-                    "angle and semi-diagonal define centre of mass and feet: leave {parameter} out", parameter=name
+                    "Angle and semi-diagonal define centre of mass and feet. Remove {parameter}.", parameter=name
                 )
         return cls(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha), **options)
 
     @property
     def stands_on_corners(self) -> bool:
-        """Whether the feet are the corners of the base."""
+        """True if the feet are the corners of the base."""
         return self.feet == (0.0, self.width)
 
     @property
     def _stated(self) -> dict[str, Any]:
-        """What was given beside sizes and density, by the names of the arguments."""
+        """Stated arguments other than sizes and density, by name."""
         feet = {} if self.stands_on_corners else {"feet": self.feet}
-        return ({} if self.known is None else self.known.given()) | feet
+        return ({} if self.known is None else self.known.arguments()) | feet
 
     @property
     def densities(self) -> tuple[float, ...]:
@@ -201,12 +201,12 @@ class Block(Body):
 
     @property
     def local_feet(self) -> Interval:
-        """The two feet; the lower corners, x = 0 and x = width, if no others were given [m]."""
+        """Positions of the left and right foot, by default the lower corners x = 0 and x = width [m]."""
         return self.feet
 
     @property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments, closed form."""
+        """Mass, centre and central second moments, in closed form."""
         mass = self.density * self.width * self.height * self.depth
         homogeneous = PlaneMoments(
             mass, self.half_width, self.half_height, mass * self.width**2 / 12.0, mass * self.height**2 / 12.0
@@ -231,33 +231,33 @@ class Block(Body):
         return np.where(inside, self.density, 0.0)
 
     def mirrored(self) -> "Block":
-        """Return the block seen in a vertical mirror through its middle, equal to a homogeneous one on its corners."""
+        """Return the block mirrored about its vertical centre line."""
         if self.known is None and self.stands_on_corners:
             return self
         left, right = self.feet
-        known = self.known and self.known.mirrored(self.width)
-        return self._changed(1.0, 1.0, known, (self.width - right, self.width - left))
+        known_moments = self.known and self.known.mirrored(self.width)
+        return self._changed(1.0, 1.0, known_moments, (self.width - right, self.width - left))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Block":
         size, density = checks.positive("size", size), checks.positive("density", density)
-        known, (left, right) = self.known and self.known.scaled(size, density), self.feet
-        return self._changed(size, density, known, (left * size, right * size))
+        known_moments, (left, right) = self.known and self.known.scaled(size, density), self.feet
+        return self._changed(size, density, known_moments, (left * size, right * size))
 
-    def _changed(self, size: float, density: float, known: Known | None, feet: Interval) -> "Block":
+    def _changed(self, size: float, density: float, known_moments: Known | None, feet: Interval) -> "Block":
         return Block(
             width=self.width * size,
             height=self.height * size,
             depth=self.depth * size,
             density=type(self.density)(self.density * density),
             feet=feet,
-            **({} if known is None else known.given()),
+            **({} if known_moments is None else known_moments.arguments()),
         )
 
     def with_feet(self, left: float, right: float) -> "Block":
         return self._changed(1.0, 1.0, self.known, (left, right))
 
     def to_section(self) -> "Section":
-        """Return the same body as a `Section` of one region.
+        """Return the block as a `Section` of one region.
 
         Returns
         -------

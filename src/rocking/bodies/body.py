@@ -1,4 +1,4 @@
-"""What every rocking body answers, whatever it is made of."""
+"""Base class of 2D bodies: feet, moments, slenderness and frequency parameter."""
 
 import math
 from abc import ABC, abstractmethod
@@ -22,7 +22,7 @@ class Side:
     Parameters
     ----------
     foot : {"left", "right"}
-        The foot it turns about.
+        The foot of the rotation.
     half_width : float
         Horizontal distance b from the foot to the centre of mass [m].
     centre_height : float
@@ -79,27 +79,27 @@ Interval = tuple[float, float]
 DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it
 
 GROUND_TOLERANCE = 1e-9
-"""Vertices this close to the ground, and feet this close to the base, relative to the body's size, are on it."""
+"""Largest distance / body size of vertices on the ground, and of feet on the base."""
 
-# Feet closer to the plumb line of the centre than this, relative to their distance, are no support.
+# smallest distance of a foot from the vertical through the centre of mass / distance of the feet
 _SUPPORT_TOLERANCE = 1e-12
 
 
 class Body(ABC):
-    """A rigid body of plane shape standing on two feet.
+    """A rigid 2D body on two feet.
 
-    A subclass fixes the mass distribution in a local frame whose origin lies on the ground, near the body
-    (`origin_x`, `ground`), so that nothing is lost far from the user's origin.
+    A subclass defines the mass distribution in a local frame. The origin of this frame lies on the ground near the body
+    (`origin_x`, `ground`), which avoids rounding errors far from the user's origin.
     """
 
     @property
     def origin_x(self) -> float:
-        """Horizontal position of the local frame in the user's coordinates: zero, if they are the same [m]."""
+        """Horizontal position of the local frame in the user's coordinates, by default 0 [m]."""
         return 0.0
 
     @property
     def ground(self) -> float:
-        """Height of the ground in the user's coordinates: zero, if nothing else is said [m]."""
+        """Height of the ground in the user's coordinates, by default 0 [m]."""
         return 0.0
 
     @property
@@ -115,7 +115,7 @@ class Body(ABC):
     @property
     @abstractmethod
     def local_contact(self) -> tuple[Interval, ...]:
-        """Stretches of the ground that the base touches between the feet, left to right, local frame [m]."""
+        """Contact intervals of the base between the feet, left to right, in the local frame [m]."""
 
     @property
     @abstractmethod
@@ -124,23 +124,23 @@ class Body(ABC):
 
     @abstractmethod
     def mirrored(self) -> Self:
-        """Return the body seen in a vertical mirror: left and right change places."""
+        """Return the body with left and right exchanged."""
 
     @abstractmethod
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> Self:
-        """Return the body with all lengths times `size` and all densities times `density`.
+        """Return the body with scaled lengths and densities.
 
         Parameters
         ----------
         size : float
-            Factor on all lengths, depth included [-].
+            Scale factor of all lengths, including the depth [-].
         density : float
-            Factor on all densities [-].
+            Scale factor of all densities [-].
         """
 
     @abstractmethod
     def with_feet(self, left: float, right: float) -> "Body":
-        """Return the same body standing on other feet.
+        """Return the body with other feet.
 
         Parameters
         ----------
@@ -176,7 +176,7 @@ class Body(ABC):
         Parameters
         ----------
         foot : {"left", "right"}
-            The foot it turns about.
+            The foot of the rotation.
         gravity : float
             Acceleration of gravity [m/s2].
 
@@ -188,7 +188,7 @@ class Body(ABC):
         Raises
         ------
         InvalidValueError
-            If the foot is neither, or gravity is not above zero.
+            If the foot is neither "left" nor "right", or gravity is not above zero.
 
         Examples
         --------
@@ -204,9 +204,9 @@ class Body(ABC):
         return Side(foot, half_width, moments.y, moments.mass, inertia, gravity)
 
     def density_at(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Return the density at points, zero outside the body: what fields and pictures sample.
+        """Return the density at points, zero outside the body.
 
-        Of a body whose centre of mass or moment of inertia was given it is that of its outline all the same.
+        A known centre of mass or moment of inertia does not change the density of the outline.
 
         Parameters
         ----------
@@ -221,34 +221,34 @@ class Body(ABC):
         Raises
         ------
         InvalidValueError
-            If this kind of body has no density field, as mass points.
+            If this type of body has no density field, such as mass points.
         """
-        raise InvalidValueError("a {type} body has no density field", type=type(self).__name__)
+        raise InvalidValueError("A {type} body has no density field.", type=type(self).__name__)
 
     @property
     def densities(self) -> tuple[float, ...]:
-        """Densities of the parts; none of mass points [kg/m3]."""
+        """Densities of the parts; empty for mass points [kg/m3]."""
         return ()
 
     @property
     def known(self) -> Known | None:
-        """Centre of mass and moment of inertia that were given in place of those of the outline; None without them."""
+        """Known centre of mass and moment of inertia in place of those of the outline, or None."""
         return None
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What nobody gave and was assumed, in words."""
-        density = (Message("density {assumed}", {"assumed": each}) for each in assumed_density(self.densities))
+        """Assumed values, as texts."""
+        density = (Message("density {assumed}", {"assumed": text}) for text in assumed_density(self.densities))
         return (*density, *(() if self.known is None else self.known.assumed))
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What can be computed with but was hardly meant, in words."""
+        """Warnings about implausible values, as texts."""
         (left, right), height = self.local_feet, self.local_moments.y
         return plausibility.of_body(height, 2.0 * height / (right - left), self.densities)
 
     def answer(self, gravity: float = conventions.g) -> Answer:
-        """Return what is shown of the body.
+        """Return the results of the body.
 
         Parameters
         ----------
@@ -273,39 +273,39 @@ class Body(ABC):
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether both feet are equally far from the centre of mass (to 1e-12 of the base)."""
+        """True if both feet have the same distance from the centre of mass (to 1e-12 of the base)."""
         left, right = self.local_feet
         return abs(self.local_moments.x - 0.5 * (left + right)) <= 1e-12 * (right - left)
 
     @property
     def slenderness_ratio(self) -> float:
-        """Slenderness h/b [-] of a body with equal sides."""
-        return self._either_side("slenderness_ratio").slenderness_ratio
+        """Slenderness h/b of a body with equal sides [-]."""
+        return self._common_side("slenderness_ratio").slenderness_ratio
 
     @property
     def slenderness_angle(self) -> float:
-        """Slenderness angle alpha = atan(b/h) [rad] of a body with equal sides."""
-        return self._either_side("slenderness_angle").slenderness_angle
+        """Slenderness angle alpha = atan(b/h) of a body with equal sides [rad]."""
+        return self._common_side("slenderness_angle").slenderness_angle
 
     @property
     def semi_diagonal(self) -> float:
-        """Distance R from a foot to the centre of mass [m] of a body with equal sides."""
-        return self._either_side("semi_diagonal").semi_diagonal
+        """Distance R from a foot to the centre of mass of a body with equal sides [m]."""
+        return self._common_side("semi_diagonal").semi_diagonal
 
     @property
     def frequency_parameter(self) -> float:
-        """Frequency parameter p [rad/s] of a body with equal sides, at standard gravity."""
-        return self._either_side("frequency_parameter").frequency_parameter
+        """Frequency parameter p of a body with equal sides, at standard gravity [rad/s]."""
+        return self._common_side("frequency_parameter").frequency_parameter
 
     @property
     def uplift_acceleration(self) -> float:
-        """Ground acceleration at which rocking starts [m/s2] of a body with equal sides, at standard gravity."""
-        return self._either_side("uplift_acceleration").uplift_acceleration
+        """Uplift acceleration of a body with equal sides, at standard gravity [m/s2]."""
+        return self._common_side("uplift_acceleration").uplift_acceleration
 
-    def _either_side(self, name: str) -> Side:
+    def _common_side(self, name: str) -> Side:
         if not self.is_symmetric:
             raise AsymmetricBodyError(
-                '{quantity} depends on the side of this body; ask body.side("left").{quantity} or "right"',
+                '{quantity} depends on the side of this body. Use body.side("left").{quantity} or body.side("right").',
                 quantity=name,
             )
         return self.side("right")
@@ -313,21 +313,21 @@ class Body(ABC):
     def _check_support(self) -> None:
         moments, (left, right) = self.local_moments, self.local_feet
         if not (moments.mass > 0.0 and math.isfinite(moments.polar)):
-            raise GeometryError("the body must have a finite mass > 0 kg, got {mass:g}", mass=moments.mass)
+            raise GeometryError("The mass of the body must be finite and > 0 kg, got {mass:g}.", mass=moments.mass)
         slack = _SUPPORT_TOLERANCE * (right - left)
         if not left + slack < moments.x < right - slack:
             x = self.origin_x + moments.x
             a, b = self.feet
             raise GeometryError(
                 "the centre of mass (x = {x}) must lie between the feet ({left} and {right})",
-                parameter="centre", value=x, hint="a body like this falls over by itself",
+                parameter="centre", value=x, hint="this body is not stable",
                 x=Amount(x, "m", ".6g"), left=Amount(a, "", ".6g"), right=Amount(b, "m", ".6g"),
             )  # fmt: skip
         plausibility.warn(self.doubts)
 
 
 def feet_of(feet: Any) -> Interval:
-    """Return two positions of feet [m] as numbers."""
+    """Return the positions of the two feet as numbers [m]."""
     try:
         left, right = feet
     except (TypeError, ValueError) as error:
@@ -336,32 +336,29 @@ def feet_of(feet: Any) -> Interval:
 
 
 def assumed_rows(body: Any) -> list[tuple[str, str]]:
-    """Return what was assumed of a body, plane or in space, as label and text of lines of a table."""
+    """Return the assumptions about a body as rows (label, text) of a table."""
     density = assumed_density(body.densities)
-    return [*(("density", each) for each in density), *(("assumed", each) for each in body.assumed[len(density) :])]
+    return [*(("density", text) for text in density), *(("assumed", text) for text in body.assumed[len(density) :])]
 
 
-_ASSUMED_DENSITY = {  # by whether all densities are assumed, and whether they are scaled
-    (True, False): (
-        "{density:g} kg/m3 assumed, that of plain concrete; mass and forces depend on it, rotations do not"
-    ),
+_ASSUMED_DENSITY = {  # by (all densities are assumed, the densities are scaled)
+    (True, False): ("{density:g} kg/m3 assumed (plain concrete); it affects mass and forces, not rotations"),
     (True, True): (
-        "{density:g} kg/m3 assumed, that of plain concrete, scaled to {scaled:.6g}; mass and forces depend on "
-        "it, rotations do not"
+        "{density:g} kg/m3 assumed (plain concrete), scaled to {scaled:.6g}; it affects mass and forces, not rotations"
     ),
     (False, False): (
-        "{density:g} kg/m3 assumed for {parts} of {total} parts, that of plain concrete; the centre of mass "
-        "and rotations depend on it"
+        "{density:g} kg/m3 assumed for {parts} of {total} parts (plain concrete); it affects the centre of mass "
+        "and rotations"
     ),
     (False, True): (
-        "{density:g} kg/m3 assumed for {parts} of {total} parts, that of plain concrete, scaled to "
-        "{scaled:.6g}; the centre of mass and rotations depend on it"
+        "{density:g} kg/m3 assumed for {parts} of {total} parts (plain concrete), scaled to {scaled:.6g}; it affects "
+        "the centre of mass and rotations"
     ),
 }
 
 
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
-    """Return what was assumed about densities."""
+    """Return the assumptions about densities, as texts."""
     assumed = [value for value in densities if isinstance(value, Assumed)]
     if not assumed:
         return ()

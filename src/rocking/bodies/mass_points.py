@@ -1,4 +1,4 @@
-"""A body given as mass points: the system in which Mao et al. (2024) write their model."""
+"""A body of mass points, as in the model of Mao et al. (2024)."""
 
 import math
 from collections.abc import Sequence
@@ -14,22 +14,22 @@ from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.messages import Index
 
-HEAVIEST = 1e36  # no point is heavier than this [kg]: sums and moments stay far from overflow
+HEAVIEST = 1e36  # largest mass of a point, which avoids overflow of sums and moments [kg]
 
 
 class MassPoints(Body):
-    """A rigid body lumped into points, for instance from a mesh.
+    """A rigid body of mass points, for instance from a mesh.
 
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        Positions (x, y), none below the ground y = 0 [m].
+        Positions (x, y) with y >= 0; the ground is y = 0 [m].
     masses : array_like, shape (n,)
         Masses, all above zero [kg].
     feet : (float, float)
         Positions of the left and right foot on the ground [m].
     contact : sequence of (float, float), optional
-        Flat stretches of the base that touch the ground [m]; by default all of it, from foot to foot.
+        Contact intervals of the base [m]; the default is the complete base between the feet.
 
     Raises
     ------
@@ -40,7 +40,7 @@ class MassPoints(Body):
 
     Examples
     --------
-    A single mass at the polar angle phi seen from the new pivot has r = sin(phi)**2:
+    A single mass at the polar angle phi from the new pivot has r = sin(phi)**2:
 
     >>> import rocking as rk
     >>> lollipop = rk.MassPoints([(0.0, 2.0)], [1.0], feet=(-1.0, 1.0))
@@ -59,7 +59,7 @@ class MassPoints(Body):
         if self.masses.max(initial=0.0) > HEAVIEST:
             raise GeometryError(
                 "{parameter} must not exceed {limit:g} kg, got {value}", parameter="masses",
-                value=float(self.masses.max()), limit=HEAVIEST, hint="wrong unit?",
+                value=float(self.masses.max()), limit=HEAVIEST, hint="check the unit",
             )  # fmt: skip
         if self.masses.ndim != 1:
             raise GeometryError(
@@ -77,7 +77,7 @@ class MassPoints(Body):
 
     @cached_property
     def local_moments(self) -> PlaneMoments:
-        """Sums over the points."""
+        """Mass, centre and central second moments, as sums over the points."""
         mass = float(self.masses.sum())
         x, y = (self.masses[:, None] * self.points).sum(axis=0) / mass
         xx, yy = (self.masses[:, None] * (self.points - (x, y)) ** 2).sum(axis=0)
@@ -85,7 +85,7 @@ class MassPoints(Body):
 
     @property
     def local_contact(self) -> tuple[Interval, ...]:
-        """The stretches that were given, cut at the feet, or the whole base between them [m]."""
+        """Stated contact intervals between the feet, by default the complete base [m]."""
         if self._contact is None:
             return (self._feet,)
         left, right = self._feet
@@ -94,13 +94,13 @@ class MassPoints(Body):
 
     @property
     def local_box(self) -> tuple[float, float, float, float]:
-        """Box around points and feet [m]."""
+        """Bounding box of points and feet (x_min, y_min, x_max, y_max) [m]."""
         left, right = self._feet
         x, y = self.points.T
         return min(left, float(x.min())), 0.0, max(right, float(x.max())), float(y.max())
 
     def mirrored(self) -> "MassPoints":
-        """Return the points seen in a vertical mirror at x = 0."""
+        """Return the points mirrored about x = 0."""
         left, right = self._feet
         contact = None if self._contact is None else [(-b, -a) for a, b in self._contact]
         return MassPoints(self.points * (-1.0, 1.0), self.masses, (-right, -left), contact)
@@ -123,7 +123,7 @@ def _stretches(contact: Any) -> list[Interval]:
     for a, b in pairs:
         if not (math.isfinite(a) and math.isfinite(b) and a <= b):
             raise GeometryError(
-                "a stretch of {parameter} must be finite with left <= right, got ({left:g}, {right:g}) m",
+                "An interval of {parameter} must be finite with left <= right, got ({left:g}, {right:g}) m.",
                 parameter="contact", left=a, right=b,
             )  # fmt: skip
     return pairs
@@ -143,7 +143,7 @@ def _points(points: Any, count: int) -> FloatArray:
     if np.abs(result).max() > checks.LARGEST:
         raise GeometryError(
             "{parameter} must be within {limit:g} m of the origin", parameter="points", limit=checks.LARGEST,
-            hint="wrong unit?",
+            hint="check the unit",
         )  # fmt: skip
     if bad.any():
         i = int(np.argmax(bad))

@@ -1,4 +1,4 @@
-"""Mass, centre and second moments, in the plane and in space, and how those of parts add up."""
+"""Mass, centre and second moments in 2D and 3D, and their sums over parts."""
 
 import math
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ from rocking.portable import applied, gram, times
 
 @dataclass(frozen=True, slots=True)
 class PlaneMoments:
-    """Zeroth, first and central second moments of a plane mass distribution."""
+    """Zeroth, first and central second moments of a 2D mass distribution."""
 
     mass: float  # integral of dm [kg], or of dA [m2] for a bare ring; negative for a hole
     x: float  # x, y: centre [m]
@@ -26,13 +26,13 @@ class PlaneMoments:
         return self.xx + self.yy
 
     def times(self, weight: float) -> "PlaneMoments":
-        """Return the same shape with `weight` times the mass."""
+        """Return the moments of the shape with `weight` times the mass."""
         return PlaneMoments(self.mass * weight, self.x, self.y, self.xx * weight, self.yy * weight)
 
 
 def ring_moments(ring: FloatArray) -> PlaneMoments:
     """Return exact moments of the area inside a ring, positive if counter-clockwise, by Green's theorem."""
-    # from the middle of its own box, so that nothing cancels far from the origin
+    # origin in the middle of the bounding box, against cancellation far from the user's origin
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     x, y = (ring - middle).T
     x1, y1 = np.roll(x, -1), np.roll(y, -1)
@@ -46,7 +46,7 @@ def ring_moments(ring: FloatArray) -> PlaneMoments:
 
 
 def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
-    """Moments of several parts together (parallel-axis theorem); holes have negative mass."""
+    """Return the sum of the moments of parts (parallel-axis theorem); holes have negative mass."""
     m, x, y, xx, yy = np.array([(p.mass, p.x, p.y, p.xx, p.yy) for p in parts]).T
     mass = float(m.sum())
     cx, cy = float((m * x).sum()) / mass, float((m * y).sum()) / mass
@@ -56,10 +56,10 @@ def combined_plane(parts: Iterable[PlaneMoments]) -> PlaneMoments:
 def quarters(
     moments: PlaneMoments, box: tuple[float, float, float, float]
 ) -> tuple[list[FloatArray], FloatArray, FloatArray]:
-    """Return a distribution of mass within a box that has these moments, as `Body.assumed` says."""
-    # Returns rectangles, counter-clockwise from the centre [m]; the corners of the box [m], shape (4, 2); and masses in
-    # rectangle and corner, shape (2, 4) [kg]. Rectangles of the whole quarters have a third of the moment of all mass
-    # in the corners.
+    """Return a mass distribution within a box with the given moments, as in `Body.assumed`."""
+    # Returns rectangles, counter-clockwise from the centre [m], the corners of the box, shape (4, 2) [m], and the
+    # masses in rectangles and corners, shape (2, 4) [kg]. Masses in the complete quarters have a third of the moment
+    # of the same masses in the corners.
     centre = np.array([moments.x, moments.y])
     left, low, right, high = box
     corners = np.array([[left, low], [right, low], [right, high], [left, high]])
@@ -75,7 +75,7 @@ def quarters(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolidMoments:
-    """Zeroth, first and central second moments of a mass distribution in space."""
+    """Zeroth, first and central second moments of a 3D mass distribution."""
 
     mass: float  # integral of dm [kg], or of dV [m3] for a bare shape
     centre: FloatArray  # centre of mass [m]; shape (3,)
@@ -87,11 +87,11 @@ class SolidMoments:
         return _inertia(self.second)
 
     def times(self, weight: float) -> "SolidMoments":
-        """Return the same shape with `weight` times the mass."""
+        """Return the moments of the shape with `weight` times the mass."""
         return SolidMoments(self.mass * weight, self.centre, self.second * weight)
 
     def placed(self, rotation: FloatArray, translation: FloatArray) -> "SolidMoments":
-        """Return the moments of the distribution rotated [-], then translated [m]."""
+        """Return the moments after a rotation [-] and then a translation [m]."""
         return SolidMoments(
             self.mass, applied(rotation, self.centre) + translation, times(times(rotation, self.second), rotation.T)
         )
@@ -112,7 +112,7 @@ def _inertia(second: FloatArray) -> FloatArray:
 
 
 def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
-    """Return the moments of several parts together; holes have negative mass."""
+    """Return the sum of the moments of parts; holes have negative mass."""
     listed = list(parts)
     masses = np.array([part.mass for part in listed])
     centres = np.array([part.centre for part in listed])
@@ -124,10 +124,9 @@ def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
 
 def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
     """Return exact moments of the volume inside a closed surface of triangles, by the divergence theorem."""
-    # unit weight
-    # From the middle of its box, so that nothing cancels far from the origin. Each triangle (a, b, c) stands for the
-    # tetrahedron over it, of signed volume a.(b x c)/6 and second moments V/20 (a a^T + b b^T + c c^T + s s^T),
-    # s = a + b + c; faces are counter-clockwise seen from outside, inward ones count negative.
+    # The density is 1. The origin is the middle of the bounding box, against cancellation. Each triangle (a, b, c) and
+    # the origin form a tetrahedron of signed volume V = a.(b x c)/6 and second moments
+    # V/20 (a a^T + b b^T + c c^T + s s^T) with s = a + b + c. Outward faces are counter-clockwise and count positive.
     middle = np.array([0.5 * (triangles[..., i].min() + triangles[..., i].max()) for i in range(3)])
     a, b, c = np.moveaxis(triangles - middle, 1, 0)
     volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0

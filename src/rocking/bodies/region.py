@@ -1,4 +1,4 @@
-"""One polygon of one material, and rings of polygons: which are valid, which are holes, and their triangles."""
+"""Polygons of one material: validation of rings, detection of holes, triangulation."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -15,16 +15,15 @@ from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, located
 from rocking.messages import Amount, Index, Message
 
-# Neighbouring regions share edges that rounding may cross: overlaps below this share of the smaller area pass.
-OVERLAP_TOLERANCE = 1e-9
+OVERLAP_TOLERANCE = 1e-9  # largest overlap / smaller area of regions with a common edge, for rounding
 
 
 def checked_ring(name: str, points: Any) -> FloatArray:
-    """Return vertices as an open ring of distinct neighbours."""
+    """Return vertices as an open ring without repeated neighbours."""
     try:
         vertices = checks.real_array(name, points)
     except InvalidValueError as error:
-        raise GeometryError("{ring} must be a list of (x, y) points in m, all numbers", ring=name) from error
+        raise GeometryError("{ring} must be a list of (x, y) points in m, with numbers only", ring=name) from error
     if vertices.ndim != 2 or vertices.shape[1:] != (2,):
         raise GeometryError(
             "{ring} must be a list of (x, y) points, got an array of shape {shape}", ring=name, shape=vertices.shape
@@ -38,7 +37,10 @@ def checked_ring(name: str, points: Any) -> FloatArray:
         )  # fmt: skip
     if np.abs(vertices).max(initial=0.0) > LARGEST:
         raise GeometryError(
-            "{ring}: coordinates must be within {limit:g} m of the origin", ring=name, limit=LARGEST, hint="wrong unit?"
+            "{ring}: coordinates must be within {limit:g} m of the origin",
+            ring=name,
+            limit=LARGEST,
+            hint="check the unit",
         )
     kept: FloatArray = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
     if len(kept) < 3:
@@ -47,10 +49,10 @@ def checked_ring(name: str, points: Any) -> FloatArray:
 
 
 def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -> None:
-    """Refuse rings that cross themselves or each other, and holes outside their outline."""
+    """Refuse crossing rings, and holes outside their outline."""
     import shapely
 
-    # local coordinates: far from the origin GEOS would work on what rounding leaves over
+    # local coordinates, against rounding errors of GEOS far from the origin
     origin = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
     rings: list[tuple[str | Message, FloatArray]] = [("outline", outline)]
     rings += [(Message("hole {hole}", {"hole": Index(i)}), hole) for i, hole in enumerate(holes)]
@@ -61,18 +63,20 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
                 raise _crossing(shapely.is_valid_reason(polygon), origin, ring)
             box = np.ptp(points, axis=0)
             if box.max() < SMALLEST:
-                least = Amount(SMALLEST, "m")
-                raise GeometryError("{ring} is smaller than {least}", ring=ring, least=least, hint="wrong unit?")
+                limit = Amount(SMALLEST, "m")
+                raise GeometryError("{ring} is smaller than {limit}", ring=ring, limit=limit, hint="check the unit")
             if polygon.area <= 1e-14 * float(box.max()) ** 2:
-                raise GeometryError("{ring} encloses no area", ring=ring, hint="are all its points on one line?")
+                raise GeometryError(
+                    "{ring} encloses no area", ring=ring, hint="check that its points are not collinear"
+                )
         if holes:
-            whole = shapely.Polygon(outline - origin, [hole - origin for hole in holes])
-            if not whole.is_valid:
-                raise _holes_that_cross(shapely.is_valid_reason(whole), origin)
+            polygon = shapely.Polygon(outline - origin, [hole - origin for hole in holes])
+            if not polygon.is_valid:
+                raise _invalid_hole(shapely.is_valid_reason(polygon), origin)
 
 
 def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) -> None:
-    """Refuse regions that overlap; shared edges are welcome."""
+    """Refuse overlapping regions; common edges are allowed."""
     if len(polygons) < 2:
         return
     import shapely
@@ -86,30 +90,30 @@ def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) 
         if shared > OVERLAP_TOLERANCE * min(shapes[i].area, shapes[j].area):
             raise GeometryError(
                 "regions {first} and {second} overlap over {area}",
-                hint="cut a hole in one of them where the other lies",
+                hint="cut a hole for one region in the other",
                 first=Index(i), second=Index(j), area=Amount(shared, "m2", ".6g"),
             )  # fmt: skip
 
 
-def _crossing(words: str, origin: FloatArray, ring: str | Message) -> GeometryError:
-    """Return the error of a ring that is not simple, in which GEOS sees a fault at a point."""
-    kind, facts = _split(words, origin)
+def _crossing(geos_reason: str, origin: FloatArray, ring: str | Message) -> GeometryError:
+    """Return the error of a ring that is not simple, with the location from GEOS."""
+    kind, facts = _split(geos_reason, origin)
     if "Self-intersection" in kind:
         return GeometryError(
-            "{ring} crosses or touches itself" + _NEAR, ring=ring, **facts, hint="are two points swapped?"
+            "{ring} crosses or touches itself" + _NEAR, ring=ring, **facts, hint="check the order of the points"
         )
     return GeometryError("{ring} is not a simple ring: {kind}" + _NEAR, ring=ring, kind=kind.lower(), **facts)
 
 
-def _holes_that_cross(words: str, origin: FloatArray) -> GeometryError:
-    kind, facts = _split(words, origin)
+def _invalid_hole(geos_reason: str, origin: FloatArray) -> GeometryError:
+    kind, facts = _split(geos_reason, origin)
     if "outside" in kind:
-        hint = "are hole and outline swapped?"
+        hint = "check that hole and outline are not exchanged"
         return GeometryError("a hole lies outside the outline" + _NEAR, **facts, hint=hint)
     if "nested" in kind.lower() or "Duplicate" in kind:
         return GeometryError("one hole lies inside another" + _NEAR, **facts)
     if "disconnected" in kind:
-        hint = "give each piece as a region of its own"
+        hint = "use one region for each piece"
         return GeometryError("the holes cut the region in two" + _NEAR, **facts, hint=hint)
     return GeometryError("a hole crosses the outline or another hole" + _NEAR, **facts)
 
@@ -117,18 +121,18 @@ def _holes_that_cross(words: str, origin: FloatArray) -> GeometryError:
 _NEAR = " near x = {x}, y = {y}"
 
 
-def _split(words: str, origin: FloatArray) -> tuple[str, dict[str, Any]]:
-    """Return the fault that GEOS sees, and where, of words such as "Self-intersection[1 2]"."""
-    kind, x, y = re.fullmatch(r"(.*?)\[(\S+) (\S+)\]", words).groups()  # type: ignore[union-attr]
-    places = float(x) + float(origin[0]), float(y) + float(origin[1])
-    return kind, {axis: Amount(place, "m", ".9g") for axis, place in zip("xy", places, strict=True)}
+def _split(geos_reason: str, origin: FloatArray) -> tuple[str, dict[str, Any]]:
+    """Return fault and coordinates from a text of GEOS such as "Self-intersection[1 2]"."""
+    kind, x, y = re.fullmatch(r"(.*?)\[(\S+) (\S+)\]", geos_reason).groups()  # type: ignore[union-attr]
+    point = float(x) + float(origin[0]), float(y) + float(origin[1])
+    return kind, {axis: Amount(value, "m", ".9g") for axis, value in zip("xy", point, strict=True)}
 
 
 Nested = tuple[FloatArray, list[FloatArray]]
 
 
 def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
-    """Sort rings into outlines, inside an even number of others, and the holes of the innermost outline around them."""
+    """Return the outlines with their holes; outlines lie inside an even number of rings, holes inside an odd number."""
     import shapely
 
     kept = [checked_ring(name, ring) for name, ring in zip(names, rings, strict=True)]
@@ -141,10 +145,8 @@ def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
     around: list[list[int]] = [[] for _ in kept]
     for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
         if i < j and shapes[i].normalize().equals_exact(shapes[j].normalize(), 1e-12 * float(np.sqrt(areas[i]))):
-            raise BodyFileError(
-                "{curve} and {copy} are the same curve drawn twice; delete one", curve=names[i], copy=names[j]
-            )
-        # a point of a large ring may fall inside a small one in its middle: that is no nesting
+            raise BodyFileError("{curve} and {copy} are the same curve. Remove one.", curve=names[i], copy=names[j])
+        # a point of a large ring can lie inside a small ring; only covered rings are nested
         if areas[i] < areas[j] and shapes[j].covers(shapes[i]):
             around[i].append(j)
     return [
@@ -177,11 +179,11 @@ class Region:
     Parameters
     ----------
     outline : array_like, shape (n, 2)
-        Vertices (x, y), y up [m], in either sense of rotation; the first need not be repeated at the end.
+        Vertices (x, y), y upwards, clockwise or counter-clockwise, with or without a repeated first vertex [m].
     density : float
         Density [kg/m3].
     holes : sequence of array_like
-        Rings cut out of the outline [m].
+        Rings of the holes in the outline [m].
 
     Raises
     ------
@@ -202,8 +204,8 @@ class Region:
     holes: tuple[FloatArray, ...]
 
     def __init__(self, outline: ArrayLike, density: float = DEFAULT_DENSITY, holes: Sequence[ArrayLike] = ()) -> None:
-        given: object = holes
-        if not isinstance(given, (Sequence, np.ndarray)):
+        rings: object = holes
+        if not isinstance(rings, (Sequence, np.ndarray)):
             raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
         outer = checked_ring("outline", outline)
         inner = tuple(checked_ring(Message("hole {hole}", {"hole": Index(i)}), hole) for i, hole in enumerate(holes))
@@ -211,7 +213,7 @@ class Region:
         self._set(outer, checks.density("density", density), inner)
 
     def _set(self, outline: FloatArray, density: float, holes: Sequence[FloatArray]) -> None:
-        # outline counter-clockwise, holes clockwise: the boundary integrals then add up by themselves
+        # outline counter-clockwise, holes clockwise, for the sum of the boundary integrals
         object.__setattr__(self, "outline", _turned(outline, 1.0))
         object.__setattr__(self, "density", density)
         object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))
@@ -232,24 +234,24 @@ class Region:
         Returns
         -------
         Region
-            The same shape elsewhere.
+            Moved region.
         """
         return self.mapped(lambda ring: ring + np.array([dx, dy]))
 
     def mapped(self, change: Callable[[FloatArray], FloatArray], density: float = 1.0) -> "Region":
-        """Return the region under a similarity, with its density times a factor.
+        """Return the region after a similarity transformation, with a scaled density.
 
         Parameters
         ----------
         change : callable
-            Takes a ring (n, 2) and returns it moved, mirrored or scaled.
+            Function from a ring (n, 2) to the moved, mirrored or scaled ring [m].
         density : float
-            Factor on the density [-].
+            Scale factor of the density [-].
 
         Returns
         -------
         Region
-            Not checked again: a similarity keeps a valid region valid.
+            Transformed region, without further checks.
         """
         region = object.__new__(Region)
         outline, *holes = (change(ring) for ring in self.rings)

@@ -1,4 +1,4 @@
-"""A body of any plane shape: polygons with holes, each with its density."""
+"""A 2D body of any shape: polygons with holes, each with its density."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -19,37 +19,38 @@ from rocking.messages import Amount, Message, Option, Range
 
 
 class Section(Body):
-    """A rigid body whose cross-section is any set of polygons.
+    """A rigid body with any set of polygons as cross-section.
 
     Parameters
     ----------
     regions : sequence of Region
-        The polygons [m]; they may touch but not overlap, and move as one rigid body even where they do not touch.
+        Polygons of one rigid body [m]; they may touch but not overlap.
     feet : (float, float), optional
-        Positions of the left and right foot on the ground [m]; by default the ends of the base.
+        Positions of the left and right foot on the ground [m]; the default is the ends of the base.
     depth : float
         Depth out of the plane [m].
     ground : float
-        Height of the ground [m]: the lowest vertices must lie on it.
+        Height of the ground, equal to that of the lowest vertices [m].
     mass : float, optional
-        Mass, if known, in place of densities [kg].
+        Known mass, in place of densities [kg].
     centre : (float, float), optional
-        Centre of mass (x, y), if known; by default that of its densities [m].
+        Known centre of mass (x, y) [m]; the default follows from the densities.
     moment_of_inertia : float, optional
-        Polar moment about the centre of mass, if known [kg m2].
+        Known polar moment about the centre of mass [kg m2].
 
     Raises
     ------
     GeometryError
         If regions overlap, the body does not touch the ground, a foot lies outside the base, the centre of
-        mass is not between the feet or outside the outline, or no body in this outline has such a moment.
+        mass is not between the feet or outside the outline, or the moment of inertia is impossible in this outline.
     InvalidValueError
         If a number is not finite or outside its range, or mass and densities are both given.
 
     Notes
     -----
-    A moment of inertia that is not given is the share of the most that the outline allows about the known centre of
-    mass that it is of the homogeneous body. `assumed` says so, and what the models take that ask how mass is spread.
+    The default moment of inertia for a known centre of mass is a fraction of the largest possible value in the outline.
+    This fraction is the same as for the homogeneous body. `assumed` contains this assumption, and the mass distribution
+    for the models that need it.
 
     Examples
     --------
@@ -61,7 +62,7 @@ class Section(Body):
     >>> round(rk.coefficient_of_restitution(section, "housner"), 10)
     0.7416338583
 
-    A cabinet of 300 kg whose centre of mass was found by tilting it:
+    A cabinet of 300 kg with the centre of mass from a tilt test:
 
     >>> cabinet = rk.Section.from_rectangle(0.8, 2.0, mass=300.0, centre=(0.42, 0.7), moment_of_inertia=95.0)
     >>> round(cabinet.side("left").slenderness_ratio, 12), round(cabinet.side("right").slenderness_ratio, 12)
@@ -79,10 +80,10 @@ class Section(Body):
         centre: tuple[float, float] | None = None,
         moment_of_inertia: float | None = None,
     ) -> None:
-        given: object = regions
-        regions = tuple(regions) if isinstance(given, Sequence) else ()
+        stated: object = regions
+        regions = tuple(regions) if isinstance(stated, Sequence) else ()
         if not regions or not all(isinstance(region, Region) for region in regions):
-            raise GeometryError("a Section needs a list of at least one Region(outline, density, holes)")
+            raise GeometryError("A Section needs a list of at least one Region(outline, density, holes).")
         self._depth = checks.length("depth", depth)
         self._ground = checks.number("ground", ground, "m")
         low = np.min([region.outline.min(axis=0) for region in regions], axis=0)
@@ -92,11 +93,11 @@ class Section(Body):
         if abs(float(low[1]) - self._ground) > GROUND_TOLERANCE * self._size:
             lowest = float(low[1])
             raise GeometryError(
-                "the body floats above the ground: its lowest point is y = {y}, the ground {ground}"
+                "the lowest point of the body, y = {y}, is above the ground at {ground}"
                 if lowest > self._ground
-                else "the body reaches below the ground: its lowest point is y = {y}, the ground {ground}",
+                else "the lowest point of the body, y = {y}, is below the ground at {ground}",
                 y=Amount(lowest, "m", ".9g"), ground=Amount(self._ground, "m", ".9g"),
-                hint=Message("pass {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
+                hint=Message("use {option} or move the outline", {"option": Option("body.section.ground", lowest)}),
             )  # fmt: skip
         self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
         check_disjoint([(region.outline, region.holes) for region in self.regions])
@@ -132,9 +133,9 @@ class Section(Body):
         density : float
             Density [kg/m3].
         holes : sequence of array_like
-            Rings cut out [m].
+            Rings of the holes [m].
         feet : (float, float), optional
-            Positions of the feet [m]; by default the ends of the base.
+            Positions of the feet [m]; the default is the ends of the base.
         **options
             ``depth``, ``ground``, ``mass``, ``centre``, ``moment_of_inertia``, as for the class.
 
@@ -153,7 +154,7 @@ class Section(Body):
 
     @classmethod
     def from_rectangle(cls, width: float, height: float, **options: Any) -> "Section":
-        """Return a rectangle standing on 0 <= x <= width.
+        """Return a rectangle with the base 0 <= x <= width.
 
         Parameters
         ----------
@@ -171,14 +172,14 @@ class Section(Body):
 
     @classmethod
     def from_trapezoid(cls, base: float, top: float, height: float, lean: float = 0.0, **options: Any) -> "Section":
-        """Return a trapezoid standing on 0 <= x <= base.
+        """Return a trapezoid with the base 0 <= x <= base.
 
         Parameters
         ----------
         base, top, height : float
             Width at the ground, width at the top, height [m].
         lean : float
-            Distance by which the middle of the top lies right of the middle of the base [m].
+            Horizontal offset of the middle of the top from the middle of the base, positive to the right [m].
         **options
             As for `from_points`.
 
@@ -191,7 +192,7 @@ class Section(Body):
 
     @classmethod
     def from_regular_polygon(cls, sides: int, radius: float, **options: Any) -> "Section":
-        """Return a regular polygon standing on one of its sides.
+        """Return a regular polygon with one side as base.
 
         Parameters
         ----------
@@ -211,7 +212,7 @@ class Section(Body):
 
     @classmethod
     def from_ellipse(cls, width: float, height: float, sides: int = 64, **options: Any) -> "Section":
-        """Return an ellipse as an inscribed polygon standing on one of its sides.
+        """Return an ellipse as an inscribed polygon with one side as base.
 
         Parameters
         ----------
@@ -236,7 +237,7 @@ class Section(Body):
 
     @property
     def origin_x(self) -> float:
-        """Middle of the body's box in the user's coordinates [m]."""
+        """Middle of the bounding box in the user's coordinates [m]."""
         return self._origin_x
 
     @property
@@ -253,7 +254,7 @@ class Section(Body):
 
     @cached_property
     def local_moments(self) -> PlaneMoments:
-        """Mass, centre and central second moments in the local frame: known, or exact for polygons."""
+        """Mass, centre and central second moments in the local frame, known or from the polygons."""
         moments = combined_plane(
             ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )
@@ -268,7 +269,7 @@ class Section(Body):
 
     @cached_property
     def local_contact(self) -> tuple[Interval, ...]:
-        """Flat stretches of the base between the feet, local frame [m]; none if it stands on points."""
+        """Contact intervals of the base between the feet, in the local frame [m]; empty for contact points."""
         (left, right), slack = self._local_feet, GROUND_TOLERANCE * self._size
         ends = np.sort(np.concatenate([_level_edges(region.outline, slack) for region in self.regions]), axis=1)
         a, b = ends[np.lexsort(ends.T[::-1])].T.clip(left, right)
@@ -299,7 +300,7 @@ class Section(Body):
         return density
 
     def mirrored(self) -> "Section":
-        """Return the section seen in a vertical mirror."""
+        """Return the section with left and right exchanged."""
         left, right = self._local_feet
         section = self._copy(lambda ring: ring * np.array([-1.0, 1.0]), (-right, -left))
         section._known = self._known and self._known.mirrored()
@@ -335,13 +336,13 @@ class Section(Body):
         base = float(touching.min()), float(touching.max())
         if feet is None:
             if base[1] - base[0] <= slack:
-                raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
+                raise GeometryError("The body touches the ground at one point; two feet are needed.")
             return base
         left, right = feet_of(feet)
         left, right = left - origin, right - origin
         if not left < right:
             raise GeometryError(
-                "the left foot must lie left of the right one, got {left} and {right}", parameter="feet", value=feet,
+                "the left foot must be left of the right foot, got {left} and {right}", parameter="feet", value=feet,
                 left=Amount(feet[0]), right=Amount(feet[1], "m"),
             )  # fmt: skip
         slack += 4.0 * math.ulp(abs(origin))
@@ -357,7 +358,7 @@ class Section(Body):
 
 
 def _level_edges(outline: FloatArray, tolerance: float) -> FloatArray:
-    """Return both ends of every edge that lies on the ground; shape (n, 2)."""
+    """Return the x coordinates of both ends of every edge on the ground, shape (n, 2) [m]."""
     x, y = outline.T
     low = np.abs(y) <= tolerance
     both = low & np.roll(low, -1)

@@ -1,4 +1,4 @@
-"""Outlines of common shapes, standing on the ground, to make regions of."""
+"""Outlines of common shapes on the ground, for regions."""
 
 import math
 
@@ -38,7 +38,7 @@ def trapezoid(base: float, top: float, height: float, lean: float = 0.0) -> Floa
     base, top, height : float
         Width at the ground, width at the top, height [m].
     lean : float
-        Distance by which the middle of the top lies right of the middle of the base [m].
+        Horizontal offset of the middle of the top from the middle of the base, positive to the right [m].
 
     Returns
     -------
@@ -56,7 +56,7 @@ def trapezoid(base: float, top: float, height: float, lean: float = 0.0) -> Floa
 
 
 def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
-    """Return an ellipse as an inscribed polygon whose lowest side lies on the ground.
+    """Return an ellipse as an inscribed polygon with its lowest side on the ground.
 
     Parameters
     ----------
@@ -85,13 +85,13 @@ def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
     angle = -0.5 * math.pi + 2.0 * math.pi / sides * (np.arange(sides) + 0.5)
     x, y = 0.5 * w * np.cos(angle), 0.5 * h * np.sin(angle)
     y = y - y.min()
-    # the two lowest vertices are mirror images; rounding must not tilt the base
+    # the two lowest vertices are mirror images; this prevents a tilt of the base from rounding
     y[[0, -1]] = 0.0
     return np.column_stack([x, y])
 
 
 def regular_polygon(sides: int, radius: float) -> FloatArray:
-    """Return a regular polygon standing on one of its sides.
+    """Return a regular polygon with one side on the ground.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ from rocking.cli.spelling import UsageError
 from rocking.conventions import g
 from rocking.errors import located
 from rocking.quantities import closely
-from rocking.spec.bodies import body_moved
+from rocking.spec.bodies import body_for_motion
 from rocking.spec.fields import JobTable
 from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 from rocking.spec.settings_tables import SettingsTable
@@ -145,7 +145,7 @@ def body_of(arguments: Arguments, word: str | None, in_space: bool = False) -> t
 def _made(tables: dict[str, Any], files: InputFiles, in_space: bool) -> tuple[Any, float]:
     document = checked(BodyDocument, tables)
     with located("body"):
-        return body_moved(document.body, files, turned=in_space), document.settings.gravity or g
+        return body_for_motion(document.body, files, in_space=in_space), document.settings.gravity or g
 
 
 @dataclass(frozen=True)

@@ -92,10 +92,10 @@ class ValidationAnswer:
     def draw(self) -> Any:
         from rocking.plots import reliability_picture
 
-        return reliability_picture(next(iter(self.result.found.values())))
+        return reliability_picture(next(iter(self.result.scores.values())))
 
     def show(self, page: Page) -> None:
-        for validation in self.result.found.values():
+        for validation in self.result.scores.values():
             page.line(validation.verdict, style="bold")
             for line in validation.sentences[1:]:
                 page.line(line)

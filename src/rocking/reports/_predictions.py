@@ -66,17 +66,17 @@ def validation_content(validations: FolderValidation, *, name: str, date: str) -
     left_out = [table(f"Rows of {validations.source} that cannot be used", ["line", "reason"], rows)] if rows else []
     count = Paragraph(f"{_count(validations.prediction)}.")
     sections = [
-        *(_event(event, row) for event, row in validations.found.items()),
+        *(_event(event, row) for event, row in validations.scores.items()),
         _assumed(validations.prediction),
         ReportSection("Method", [Paragraph(_VALIDATED), count, *left_out]),
     ]
-    first = next(iter(validations.found.values()))
+    first = next(iter(validations.scores.values()))
     mark = _MARKS_OF_FINDINGS["mixed" if first.finding == "better" and first.too_sure else first.finding]
     outcomes_text = f"{first.count} outcomes under {first.clusters} motions"
     document = judged(
         f"Predictions of {name or validations.name}", (outcomes_text, date), sections, first.verdict, mark
     )
-    return document, {event: partial(reliability_picture, row) for event, row in validations.found.items()}
+    return document, {event: partial(reliability_picture, row) for event, row in validations.scores.items()}
 
 
 def _assumed(prediction: Prediction) -> ReportSection:

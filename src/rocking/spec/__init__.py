@@ -1,1 +1,1 @@
-"""Questions as they are asked in files: what may stand in them, and bodies, motions and restitutions made of it."""
+"""Input files: their tables, and the bodies, motions and restitutions of the tables."""

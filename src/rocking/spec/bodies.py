@@ -1,4 +1,4 @@
-"""Bodies, made from the tables that describe them."""
+"""Construction of bodies from their tables."""
 
 from pathlib import Path
 from typing import Any
@@ -18,20 +18,20 @@ _OUTSIDE = ("units", "name", "note")
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
-    """Return the plane body that a table describes."""
+    """Return the 2D body of a table."""
     body = any_body_of(table, inputs)
     if not isinstance(body, Body):
-        raise InvalidValueError("describes a body in space; a plane body is needed here")
+        raise InvalidValueError("This is a 3D body; a 2D body is needed.")
     return body
 
 
 def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
-    """Return the body that a table describes, plane or in space."""
+    """Return the 2D or 3D body of a table."""
     if "file" in table:
         return _body_in_file(table, inputs)
     sizes, angle = {"width", "height"} & set(table), {"slenderness_angle", "semi_diagonal"} & set(table)
     if angle and sizes:
-        raise InvalidValueError("give width and height, or slenderness_angle and semi_diagonal, not both")
+        raise InvalidValueError("Use width and height, or slenderness_angle and semi_diagonal, not both.")
     if angle:
         return _from_angle(table)
     if sizes:
@@ -43,37 +43,38 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
     return body_from_tables(tables, None if inputs is None else inputs.folder)
 
 
-def body_moved(table: dict[str, Any], inputs: InputFiles | None, *, turned: bool) -> Body | Solid:
-    """Return the body of a table; turned: it moves in space, where a plane body of known depth is one in space."""
+def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Solid:
+    """Return the body of a table; in_space: as a 3D body, also for a 2D body with a stated depth."""
     body = any_body_of(table, inputs)
-    if not turned or not isinstance(body, Body):
+    if not in_space or not isinstance(body, Body):
         return body
     tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
-    inner = (each for each in tables.values() if isinstance(each, dict))
-    if not isinstance(body, (Block, Section)) or not any("depth" in each for each in (tables, *inner)):
+    inner_tables = (table_with_depth for table_with_depth in tables.values() if isinstance(table_with_depth, dict))
+    if not isinstance(body, (Block, Section)) or not any(
+        "depth" in table_with_depth for table_with_depth in (tables, *inner_tables)
+    ):
         raise InvalidValueError(
-            "a plane body has one horizontal motion, along x, and a vertical one, along z; a block or section whose "
-            "depth is given (--depth, or depth in its table) moves along y too, as a body in space, of which .glb "
-            "files are"
+            "A 2D body has motions along x and z only. For a motion along y or a 3D file, use a 3D body, or a block or "
+            "section with a depth (--depth, or depth in its table)."
         )
     return Solid.from_section(body)
 
 
-_BESIDE_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_parts", "base_tolerance", *KNOWN)
+_WITH_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_parts", "base_tolerance", *KNOWN)
 _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
 
 def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
-    if odd := sorted(set(options) - set(_BESIDE_FILE)):
+    if odd := sorted(set(options) - set(_WITH_FILE)):
         raise InvalidValueError(
-            "unknown key {key!r:.60} beside file", key=odd[0], hint=suggestion(odd[0], _BESIDE_FILE)
+            "Key {key!r:.60} is not allowed with file", key=odd[0], hint=suggestion(odd[0], _WITH_FILE)
         )
     if not isinstance(table["file"], str):
         raise InvalidValueError(parameter="file", allowed="text", value=table["file"])
     if inputs is None:
         raise InvalidValueError(
-            "names the file {value}, but a body cannot name files here", parameter="file", value=table["file"]
+            "The file {value} is not allowed here. State the body itself.", parameter="file", value=table["file"]
         )
     path = inputs.file(table["file"])
     _note_outlines(tables_in(path) or {}, str(Path(table["file"]).parent), inputs)
@@ -87,12 +88,12 @@ def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | So
 
 
 def _from_angle(table: dict[str, Any]) -> Body:
-    """Return a block by its slenderness angle [rad] and its semi-diagonal."""
+    """Return a block from slenderness angle [rad] and semi-diagonal."""
     if odd := sorted(set(table) - set(_OF_ANGLE)):
         raise InvalidValueError("unknown key {key!r:.60}", key=odd[0], hint=suggestion(odd[0], sorted(_OF_ANGLE)))
     if missing := sorted({"units", "slenderness_angle", "semi_diagonal"} - set(table)):
         raise InvalidValueError(
-            "{parameter} is missing: a block has slenderness_angle, semi_diagonal and units", parameter=missing[0]
+            "{parameter} is missing. A block needs slenderness_angle, semi_diagonal and units.", parameter=missing[0]
         )
     scale = length_unit(table["units"])
     sizes = {key: checks.number(key, table[key]) for key in ("semi_diagonal", "depth") if key in table}
@@ -103,7 +104,7 @@ def _from_angle(table: dict[str, Any]) -> Body:
 
 
 def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> None:
-    """Note the files of outlines that a body names; what is wrong with it is said when it is read."""
+    """Note the outline files of a body; ignore errors, which the reader reports."""
     try:
         regions = tables.get("section", {}).get("region", [])
         names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]

@@ -1,4 +1,4 @@
-"""Motions and restitutions, made from the tables that describe them."""
+"""Construction of motions and restitutions from their tables."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import InputFiles
-from rocking.spec.record_sets import are_together, motions_of_set, stations_of, with_files
+from rocking.spec.record_sets import is_one_set, motions_of_set, stations_of, with_files
 from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000
-"""Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
+"""Largest number of motions from several sources; a single synthetic family is computed in chunks."""
 
 COMPLEMENTARITY = "complementarity"
-"""Restitution of a body that slides and hops: its rocking impacts follow from complementarity, as all others do."""
+"""Restitution of a body that slides and hops: all impacts follow from complementarity."""
 
 
 def restitutions_of(
@@ -42,41 +42,43 @@ def restitutions_of(
     *,
     mechanics: Mechanics | None = None,
 ) -> dict[str, Any]:
-    """Return models, coefficients, pairs by side or laws by their label; with friction a word may stand for none."""
-    moves = mechanics or mechanics_for_all(bodies, None)
+    """Return models, coefficients, pairs by side or laws, by label; with friction also None for complementarity."""
+    chosen_mechanics = mechanics or mechanics_for_all(bodies, None)
     with located("restitution"):
-        if not moves.in_plane and (table.distribution is not None or table.left is not None):
-            raise InvalidValueError("a body in space takes model, models, value or values")
-        pairs: list[tuple[str, Any]] = []
+        if not chosen_mechanics.in_plane and (table.distribution is not None or table.left is not None):
+            raise InvalidValueError("A 3D body accepts model, models, value or values.")
+        laws_by_label: list[tuple[str, Any]] = []
         for text in table.models or ([table.model] if table.model else []):
-            if text == COMPLEMENTARITY and moves.slides:
-                pairs.append((text, None))
+            if text == COMPLEMENTARITY and chosen_mechanics.slides:
+                laws_by_label.append((text, None))
                 continue
             try:
-                pairs.append((text, float(text)))
+                laws_by_label.append((text, float(text)))
             except ValueError:
-                law = _model(text, inputs) if moves.in_plane else text
-                pairs.append((law if isinstance(law, str) else law.label, law))
-        pairs += [
+                law = _model(text, inputs) if chosen_mechanics.in_plane else text
+                laws_by_label.append((law if isinstance(law, str) else law.label, law))
+        laws_by_label += [
             (f"{value!r}", value) for value in [*([] if table.value is None else [table.value]), *(table.values or [])]
         ]
         if table.left is not None:
-            pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
+            laws_by_label.append(
+                (f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right})
+            )
         if table.distribution is not None:
-            pairs.append(_drawn(table.distribution, seed, bodies, inputs))
-        labels = [label for label, _ in pairs]
+            laws_by_label.append(_sampled_restitution(table.distribution, seed, bodies, inputs))
+        labels = [label for label, _ in laws_by_label]
         if twice := next((label for label in labels if labels.count(label) > 1), None):
-            raise InvalidValueError("{names} is given twice", names=twice)
-        return dict(pairs)
+            raise InvalidValueError("{names} appears twice. Remove one.", names=twice)
+        return dict(laws_by_label)
 
 
 def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
-    """Return a model by name, or one of the user's own, whose file is then an input of the job."""
+    """Return a model by name, or a model of the user, whose file becomes an input of the job."""
     name = file_of(word) if inputs is not None else None
     return model(word) if inputs is None or name is None else model_in_file(word, inputs.file(name))
 
 
-def _drawn(
+def _sampled_restitution(
     table: "RandomTable", seed: int, bodies: Sequence[Any], inputs: InputFiles | None
 ) -> tuple[str, Any]:  # fmt: skip
     from rocking.dynamics.impact_laws import RandomRestitution
@@ -86,30 +88,30 @@ def _drawn(
     times = _model(table.times, inputs) if isinstance(table.times, str) else table.times
     law = SampledRestitution if table.each == "history" else RandomRestitution
     seed = seed if table.seed is None else table.seed
-    how: dict[str, Any] = {"seed": seed, "times": times}
+    options: dict[str, Any] = {"seed": seed, "times": times}
     if table.posterior:
-        drawn, label = _posterior(table, seed, bodies)
+        sampled, label = _posterior(table, seed, bodies)
     elif table.values is not None:
-        drawn, label = law.of_sample(table.values, **how), f"{len(table.values)} values"
+        sampled, label = law.of_sample(table.values, **options), f"{len(table.values)} values"
         label += f" from {min(table.values):g} to {max(table.values):g}"
     else:
         mean, deviation = table.mean or 0.0, table.deviation or 0.0  # both are there: checked by the table
-        drawn, label = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
-    # of many bodies, the one of which most is cut off
-    cuts = [cut_of(drawn, body) for body in bodies]
-    most = {foot: max((cut[foot] for cut in cuts), default=0.0) for foot in FEET}
-    return f"drawn per {table.each}: {label}, seed {seed}{cut_words(most)}", drawn
+        sampled, label = law.normal(mean, deviation, **options), f"{mean:g} +- {deviation:g}"
+    # largest truncated probability of all bodies
+    cuts = [cut_of(sampled, body) for body in bodies]
+    largest_cuts = {foot: max((cut[foot] for cut in cuts), default=0.0) for foot in FEET}
+    return f"drawn per {table.each}: {label}, seed {seed}{cut_words(largest_cuts)}", sampled
 
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[Any, str]:
-    """Return the law that the measurements make of the body: all quantiles, or a sample of so many values."""
+    """Return the law from the measurements for the body: all quantiles, or a sample of `count` values."""
     from rocking.evidence._restitution_distribution import restitution_distribution
 
     if len(bodies) != 1:
-        many = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
+        count = f"{len(bodies)} bodies: use one job per body" if bodies else "no [body]: use values"
         raise InvalidValueError(
-            "distribution.posterior is of one body, and the job has {count}", parameter="distribution.posterior",
-            count=many,
+            "distribution.posterior needs one body, and the job has {count}.", parameter="distribution.posterior",
+            count=count,
         )  # fmt: skip
     distribution = restitution_distribution(bodies[0])
     label = "posterior of the measurements"
@@ -125,45 +127,45 @@ def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[
 def motions_of(
     tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool = False, plane: bool = False
 ) -> MotionSet:  # fmt: skip
-    """Return the motions that tables describe: a `SyntheticSet` of one family alone, otherwise a `MotionList`."""
-    # paired: what is shaken takes both horizontal components of a record at once; plane: it takes x and z alone
+    """Return the motions of the tables: a `SyntheticSet` for a single family, otherwise a `MotionList`."""
+    # paired: both horizontal components of a record are one motion; plane: components along x and z only
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
             sets.append(_motions(table, inputs, paired, alone=len(tables) == 1))
     if len(sets) == 1 and isinstance(sets[0], SyntheticSet):
         return sets[0]
-    count = sum(len(each) for each in sets)
+    count = sum(len(motion_set) for motion_set in sets)
     if count > MOST_IN_MEMORY:
         raise InvalidValueError(
-            "motions: a set of several sources may have up to {limit}, got {count}", parameter="motions",
+            "At most {limit} motions from several sources are allowed, got {count}.", parameter="motions",
             limit=MOST_IN_MEMORY, count=count,
         )  # fmt: skip
     if not count:
-        raise InvalidValueError("motions: no record of any source has a horizontal component that moves")
+        raise InvalidValueError("No record has a horizontal component with motion.")
     with located("motions"):
-        return MotionList([each[k] for each in sets for k in range(len(each))], plane=plane)
+        return MotionList([motion_set[k] for motion_set in sets for k in range(len(motion_set))], plane=plane)
 
 
 def _motions(
     table: "MotionTable", inputs: InputFiles, paired: bool, *, alone: bool = True
 ) -> "list[Motion] | SyntheticSet":
     if table.synthetic is not None:
-        assert table.count is not None  # the table refuses to be without
+        assert table.count is not None  # checked by the table
         return _family(table, table.count)
     if table.components:
         return [components_of(table, inputs, table.scale)]
-    if table.records and (table.target or table.mirrored or are_together(table.records, inputs)):
+    if table.records and (table.target or table.mirrored or is_one_set(table.records, inputs)):
         if not (table.component or table.vertical or table.vertical_file):
             return motions_of_set(table, inputs, paired=paired, alone=alone)
         if table.target or table.mirrored:
-            raise InvalidValueError("component, vertical and vertical_file do not go with target or mirrored")
+            raise InvalidValueError("component, vertical and vertical_file are not allowed with target or mirrored.")
     motions: list[Motion] = [pulse(text) for text in table.pulse or ()] or _records(table, inputs)
     return motions if table.scale == 1.0 else [motion.scaled(table.scale) for motion in motions]
 
 
 def _family(table: "MotionKeys", count: int) -> SyntheticSet:
-    assert table.synthetic is not None  # the table refuses to be without
+    assert table.synthetic is not None  # checked by the table
     levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
     return SyntheticSet(table.synthetic, count, table.seed or 0, **levels)
 
@@ -172,7 +174,7 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
     names = [name for pattern in table.records or [] for name in inputs.named(pattern)]
     twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
     if twice:
-        raise InvalidValueError("records: {name} is named twice", parameter="records", name=twice[0])
+        raise InvalidValueError("{name} appears twice in records. Remove one.", parameter="records", name=twice[0])
     motions: list[Motion] = []
     own = by_path(table.file_options, [inputs.folder / name for name in names])
     for name in names:
@@ -183,7 +185,7 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
 
 
 def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
-    """Return a record as its steps leave it."""
+    """Return a record after its processing steps."""
     steps = with_files(table, inputs)
     return processed(_unprocessed(path, table, inputs), steps)  # type: ignore[no-any-return]
 
@@ -196,35 +198,35 @@ def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion
 
 
 def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:
-    """Return the motions along x, y and z by axis, each with its own factor, and one of all."""
-    found: dict[str, Any] = {}
+    """Return the motions along x, y and z by axis, scaled by their own factors and a common one."""
+    motions: dict[str, Any] = {}
     tables = table.components
-    # steps that are those of all components treat them alike
-    chains = {tuple(one.process or ()) for one in tables.values()}
-    together = len(tables) > 1 and len(chains) == 1 and chains != {()}
-    for axis, one in tables.items():
+    # common steps of all components are applied to all components together
+    chains = {tuple(axis_table.process or ()) for axis_table in tables.values()}
+    is_joint = len(tables) > 1 and len(chains) == 1 and chains != {()}
+    for axis, axis_table in tables.items():
         with located(axis):
-            found[axis] = motion_of(one, inputs, raw=together)
-    if together and inputs is not None:
-        whole = Components(*(found.get(axis) for axis in "xyz"))
+            motions[axis] = motion_of(axis_table, inputs, raw=is_joint)
+    if is_joint and inputs is not None:
+        components = Components(*(motions.get(axis) for axis in "xyz"))
         steps = with_files(next(iter(tables.values())), inputs)
-        made = zip("xyz", processed(whole, steps).parts, strict=True)
-        found = {axis: part for axis, part in made if part is not None}
-    factors = {axis: one.scale * scale for axis, one in tables.items()}
-    return {axis: each if factors[axis] == 1.0 else each.scaled(factors[axis]) for axis, each in found.items()}
+        processed_parts = zip("xyz", processed(components, steps).parts, strict=True)
+        motions = {axis: motion for axis, motion in processed_parts if motion is not None}
+    factors = {axis: axis_table.scale * scale for axis, axis_table in tables.items()}
+    return {axis: motion if factors[axis] == 1.0 else motion.scaled(factors[axis]) for axis, motion in motions.items()}
 
 
 def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw: bool = False) -> "Motion":
-    """Return one motion, not scaled by `scale`; scaled to `pga` or `pgv`; raw: without its steps."""
+    """Return one motion, scaled to `pga` or `pgv`, without the factor `scale`; raw: without processing steps."""
     if table.pulse is not None:
         return pulse(table.pulse)
     if table.record is not None:
         if inputs is None:
-            raise InvalidValueError("a record is a file; only pulses and synthetic motions are made")
+            raise InvalidValueError("Record files are not allowed here. Use a pulse or a synthetic motion.")
         if (inputs.folder / table.record).is_dir():
             raise InvalidValueError(
-                "{folder} is a folder, and one record is wanted", folder=table.record,
-                hint="assess, code-checks, fragility, inventory, record batch, predict and simulate take sets",
+                "{folder} is a folder; one record file is needed", folder=table.record,
+                hint="assess, code-checks, fragility, inventory, record batch, predict and simulate accept folders",
             )  # fmt: skip
         return (_unprocessed if raw else _record)(inputs.file(table.record), table, inputs)
     member = table.member or 0

@@ -1,4 +1,4 @@
-"""What all tables of a job file have in common, and numbers in them. Imported only when one is read."""
+"""Base class and value types of all tables of a job file. Loads pydantic: import only to read a file."""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -17,31 +17,40 @@ Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-def key(description: str, usual: Any = None, **limits: Any) -> Any:
-    """Return a field with what it means, which options and the documentation of keys repeat."""
-    return Field(default=usual, description=description, **limits)
+def key(description: str, default: Any = None, **limits: Any) -> Any:
+    """Return a field with its meaning, which appears in the help of options and in the manual."""
+    return Field(default=default, description=description, **limits)
 
 
 def meaning_and_unit(description: str) -> tuple[str, str]:
-    """Return what a description says before the unit that it ends with, and that unit; empty if none."""
+    """Return the meaning and the unit in a description such as "mass [kg]"; the unit is empty if absent."""
     text = description.rstrip(".")
     meaning, bracket, unit = text.removesuffix("]").rpartition("[")
     return (meaning.strip(), unit) if bracket and text.endswith("]") else (description.strip(), "")
 
 
 def kinds_of(field: FieldInfo) -> list[Any]:
-    """Return the types that a field takes, without their limits; a field that may be left out without None."""
+    """Return the types of a field without limits and without None."""
     inner = get_args(field.annotation) if get_origin(field.annotation) in {Union, UnionType} else [field.annotation]
     return [get_args(kind)[0] if get_origin(kind) is Annotated else kind for kind in inner if kind is not NoneType]
 
 
 def limits_of(field: FieldInfo) -> dict[str, float]:
-    """Return the limits of a number: ge, gt, le and lt, where it has them."""
-    inner = [part for kind in (field, *get_args(field.annotation)) for part in getattr(kind, "metadata", ())]
-    inner += [part for kind in get_args(field.annotation) for part in getattr(kind, "__metadata__", ())]
-    parts = [one for part in inner for one in (part.metadata if isinstance(part, FieldInfo) else [part])]
+    """Return the stated limits of a number: ge, gt, le, lt."""
+    entries = [metadata for kind in (field, *get_args(field.annotation)) for metadata in getattr(kind, "metadata", ())]
+    entries += [metadata for kind in get_args(field.annotation) for metadata in getattr(kind, "__metadata__", ())]
+    constraints = [
+        constraint
+        for metadata in entries
+        for constraint in (metadata.metadata if isinstance(metadata, FieldInfo) else [metadata])
+    ]
     names = ("ge", "gt", "le", "lt")
-    return {name: value for part in parts for name in names if (value := getattr(part, name, None)) is not None}
+    return {
+        name: value
+        for metadata in constraints
+        for name in names
+        if (value := getattr(metadata, name, None)) is not None
+    }
 
 
 class JobTable(StrictTable):
@@ -50,18 +59,17 @@ class JobTable(StrictTable):
     model_config = ConfigDict(defer_build=True)
 
     def chosen(self, *names: str) -> str:
-        """Return which one of several keys is there."""
+        """Return the only stated key of several; raise an error for none or more."""
         stated = [name for name in names if getattr(self, name) is not None]
         if len(stated) != 1:
             raise InvalidValueError(
-                "exactly one of {names} is needed, got {keys}", names=", ".join(names),
-                keys=" and ".join(stated) or "none",
+                "Use exactly one of {names}, got {keys}.", names=", ".join(names), keys=" and ".join(stated) or "none",
             )  # fmt: skip
         return stated[0]
 
 
 class Values(JobTable):
-    """Numbers: a list of them, or a range."""
+    """A list of numbers, or a range."""
 
     values: Annotated[list[float], Field(min_length=1, max_length=10_000_000)] | None = None
     start: float | None = Field(default=None, alias="from")
@@ -75,33 +83,33 @@ class Values(JobTable):
         stated = [name for name, value in ends.items() if value is not None]
         if self.values is not None and (stated or "spacing" in self.model_fields_set):
             raise InvalidValueError(
-                "values stand alone, without {keys}", parameter="values", keys=", ".join(stated) or "spacing"
+                "Use values or {keys}, not both.", parameter="values", keys=", ".join(stated) or "spacing"
             )
         if self.values is None and len(stated) < len(ends):
             raise InvalidValueError(
-                "give values = [...], or from, to and count; got {keys}", keys=", ".join(stated) or "none of them"
+                "Use values = [...], or from, to and count. Got {keys}.", keys=", ".join(stated) or "none of them"
             )
         if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
             raise InvalidValueError(
-                "from and to must be > 0 where the spacing is log, got {start!r} and {stop!r}", start=self.start,
+                "from and to must be > 0 with log spacing, got {start!r} and {stop!r}.", start=self.start,
                 stop=self.stop,
             )  # fmt: skip
         if self.count == 1 and self.start != self.stop:
             raise InvalidValueError(
-                "{parameter} must be >= 2 where from and to differ, got 1 from {start!r} to {stop!r}",
+                "{parameter} must be >= 2 if from and to differ, got 1 from {start!r} to {stop!r}.",
                 parameter="count", start=self.start, stop=self.stop,
             )  # fmt: skip
         return self
 
     @property
     def size(self) -> int:
-        """How many numbers there are."""
+        """Number of values."""
         return len(self.values) if self.values is not None else int(self.count or 0)
 
     def numbers(self) -> FloatArray:
         if self.values is not None:
             return np.array(self.values, dtype=np.float64)
-        start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are there: checked above
+        start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are stated: checked above
         if self.spacing == "log":
             return geometric(start, stop, count)
         return np.linspace(start, stop, count)
@@ -114,7 +122,7 @@ def _in_table(stated: Any) -> Any:
 
 
 def in_list(stated: Any) -> Any:
-    """Return a single table or text as a list of one, and everything else as it is."""
+    """Return a single table or text as a list with one item, and any other value unchanged."""
     return [stated] if isinstance(stated, (dict, str)) else stated
 
 

@@ -1,4 +1,4 @@
-"""A measurement of a body that rocks freely, or a folder of trials: what each says, and all of them together."""
+"""Identification from one measurement, or from a folder of trials with a common mean."""
 
 import csv
 import hashlib
@@ -51,28 +51,28 @@ _NUMBERS = {
     "frequency_parameter": ("rad/s", "p, mean of both sides"),
     "tilt": ("rad", "tilt of the floor, clockwise"),
 }
-_ENDS = {"": "", "_low": ", 2.5 % of it", "_high": ", 97.5 % of it"}
+_ENDS = {"": "", "_low": ", 2.5 % quantile", "_high": ", 97.5 % quantile"}
 _TEXTS = {
     "trial": "file",
-    "refused": "why there is no coefficient; empty if there is one",
-    "doubts": "what else there is to say against it",
-    "question": "hash of the file and of what was asked of it",
+    "refused": "reason for the missing coefficient; empty if there is one",
+    "doubts": "doubts about the coefficient",
+    "question": "hash of the file and of the options",
 }
-_FEW, _EVERY = 12, 1.0  # trials for which no process is started; seconds after which the table is written again
+_FEW, _EVERY = 12, 1.0  # largest number of trials without processes; interval between writes of the table [s]
 
 
 @dataclass(frozen=True)
 class IdentificationProblem:
-    """What was measured, of which body, and what else is known."""
+    """Measurement, body and options of an identification."""
 
     path: Path  # a file, or a folder of trials
     body: Body | None
-    reading: dict[str, Any]  # as `read_measurement` takes it
-    options: dict[str, Any]  # as `identify` takes it
+    reading: dict[str, Any]  # keywords of `read_measurement`
+    options: dict[str, Any]  # keywords of `identify`
 
     @classmethod
     def of(cls, document: "IdentificationDocument", inputs: InputFiles) -> "IdentificationProblem":
-        """Return what a file describes; inputs: files that it may name."""
+        """Return the problem of an input file; inputs: the files that it may name."""
         body = None
         if document.body is not None:
             with located("body"):
@@ -87,22 +87,22 @@ class IdentificationProblem:
 
     @property
     def trials(self) -> list[Path]:
-        """The recordings of the folder."""
+        """Recordings of the folder."""
         return self._sorted_out[0]
 
     @property
     def passed_over(self) -> dict[str, str]:
-        """The other files of the folder, and the reason why each is no recording; hidden and body files apart."""
+        """Reasons by name of the other files of the folder, without hidden files and body files."""
         return self._sorted_out[1]
 
     @cached_property
     def _sorted_out(self) -> tuple[list[Path], dict[str, str]]:
         try:
-            there = sorted(self.path.iterdir())
+            paths = sorted(self.path.iterdir())
         except OSError as error:
             raise InvalidValueError(error.strerror or str(error)).at(str(self.path)) from error
         trials, others = [], {}
-        for path in there:
+        for path in paths:
             if path.name[:1] == "." or (path.suffix.lower() in FORMATS and path.is_file()):
                 continue
             reason = _no_recording(path)
@@ -111,27 +111,27 @@ class IdentificationProblem:
             else:
                 trials.append(path)
         if not trials:
-            found = f"; passed over: {passed_over_words(others)}" if others else ""
+            ignored = f" Ignored: {passed_over_words(others)}." if others else ""
             raise InvalidValueError(
-                "no trials; their names end in {endings}, and tables hold numbers{files}", endings=", ".join(ENDINGS),
-                files=found,
+                "No trials. Use files with {endings}, and tables with numbers.{files}", endings=", ".join(ENDINGS),
+                files=ignored,
             ).at(str(self.path))  # fmt: skip
         return trials, others
 
     def answer(self, path: Path | None = None) -> Identification:
-        """Return what one measurement says."""
-        # in a folder, what is said of tables is not of sounds
+        """Return the identification of one measurement."""
+        # in a folder, the options of tables do not apply to sounds
         reading = {} if path is not None and path.suffix.lower() in SOUNDS else self.reading
         return identify(read_measurement(path or self.path, **reading), self.body, **self.options)
 
     def answers(
         self, keep: Path | None = None, workers: int | None = None, progress: Callable[[int], None] | None = None
     ) -> "IdentifiedTrials":
-        """Return what every trial of the folder says; keep: a table, gone on with, and written on the way."""
+        """Return the identification of every trial of the folder; keep: a table to continue, written regularly."""
         trials = self.trials
         hashes = {path: self._question(path) for path in trials}
-        known = {row["question"]: row for row in _rows_in(keep) if not row["refused"]} if keep is not None else {}
-        rows = {path: known[each] | {"trial": path.name} for path, each in hashes.items() if each in known}
+        kept_rows = {row["question"]: row for row in _rows_in(keep) if not row["refused"]} if keep is not None else {}
+        rows = {path: kept_rows[key] | {"trial": path.name} for path, key in hashes.items() if key in kept_rows}
         if progress is not None:
             progress(len(rows))
         missing = [path for path in trials if path not in rows]
@@ -144,8 +144,8 @@ class IdentificationProblem:
                     written = time.monotonic()
                 if progress is not None:
                     progress(1)
-        every = tuple(rows[path] for path in trials)
-        return IdentifiedTrials(self.path.name, self.body, every, len(missing), self.passed_over)
+        all_rows = tuple(rows[path] for path in trials)
+        return IdentifiedTrials(self.path.name, self.body, all_rows, len(missing), self.passed_over)
 
     def _each(self, paths: list[Path], workers: int | None) -> Iterator[tuple[Path, Row]]:
         count = min(workers or os.cpu_count() or 1, len(paths))
@@ -161,132 +161,135 @@ class IdentificationProblem:
                 pool.shutdown(cancel_futures=True)
 
     def _row(self, path: Path) -> Row:
-        """Return what one trial says; one that cannot be read touches no other."""
+        """Return the row of one trial; an unreadable trial does not affect the others."""
         try:
-            found = self.answer(path)
+            identification = self.answer(path)
         except RockingError as error:
             return _row_of(_by_key(error.without_file(path.name)), ())
-        if found.refused:
-            return _row_of("; ".join(map(_by_key, found.refused)), found.doubts)
-        numbers = {"coefficient": found.mean, **{f"coefficient_{foot}": found.coefficients[foot] for foot in FEET}}
-        numbers |= {name: getattr(found, name) for name in ("scatter", "frequency_parameter", "tilt")}
-        return _row_of("", found.doubts, len(found.impacts), found._common, numbers)
+        if identification.refused:
+            return _row_of("; ".join(map(_by_key, identification.refused)), identification.doubts)
+        numbers = {f"coefficient_{foot}": identification.coefficients[foot] for foot in FEET}
+        numbers |= {"coefficient": identification.mean}
+        numbers |= {name: getattr(identification, name) for name in ("scatter", "frequency_parameter", "tilt")}
+        return _row_of("", identification.doubts, len(identification.impacts), identification._common, numbers)
 
     def _question(self, path: Path) -> str:
-        """Return a hash of everything that a row hangs on."""
+        """Return a hash of all inputs of a row."""
         sides = [self.body.side(foot) for foot in FEET] if self.body is not None else []
-        body = [(each.slenderness_angle, each.frequency_parameter) for each in sides]
-        asked = json.dumps([SOFTWARE, body, self.reading, self.options], sort_keys=True, default=_digest)
-        return hashlib.sha256(asked.encode() + path.suffix.lower().encode() + path.read_bytes()).hexdigest()[:32]
+        body = [(side.slenderness_angle, side.frequency_parameter) for side in sides]
+        question = json.dumps([SOFTWARE, body, self.reading, self.options], sort_keys=True, default=_digest)
+        return hashlib.sha256(question.encode() + path.suffix.lower().encode() + path.read_bytes()).hexdigest()[:32]
 
 
 @dataclass(frozen=True, eq=False)
 class IdentifiedTrials(Exported):
-    """What the trials of a folder say."""
+    """Results of the trials of a folder."""
 
     name: str  # of the folder
     body: Body | None
     rows: tuple[Row, ...]  # by the names of the columns
-    computed: int  # how many were, and not taken from a table
-    # other files of the folder, and the reason why each is no recording
+    computed: int  # number of trials that were not read from a table
+    # reasons by name of the other files of the folder
     passed_over: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def good_rows(self) -> list[Row]:
-        """Trials that have a coefficient."""
+        """Rows of the trials with a coefficient."""
         return [row for row in self.rows if not row["refused"]]
 
     @property
     def good(self) -> int:
-        """How many have a coefficient."""
+        """Number of trials with a coefficient."""
         return len(self.good_rows)
 
     @cached_property
     def mean(self) -> IntervalEstimate | None:
-        """Geometric mean of all trials and its interval; None of fewer than two.
+        """Geometric mean of all trials and its 95 % interval; None for fewer than two trials.
 
-        It is from how trials differ, by Student's t, or from their own intervals where these say more; the error of the
-        size of the body, common to all, is added.
+        The interval follows from the scatter of the trials (Student's t), or from their own intervals if these are
+        wider. It includes the common error of the body dimensions.
         """
-        good = self.good_rows
-        if len(good) < 2:
+        good_rows = self.good_rows
+        if len(good_rows) < 2:
             return None
-        ln, common = np.log([row["coefficient"] for row in good]), np.array([row["common"] for row in good])
-        within = np.log([row["coefficient_high"] / row["coefficient_low"] for row in good]) / (2.0 * NORMAL_95)
+        ln, common = np.log([row["coefficient"] for row in good_rows]), np.array([row["common"] for row in good_rows])
+        within = np.log([row["coefficient_high"] / row["coefficient_low"] for row in good_rows]) / (2.0 * NORMAL_95)
         between = float(stdtrit(ln.size - 1, 0.975)) * float(ln.std(ddof=1))
         own = NORMAL_95 * math.sqrt(float(np.mean(np.maximum(within**2 - common**2, 0.0))))
-        reach = math.hypot(max(between, own) / math.sqrt(ln.size), NORMAL_95 * math.sqrt(float(np.mean(common**2))))
-        middle = float(ln.mean())
-        return IntervalEstimate(*(math.exp(middle + each) for each in (0.0, -reach, reach)))
+        half_width = math.hypot(
+            max(between, own) / math.sqrt(ln.size), NORMAL_95 * math.sqrt(float(np.mean(common**2)))
+        )
+        mean_ln = float(ln.mean())
+        return IntervalEstimate(*(math.exp(mean_ln + offset) for offset in (0.0, -half_width, half_width)))
 
     @cached_property
     def models(self) -> tuple[ModelComparison, ...]:
-        """Models of restitution beside the mean."""
+        """Comparison of the restitution models with the mean."""
         return compared(self.body, self.mean) if self.body is not None and self.mean is not None else ()
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Trials that say the same to nine digits: two files of one event, which counts twice."""
-        seen: dict[tuple[Any, ...], list[str]] = {}
+        """Warnings about trials with equal results to nine digits, perhaps two files of one event."""
+        trials_by_result: dict[tuple[Any, ...], list[str]] = {}
         for row in self.rows:
             if not row["refused"]:
-                same = (
+                result = (
                     row["impacts"],
                     *(f"{row[name]:.9g}" for name in ("coefficient", "coefficient_low", "coefficient_high", "scatter")),
                 )
-                seen.setdefault(same, []).append(row["trial"])
+                trials_by_result.setdefault(result, []).append(row["trial"])
         return tuple(
-            f"{' and '.join(names)} say the same: perhaps they are of one event, which counts {len(names)} times."
-            for names in seen.values() if len(names) > 1
+            f"{' and '.join(names)} have equal results. If they record one event, remove the duplicates."
+            for names in trials_by_result.values() if len(names) > 1
         )  # fmt: skip
 
     @property
     def passed_over_verdict(self) -> str:
-        """Number of files that are no recordings, with their names and reasons; empty without any."""
+        """Number, names and reasons of the files without a recording; empty if there are none."""
         count = len(self.passed_over)
-        what = "1 file that is no recording" if count == 1 else f"{count} files that are no recordings"
-        return f"Passed over {what}: {passed_over_words(self.passed_over)}." if count else ""
+        files = "1 file" if count == 1 else f"{count} files"
+        return f"Ignored {files} without a recording: {passed_over_words(self.passed_over)}." if count else ""
 
     @property
     def verdict(self) -> str:
-        """What was found, in a sentence."""
+        """Mean coefficient of restitution and scatter, as a sentence."""
         count = f"{self.good} of {len(self.rows)} trials"
         if self.mean is None:
             return f"{count} have a coefficient of restitution; the mean needs two or more."
         spread = float(np.log([row["coefficient"] for row in self.good_rows]).std(ddof=1))
         return (
-            f"The coefficient of restitution is {self.mean}, the mean of {count}; from trial to trial it scatters by "
+            f"The coefficient of restitution is {self.mean}, the mean of {count}. The scatter between trials is "
             f"{100.0 * spread:.2g} %."
         )
 
     def answer(self) -> Answer:
-        """Return everything that is shown."""
+        """Return all results."""
         return Answer({
             "verdict": self.verdict,
             "doubts": self.doubts,
             "mean": None if self.mean is None else vars(self.mean),
-            "models": [vars(each) for each in self.models],
+            "models": [vars(model) for model in self.models],
             "trials": self.rows,
             "passed_over": dict(self.passed_over),
         }, {"mean": Quantity("mean", "1", "mean coefficient of restitution")})  # fmt: skip
 
     def exported(self) -> Table:
-        """Return what files of it hold: one row a trial."""
+        """Return the exported table with one row per trial."""
         return _table(self.rows, {"verdict": self.verdict, "software": SOFTWARE})
 
 
 def passed_over_words(others: Mapping[str, str]) -> str:
-    """Return files and the reasons why they are no recordings, those of one reason together.
+    """Return ignored files with their reasons, grouped by reason.
 
     >>> passed_over_words({"a.jpg": "another kind of file", "b.doc": "another kind of file", "c.csv": "no row"})
     'a.jpg, b.doc (another kind of file); c.csv (no row)'
     """
-    names = {reason: [name for name, each in others.items() if each == reason] for reason in others.values()}
-    return "; ".join(f"{', '.join(each)} ({reason})" for reason, each in names.items())
+    groups = {reason: [name for name, other in others.items() if other == reason] for reason in others.values()}
+    return "; ".join(f"{', '.join(names)} ({reason})" for reason, names in groups.items())
 
 
 def _no_recording(path: Path) -> str:
-    """Return why a file is no recording, whatever its content may be worth; empty if it is one."""
+    """Return the reason if a file is not a recording, else an empty text."""
     if not path.is_file():
         return "a folder" if path.is_dir() else "not a file"
     if path.suffix.lower() not in ENDINGS:
@@ -303,19 +306,19 @@ _CELL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?|nan", re.IGNORECASE
 
 
 def _has_numbers(path: Path) -> bool:
-    """Return whether a line of a text holds numbers alone."""
+    """Return True if a line of the text contains only numbers."""
     with path.open(encoding="utf-8", errors="replace") as lines:
         cells = ([cell for cell in _CELLS.split(line.strip()) if cell] for line in lines)
         return any(row and all(map(_CELL.fullmatch, row)) for row in cells)
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a file is a table of trials. Never raises."""
+    """Return True if a file is a table of trials. Never raises."""
     return path.suffix.lower() == ".csv" and _header_of(path) == _table(()).header
 
 
 def bodies_in(folder: Path) -> list[Path]:
-    """Return the files of a folder that hold a body, or seem to."""
+    """Return the files of a folder with the extension of a body file."""
     return sorted(path for path in folder.iterdir() if path.suffix.lower() in FORMATS and path.is_file())
 
 
@@ -333,15 +336,17 @@ def _row_of(
     none = IntervalEstimate(math.nan, math.nan, math.nan)
     row: Row = {"refused": refused, "doubts": " ".join(map(_by_key, doubts)), "impacts": impacts, "common": common}
     for name in _NUMBERS:
-        each = numbers.get(name, none)
-        row |= {name: each.value, f"{name}_low": each.low, f"{name}_high": each.high}
+        estimate = numbers.get(name, none)
+        row |= {name: estimate.value, f"{name}_low": estimate.low, f"{name}_high": estimate.high}
     return row
 
 
 def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> Table:
     listed = list(rows)
     columns = {"trial": Column(text_array([row["trial"] for row in listed]), "", _TEXTS["trial"])}
-    columns["impacts"] = Column(np.array([row["impacts"] for row in listed], dtype=np.int64), "1", "that count")
+    columns["impacts"] = Column(
+        np.array([row["impacts"] for row in listed], dtype=np.int64), "1", "number of impacts in the fit"
+    )
     for name, (unit, meaning) in _NUMBERS.items():
         for end, more in _ENDS.items():
             values = np.array([row[f"{name}{end}"] for row in listed], dtype=np.float64)
@@ -354,7 +359,7 @@ def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> 
 
 
 def _digest(motion: Any) -> str:
-    """Return what tells a motion from others."""
+    """Return a text that identifies a motion, with a hash."""
     values = getattr(motion, "acceleration", np.zeros(0))
     return f"{motion!r} {hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()}"
 
@@ -368,7 +373,7 @@ def _header_of(path: Path) -> list[str]:
 
 
 def _rows_in(path: Path) -> list[Row]:
-    """Return the rows of a table of trials, none of a file that is not such a table or of a line that was cut off."""
+    """Return the rows of a table of trials, without incomplete lines; empty for other files."""
     table = _table(())
     if not is_table(path):
         return []
@@ -378,7 +383,7 @@ def _rows_in(path: Path) -> list[Row]:
             try:
                 row: Row = dict(zip(table.columns, cells, strict=True))
                 row["impacts"] = int(row["impacts"])
-                numbers = (name for name, each in table.columns.items() if each.values.dtype == np.float64)
+                numbers = (name for name, column in table.columns.items() if column.values.dtype == np.float64)
                 rows.append(row | {name: float(row[name] or "nan") for name in numbers})
             except ValueError:
                 continue
@@ -387,7 +392,7 @@ def _rows_in(path: Path) -> list[Row]:
 
 @contextmanager
 def _kept(path: Path | None, rows: dict[Path, Row]) -> Iterator[None]:
-    """Write what there is, however it ends."""
+    """Write the finished rows at the end, also after an error."""
     try:
         yield
     finally:
@@ -396,6 +401,6 @@ def _kept(path: Path | None, rows: dict[Path, Row]) -> Iterator[None]:
 
 
 def _write(rows: dict[Path, Row], path: Path) -> None:
-    """Write a table in one go, so that it is whole at any instant."""
-    with written_whole(path) as part:
-        to_csv(_table(rows[each] for each in sorted(rows)), part)
+    """Write a table atomically."""
+    with written_whole(path) as temporary:
+        to_csv(_table(rows[trial] for trial in sorted(rows)), temporary)

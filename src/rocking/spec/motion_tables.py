@@ -12,26 +12,28 @@ OF_FILES = {"format", "units", "time_step", "skip", "component", "vertical", "ve
 
 
 class FileKeys(JobTable):
-    """Options of a record file: its format, unit and time step, and lines to skip."""
+    """Format, unit, time step and skipped lines of a record file."""
 
-    format: Text | None = key("format of the record file, if not found by content: see rocking record formats")
-    units: Text | None = key("unit of the record where its file states none: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
-    time_step: Positive | None = key("step between samples where the file does not state it [s]")
-    skip: int | None = key("lines at the top of a text file that are passed over", None, ge=0, le=100_000)
+    format: Text | None = key(
+        "format of the record file from rocking record formats, default: detected from the content"
+    )
+    units: Text | None = key("unit of a record file without unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg")
+    time_step: Positive | None = key("time step of a record file without time step [s]")
+    skip: int | None = key("number of lines to skip at the top of a text file", None, ge=0, le=100_000)
 
 
 class MotionKeys(FileKeys):
-    """What one motion, or several, are made of."""
+    """Source, processing and scaling of motions."""
 
     synthetic: Text | None = key("family of synthetic motions: firm-ground, soft-ground, point-source and more")
-    component: Text | None = key("horizontal component of the file, by name")
-    vertical: Text | None = key("vertical component, by name")
-    vertical_file: Text | None = key("file of the vertical component, where it has its own")
-    process: Names | None = key("steps that a record goes through: mean; bandpass:low=0.1,high=25; taper")
-    scale: float = key("factor on the acceleration of the ground [-]", 1.0)
+    component: Text | None = key("name of the horizontal component in the file")
+    vertical: Text | None = key("name of the vertical component in the file")
+    vertical_file: Text | None = key("file of the vertical component, if separate")
+    process: Names | None = key("processing steps of a record: mean; bandpass:low=0.1,high=25; taper")
+    scale: float = key("scale factor of the ground acceleration [-]", 1.0)
     seed: Seed | None = key("seed of the synthetic motions")
-    pga: Positive | None = key("peak ground acceleration to which synthetic motions are scaled [m/s2]")
-    pgv: Positive | None = key("peak ground velocity to which synthetic motions are scaled [m/s]")
+    pga: Positive | None = key("peak ground acceleration of the scaled synthetic motions [m/s2]")
+    pgv: Positive | None = key("peak ground velocity of the scaled synthetic motions [m/s]")
 
     def _one_source(self, keys: dict[str, set[str]]) -> str:
         """Return the only source of the motion, after refusing keys of another."""
@@ -40,20 +42,22 @@ class MotionKeys(FileKeys):
         odd = sorted(stated & set().union(*keys.values()) - keys[source])
         if odd:
             raise InvalidValueError(
-                "{source} takes no {keys}; allowed beside it: {names}", source=source, keys=", ".join(odd),
+                "{keys} is not allowed with {source}. Allowed: {names}.", source=source, keys=", ".join(odd),
                 names=", ".join(sorted(keys[source])),
             )  # fmt: skip
         if self.scale == 0.0:
-            raise InvalidValueError("scale must not be 0: nothing would move")
+            raise InvalidValueError("scale must not be 0.")
         return source
 
 
 class OneMotionTable(MotionKeys):
     """One pulse, one record, or one motion of a synthetic family."""
 
-    pulse: Text | None = key("a pulse such as sine:amplitude=3,period=0.8")
-    record: Text | None = key("a record file")
-    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = key("which motion of the synthetic family, from 0")
+    pulse: Text | None = key("pulse, such as sine:amplitude=3,period=0.8")
+    record: Text | None = key("record file")
+    member: Annotated[int, Field(ge=0, lt=10_000_000)] | None = key(
+        "index of the motion in the synthetic family, from 0"
+    )
 
     @model_validator(mode="after")
     def _whole(self) -> "OneMotionTable":
@@ -64,11 +68,11 @@ class OneMotionTable(MotionKeys):
         own = {"seed", "member", "pga", "pgv", "time_step", "scale"}
         self._one_source({"pulse": {"scale"}, "record": {*OF_FILES, "scale"}, "synthetic": own})
         if self.pga is not None and self.pgv is not None:
-            raise InvalidValueError("motions can be scaled to pga or to pgv, not to both")
+            raise InvalidValueError("Use pga or pgv, not both.")
 
 
 class _Along(JobTable):
-    """A motion along each of the axes x, y and z of a body in space; z is up."""
+    """Motions of a 3D body along x, y and z (up)."""
 
     x: OneMotionTable | None = key("motion along x")
     y: OneMotionTable | None = key("motion along y")
@@ -76,43 +80,43 @@ class _Along(JobTable):
 
     @property
     def components(self) -> dict[str, OneMotionTable]:
-        """The motions by their axis; none where there is one motion alone."""
+        """Motions by axis; empty for a single motion."""
         along = {"x": self.x, "y": self.y, "z": self.z}
         return {axis: table for axis, table in along.items() if table is not None}
 
     def _check_components(self) -> None:
-        """Refuse what does not go with components."""
+        """Refuse keys that are not allowed with components."""
         if odd := sorted(self.model_fields_set - {"x", "y", "z", "scale"}):
-            raise InvalidValueError("{keys} stands with each of the motions along x, y and z", keys=", ".join(odd))
+            raise InvalidValueError("Give {keys} separately for the motions along x, y and z.", keys=", ".join(odd))
         if self.x is not None and self.z is not None and (self.x.vertical or self.x.vertical_file):
-            raise InvalidValueError("the vertical motion is given twice: beside the one along x, and along z")
+            raise InvalidValueError("The vertical motion appears twice: with the motion along x, and as z. Remove one.")
 
 
 class ComponentsTable(_Along, OneMotionTable):
-    """One motion, or one along each of the axes x, y and z of a body in space; z is up."""
+    """One motion, or for a 3D body motions along x, y and z (up)."""
 
     def _check_sources(self) -> None:
         self._check_components() if self.components else super()._check_sources()
 
 
 class MotionTable(_Along, MotionKeys):
-    """Records, pulses, a family of synthetic motions, or one motion along x, y and z of a body in space; z is up."""
+    """Records, pulses or synthetic motions, or for a 3D body one motion along x, y and z (up)."""
 
-    records: Names | None = key("record files, a folder of them, a pattern such as *.at2, or a list in a .csv file")
+    records: Names | None = key("record files, folder of record files, pattern such as *.at2, or list in a .csv file")
     files: dict[Text, FileKeys] | None = key(
-        'options of single files, in place of those for all files: one table per file name, [motions.files."a.txt"]'
+        'options of single files, which replace those of all files: one table per file name, [motions.files."a.txt"]'
     )
-    pulse: Names | None = key("pulses such as sine:amplitude=3,period=0.8")
+    pulse: Names | None = key("pulses, such as sine:amplitude=3,period=0.8")
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = key(
-        "how many synthetic motions, or records chosen for a target"
+        "number of synthetic motions, or of records selected for a target spectrum"
     )
     target: Text | None = key(
-        "spectrum that records are scaled to: eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1g,sd1=0.6g,tl=8, a file"
+        "target spectrum for scaling: eurocode8:ag=0.25g,ground=C,type=1, asce7:sds=1g,sd1=0.6g,tl=8, or a file"
     )
     periods: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = key(
-        "first and last period of a target that count, 0.1 and 2 if not given [s]"
+        "shortest and longest period of the comparison with the target spectrum, default 0.1 and 2 [s]"
     )
-    mirrored: bool = key("every record also with its horizontal components turned round", False)
+    mirrored: bool = key("add every record with reversed horizontal components", False)
 
     @model_validator(mode="after")
     def _whole(self) -> "MotionTable":
@@ -124,19 +128,19 @@ class MotionTable(_Along, MotionKeys):
         of_records = {*OF_FILES, "files", *chosen, "scale", "mirrored"}
         source = self._one_source({"records": of_records, "pulse": {"scale"}, "synthetic": own})
         if source == "synthetic" and self.count is None:
-            raise InvalidValueError("count is missing: how many synthetic motions?")
+            raise InvalidValueError("count is missing. Add the number of synthetic motions.")
         if source == "records" and self.target is None and (odd := sorted(chosen & self.model_fields_set)):
             raise InvalidValueError(
-                "{parameter} of records goes with target, the spectrum that they are chosen for", parameter=odd[0]
+                "{parameter} of records needs target. Add the target spectrum, or remove {parameter}.", parameter=odd[0]
             )
         return self
 
     @property
     def size(self) -> int:
-        """Number of motions; of a folder, a pattern or a list, number of names; 1 for components along x, y and z."""
+        """Number of motions. A folder, a pattern or a list counts as 1, and so do components along x, y and z."""
         return self.count or len(self.records or self.pulse or [1])
 
     @property
     def file_options(self) -> dict[str, dict[str, Any]]:
-        """The options of single record files, by their names; keys that are not stated are absent."""
+        """Stated options of single record files, by file name."""
         return {name: table.model_dump(exclude_none=True) for name, table in (self.files or {}).items()}

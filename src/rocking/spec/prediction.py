@@ -1,4 +1,4 @@
-"""A body of which not everything is known, and what moves it: the problem of a prediction, and its answer."""
+"""The problem of a prediction: an uncertain body and its motions; and its answer."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PredictionProblem:
-    """Everything that a prediction depends on."""
+    """Body, motions and options of a prediction."""
 
     body: Body | Solid
-    motions: Any  # by number
-    options: dict[str, Any]  # as `predict` takes them
+    motions: Any  # sequence of motions, or of components by axis
+    options: dict[str, Any]  # keywords of `predict`
 
     @classmethod
     def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
-        """Return what a file describes; inputs: files that it may name."""
+        """Return the problem of an input file; inputs: the files that it may name."""
         with located("body"):
             body = any_body_of(document.body, inputs)
         motions: Any
@@ -43,29 +43,29 @@ class PredictionProblem:
         self, table: "AssessTable", inputs: InputFiles, progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> "BodyAssessment":  # fmt: skip
-        """Return whether the body stands, with what else was asked for."""
+        """Return the assessment of the body with the options of the table."""
         from rocking.assessment import assess
         from rocking.spec.restitution_tables import RestitutionTable
 
         ground = {"normal_restitution", "normal_restitution_law"}
         options = {name: value for name, value in self.options.items() if name not in ground}
-        if odd := sorted(set(self.options) - set(options)):
+        if refused := sorted(set(self.options) - set(options)):
             raise InvalidValueError(
-                "{parameter} does not go with an assessment, whose histories do not bounce",
-                parameter=f"settings.{odd[0]}",
+                "An assessment does not accept {parameter}. Remove it.",
+                parameter=f"settings.{refused[0]}",
             )  # fmt: skip
-        predicted, given = options.pop("restitution", None), table.restitutions
-        if given is not None:
-            given = [
-                next(iter(restitutions_of(RestitutionTable(model=each), 0, [self.body], inputs).values()))
-                if isinstance(each, str) and each != "calibrated"
-                else each
-                for each in given
+        predicted, restitutions = options.pop("restitution", None), table.restitutions
+        if restitutions is not None:
+            restitutions = [
+                next(iter(restitutions_of(RestitutionTable(model=restitution), 0, [self.body], inputs).values()))
+                if isinstance(restitution, str) and restitution != "calibrated"
+                else restitution
+                for restitution in restitutions
             ]
-        if predicted is None and given is not None and len(given) == 1:
-            predicted = MEASURED if given[0] == "calibrated" else given[0]
+        if predicted is None and restitutions is not None and len(restitutions) == 1:
+            predicted = MEASURED if restitutions[0] == "calibrated" else restitutions[0]
         return assess(
-            self.body, self.motions, given, predicted=predicted, margin=table.margin, threads=threads,
+            self.body, self.motions, restitutions, predicted=predicted, margin=table.margin, threads=threads,
             progress=progress, **options,
         )  # fmt: skip
 
@@ -74,7 +74,7 @@ class PredictionProblem:
 
 
 def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles) -> dict[str, Any]:
-    """Return what a file says of a body that is not known exactly, as `predict` takes it."""
+    """Return the keywords of `predict` from an input file."""
     from rocking.spec.restitution_tables import RestitutionTable
 
     ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})

@@ -1,4 +1,4 @@
-"""A study of many histories as a class: what the classes in `rocking.spec.questions` have in common."""
+"""Base classes of the studies in `rocking.spec.questions`."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -33,28 +33,28 @@ def _kind_of_a_study(kind: str) -> str:
 
 
 class CampaignTable(JobTable):
-    """What the campaign is called and what it computes."""
+    """Name, study and storage of a campaign."""
 
-    name: Text = key("what it is called", ...)
-    kind: Annotated[str, AfterValidator(_kind_of_a_study)] = key("which study", ...)
-    note: str | None = key("anything")
-    chunk: int | None = key("histories that are kept together", None, ge=1, le=1 << 22)
-    seed: Seed = key("seed of what is drawn", 0)
+    name: Text = key("name of the campaign", ...)
+    kind: Annotated[str, AfterValidator(_kind_of_a_study)] = key("study", ...)
+    note: str | None = key("free text")
+    chunk: int | None = key("number of histories in one stored file", None, ge=1, le=1 << 22)
+    seed: Seed = key("random seed", 0)
 
 
 class StudyQuestion(JobTable):
-    """A study of many histories: its tables, what they describe, and its answer; a subclass per kind of campaign.
+    """A study of many histories: its tables, its problem and its answer. There is one subclass per kind of campaign.
 
-    A subclass has its `kind`, its own table first among its fields, `answer`, `study`, and `plot` if it has a picture.
+    A subclass defines `kind`, its own table as first field, `answer`, `study`, and `plot` if there is a figure.
     """
 
-    kind: ClassVar[str] = ""  # as [campaign] has it
-    without_body: ClassVar[str] = ""  # reason why there is no [body]; empty where there is one
-    plane: ClassVar[bool] = False  # the bodies move along x and z alone
-    one_restitution: ClassVar[bool] = False  # a picture shows one restitution
-    needs_motions: ClassVar[bool] = False  # every motion is made before the first history
-    names_files: ClassVar[bool] = False  # its own table names files, which no browser sends
-    of_files: ClassVar[dict[str, set[str]]] = {}  # keys by table that only files of a campaign show
+    kind: ClassVar[str] = ""  # value of campaign.kind
+    without_body: ClassVar[str] = ""  # reason for the absence of [body]; empty if there is a body
+    plane: ClassVar[bool] = False  # the bodies move along x and z only
+    one_restitution: ClassVar[bool] = False  # a figure shows one restitution
+    needs_motions: ClassVar[bool] = False  # all motions are computed before the first history
+    names_files: ClassVar[bool] = False  # the own table contains file names; a browser sends none
+    of_files: ClassVar[dict[str, set[str]]] = {}  # keys by table that affect only the files of a campaign
 
     campaign: CampaignTable
     motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
@@ -69,13 +69,13 @@ class StudyQuestion(JobTable):
 
     @classmethod
     def own_table(cls) -> str:
-        """Return the name of the table that no other study has, and of the command that makes it from options."""
+        """Return the name of the table of this study; the command has the same name."""
         return next(name for name in cls.model_fields if name not in BodyQuestion.model_fields)
 
     @model_validator(mode="before")
     @classmethod
     def _without_nothing(cls, stated: Any) -> Any:
-        """Leave out tables of other studies that are null, as browsers send them."""
+        """Remove null tables of other studies, which browsers send."""
         if not isinstance(stated, dict):
             return stated
         return {name: table for name, table in stated.items() if table is not None or name in cls.model_fields}
@@ -83,10 +83,10 @@ class StudyQuestion(JobTable):
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
         if key == "body":
-            return InvalidValueError("[body] makes no sense: {reason}", reason=cls.without_body)
+            return InvalidValueError("[body] is not allowed: {reason}", reason=cls.without_body)
         if any(key in question.model_fields for question in QUESTIONS.values()):
             return InvalidValueError(
-                '[{table}] does not go with kind = "{kind}", which takes [{expected}]', table=key, kind=cls.kind,
+                'kind = "{kind}" does not accept [{table}]. Use [{expected}].', table=key, kind=cls.kind,
                 expected=cls.own_table(),
             )  # fmt: skip
         return super()._unknown(key)
@@ -98,17 +98,17 @@ class StudyQuestion(JobTable):
 
     @property
     def bodies(self) -> list[dict[str, Any]]:
-        """The tables of the bodies."""
+        """Tables of the bodies."""
         return []
 
     @property
     def axes(self) -> "tuple[Axis, ...]":
-        """The axes x and y of a map."""
+        """Axes x and y of a map."""
         return ()
 
     @property
     def is_adaptive(self) -> bool:
-        """Whether later histories depend on the results of earlier ones."""
+        """True if later histories depend on the results of earlier ones."""
         return False
 
     @property
@@ -123,7 +123,7 @@ class StudyQuestion(JobTable):
 
     @property
     def sizes(self) -> list[int]:
-        """Numbers whose product is the number of histories; of an adaptive study, of those of the first round."""
+        """Numbers whose product is the number of histories, in an adaptive study of the first round."""
         return [self.motion_count, max(1, len(self.bodies)), self.choices]
 
     @property
@@ -133,15 +133,15 @@ class StudyQuestion(JobTable):
 
     @property
     def elements(self) -> dict[str, int]:
-        """Numbers, beside the histories, that a page limits."""
+        """Other numbers than histories that a page limits."""
         return {}
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Compute the study in memory; return the result of the same function of `rocking.studies`, or a comparison."""
+        """Compute the study in memory; return the result of its function in `rocking.studies`, or a comparison."""
         return self.study(problem).computed(progress, threads)
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the histories of the study, their dimensions, and the evaluation of their results."""
+        """Return the histories of the study, their dimensions, and the evaluation of the results."""
         raise NotImplementedError
 
     def findings(self, problem: "StudyProblem", dataset: Any) -> list[dict[str, Any]]:
@@ -149,14 +149,14 @@ class StudyQuestion(JobTable):
         return []
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw a finished campaign with one restitution; without a name, with the first or with all."""
+        """Return the figure of a finished campaign for one restitution; None: for the first or for all."""
         raise InvalidValueError(
-            'a campaign of kind "{kind}" has no picture', kind=self.kind, hint="take its table (.csv, .xlsx, .nc)"
+            'A campaign of kind "{kind}" has no figure', kind=self.kind, hint="export its table as .csv, .xlsx or .nc"
         )
 
 
 class BodyQuestion(StudyQuestion):
-    """A study of one body, or of several."""
+    """A study of one or several bodies."""
 
     several_bodies: ClassVar[bool] = False
 
@@ -168,12 +168,13 @@ class BodyQuestion(StudyQuestion):
             raise InvalidValueError("[body] is missing")
         if len(self.body) > 1 and not self.several_bodies:
             raise InvalidValueError(
-                '[[body]] can be given once only with kind = "{kind}", got {count}', kind=self.kind,
+                'kind = "{kind}" accepts one [[body]], got {count}.', kind=self.kind,
+
                 count=len(self.body),
             )  # fmt: skip
         return self
 
     @property
     def bodies(self) -> list[dict[str, Any]]:
-        """The tables of the bodies."""
+        """Tables of the bodies."""
         return self.body or []

@@ -1,4 +1,4 @@
-"""Files that describe a question: their text, what is wrong with it in one sentence, and the files that they name."""
+"""Reading of input files: text, tables, errors in one sentence, and the files that they name."""
 
 import hashlib
 import tomllib
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 _PIECE = 1 << 20
 _SPECIAL = "*?["
-LARGEST_JOB = 16 * 2**20  # larger job files are refused [byte]
+LARGEST_JOB = 16 * 2**20  # largest size of a job file [byte]
 
 
 @dataclass
 class InputFiles:
-    """The files that a job names, hashed when they are asked for."""
+    """The files that a job names, with their hashes."""
 
     folder: Path  # folder of the job file
-    # by the name of the job, or as its pattern finds it: path, sha256, and bytes
+    # by the name in the job, or the name from a pattern: path, sha256, and bytes
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def file(self, name: str) -> Path:
@@ -38,61 +38,63 @@ class InputFiles:
                     size += len(piece)
         except (OSError, ValueError) as error:
             raise InvalidValueError(
-                "{name}: {fault}; files are relative to the job file, here {folder}", name=name,
+                "{name}: {fault}. File names are relative to the folder of the job file, {folder}.", name=name,
                 fault=str(getattr(error, "strerror", None) or error), folder=self.folder,
             ) from error  # fmt: skip
         self.files[name] = {"path": name, "sha256": digest.hexdigest(), "bytes": size}
         return path
 
     def named(self, pattern: str) -> list[str]:
-        """Return the files that a pattern, such as ``**/*.at2``, finds beside the job file, in alphabetic order."""
+        """Return the files of a pattern, such as ``**/*.at2``, relative to the job file, in alphabetic order."""
         if not is_pattern(pattern) or (self.folder / pattern).exists():
             return [pattern]
-        root, rest = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (
+        root, parts = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (
             self.folder, Path(pattern).parts,
         )  # fmt: skip
         try:
-            paths = sorted(path for path in root.glob("/".join(rest)) if path.is_file())
+            paths = sorted(path for path in root.glob("/".join(parts)) if path.is_file())
         except (ValueError, OSError, NotImplementedError) as error:
             raise InvalidValueError(
-                "{pattern!r:.80} is no pattern of files ({reason})", pattern=pattern, reason=str(error)
+                "Invalid file pattern {pattern!r:.80} ({reason}).", pattern=pattern, reason=str(error)
             ) from error
         if not paths:
-            raise InvalidValueError("{pattern!r:.80} finds no file in {folder}", pattern=pattern, folder=self.folder)
+            raise InvalidValueError("No file in {folder} matches {pattern!r:.80}.", pattern=pattern, folder=self.folder)
         return [(path if Path(pattern).is_absolute() else path.relative_to(self.folder)).as_posix() for path in paths]
 
     def facts(self) -> list[dict[str, Any]]:
-        """Return the files as plain values, in the order of their names."""
+        """Return the files as plain values, sorted by name."""
         return [self.files[name] for name in sorted(self.files)]
 
 
 class CommandFiles(InputFiles):
-    """The files that a command names: whoever reads one says what is wrong with it, and none is hashed."""
+    """The files that a command names, without hashes; their readers report errors."""
 
     def file(self, name: str) -> Path:
         return self.folder / name
 
 
 def is_pattern(name: str) -> bool:
-    """Return whether a name is a pattern of files."""
+    """Return True if the name is a file pattern."""
     return any(mark in name for mark in _SPECIAL)
 
 
 def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:
-    """Refuse files that are not what they were when the campaign began."""
+    """Refuse files that changed after the start of the campaign."""
     was, here = ({item["path"]: item for item in items} for items in (before, now))
-    advice = "restore it, or begin a new campaign in another folder"
+    advice = "restore it, or start a new campaign in another folder"
     for path, item in was.items():
         if path not in here:
-            raise InvalidValueError("was there when the campaign began and is missing now", hint=advice).at(str(path))
+            raise InvalidValueError("The file is missing. The campaign uses it", hint=advice).at(str(path))
         if here[path]["sha256"] != item["sha256"]:
             raise InvalidValueError(
-                "has changed since the campaign began (SHA-256 {expected}... then, {hash}... now)",
+                "The file changed after the start of the campaign (SHA-256 {expected}... before, {hash}... now)",
                 expected=item["sha256"][:12], hash=here[path]["sha256"][:12], hint=advice,
             ).at(str(path))  # fmt: skip
     added = sorted(set(here) - set(was))
     if added:
-        raise InvalidValueError("was not there when the campaign began; remove it, or begin a new one").at(added[0])
+        raise InvalidValueError(
+            "The campaign does not use this new file", hint="remove it, or start a new campaign in another folder"
+        ).at(added[0])
 
 
 def read_text(path: Path) -> str:
@@ -100,44 +102,42 @@ def read_text(path: Path) -> str:
     try:
         if path.is_dir():
             raise InvalidValueError(
-                "{folder} is a folder", folder=path, hint="give a job file, or take status, resume and export for it"
+                "{folder} is a folder", folder=path, hint="use a job file, or the commands status, resume and export"
             )
         data = path.read_bytes()
     except FileNotFoundError as error:
-        raise InvalidValueError("there is no such job file").at(str(path)) from error
+        raise InvalidValueError("The job file does not exist.").at(str(path)) from error
     except (OSError, ValueError) as error:
         raise InvalidValueError(
-            "cannot be opened ({reason})", reason=str(getattr(error, "strerror", None) or error)
+            "The file cannot be opened ({reason}).", reason=str(getattr(error, "strerror", None) or error)
         ).at(str(path)) from error
     if len(data) > LARGEST_JOB:
-        raise InvalidValueError("has {size:.1f} MiB; job files may have up to 16 MiB", size=len(data) / 2**20).at(
+        raise InvalidValueError("A job file has at most 16 MiB, got {size:.1f} MiB.", size=len(data) / 2**20).at(
             str(path)
         )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InvalidValueError("is not UTF-8 text (byte {byte})", byte=error.start).at(str(path)) from error
+        raise InvalidValueError("The file is not UTF-8 text (byte {byte}).", byte=error.start).at(str(path)) from error
 
 
 def tables_of(text: str) -> dict[str, Any]:
-    """Return the tables of a text, unchecked."""
+    """Return the unchecked tables of a text."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InvalidValueError("is not TOML: {reason}", reason=str(error)) from error
+        raise InvalidValueError("Invalid TOML: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:
-        raise InvalidValueError(
-            "is not TOML that can be read: {reason}", reason=str(error).partition(";")[0]
-        ) from error
+        raise InvalidValueError("Unreadable TOML: {reason}", reason=str(error).partition(";")[0]) from error
 
 
 def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
-    """Return the tables of a file of any schema, checked for themselves."""
+    """Return the validated tables of a file of any schema."""
     return validated(kind, migrated(tables))
 
 
 def validated(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
-    """Return tables of the present schema, checked for themselves; the error is one sentence."""
+    """Return the validated tables of the current schema; an error has one sentence."""
     from pydantic import ValidationError
 
     from rocking.bodies.formats.words import from_pydantic
@@ -149,7 +149,7 @@ def validated(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
 
 
 def tables_in(path: Path) -> dict[str, Any] | None:
-    """Return the tables of a TOML file, unchecked; None for everything else. Never raises."""
+    """Return the unchecked tables of a TOML file; None for any other file. Never raises."""
     if path.suffix.lower() != ".toml":
         return None
     try:

@@ -1,4 +1,4 @@
-"""Documentation of the keys of input files, from their tables; the manual contains it."""
+"""Reference of the keys of input files, from their tables, for the manual."""
 
 import re
 import types
@@ -77,7 +77,7 @@ def reference() -> dict[str, str]:
 
 
 def _tables() -> dict[str, tuple[type[JobTable], str]]:
-    """Return the tables of all questions and what they are of: those of studies as their classes have them."""
+    """Return class and commands of all tables by name, including the tables of the studies."""
     of_studies: dict[str, tuple[type[JobTable], str]] = {}
     for question in questions().values():
         where = f"`rocking {_COMMANDS.get(question.own_table(), question.own_table())}`"
@@ -86,22 +86,27 @@ def _tables() -> dict[str, tuple[type[JobTable], str]]:
 
 
 def _within(
-    table: type[BaseModel], where: str, known: Collection[str] = (), above: str = ""
+    table: type[BaseModel], command: str, common_tables: Collection[str] = (), prefix: str = ""
 ) -> dict[str, tuple[type[JobTable], str]]:  # fmt: skip
-    """Return the tables that stand in a table, and in these."""
+    """Return the tables inside a table, at all depths."""
     inner: dict[str, tuple[type[JobTable], str]] = {}
     for name, field in table.model_fields.items():
         kind = field.annotation
-        if isinstance(kind, type) and issubclass(kind, JobTable) and not issubclass(kind, Values) and name not in known:
-            inner |= {f"{above}{name}": (kind, where), **_within(kind, where, above=f"{above}{name}.")}
+        if (
+            isinstance(kind, type)
+            and issubclass(kind, JobTable)
+            and not issubclass(kind, Values)
+            and name not in common_tables
+        ):
+            inner |= {f"{prefix}{name}": (kind, command), **_within(kind, command, prefix=f"{prefix}{name}.")}
     return inner
 
 
 def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
-    """Return what is said of the keys of a table: unit, meaning, kind, usual value, choices and limits."""
+    """Return unit, meaning, type, default, choices and limits of the keys of a table, by key."""
     return {
         field.alias or key: {
-            **_said(field.description or "", field.default, field.annotation, needed=field.is_required()),
+            **_facts_of_key(field.description or "", field.default, field.annotation, needed=field.is_required()),
             **limits_of(field),
         }
         for key, field in table.model_fields.items()
@@ -109,23 +114,30 @@ def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
 
 
 def steps() -> dict[str, dict[str, Any]]:
-    """Return what every step of a record does, and its keys; one: only one of these is given."""
+    """Return meaning and keys of every processing step of a record; one: the step needs exactly one key."""
     from rocking.motions.intensity import MEASURES
     from rocking.motions.pipeline import STEPS
     from rocking.motions.pipeline import keys_of as keys_of_step
 
-    found = {}
+    facts = {}
     for name, step in STEPS.items():
         keys = keys_of_step(step)
-        levels = keys.pop("level", None) is not None
-        grow = [one for one in MEASURES.values() if levels and one.power and one.is_listed and not one.needs_body]
-        measures = {one.name: _said(f"To this {one.words} [{one.unit}]", None, float) for one in grow}
-        found[name] = {"words": _summary(step), "one": levels, "keys": {**_documented(step, keys), **measures}}
-    return found
+        has_level = keys.pop("level", None) is not None
+        scalable = [
+            measure
+            for measure in MEASURES.values()
+            if has_level and measure.power and measure.is_listed and not measure.needs_body
+        ]
+        measures = {
+            measure.name: _facts_of_key(f"To this {measure.words} [{measure.unit}]", None, float)
+            for measure in scalable
+        }
+        facts[name] = {"words": _summary(step), "one": has_level, "keys": {**_documented(step, keys), **measures}}
+    return facts
 
 
 def targets() -> dict[str, dict[str, Any]]:
-    """Return the spectra that records are scaled to, and their keys."""
+    """Return meaning and keys of the target spectra."""
     from rocking.motions.target_spectra import CODES
 
     return {
@@ -138,49 +150,55 @@ _PARAMETERS = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?: {4}.*\n?)+)", re.MULTILIN
 
 
 def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
-    """Return what a function says of some of its parameters."""
+    """Return the facts of some parameters of a function from its docstring."""
     text = (getdoc(function) or "").partition("\nReturns\n")[0]
-    words = {key: " ".join(said.split()) for names, said in _PARAMETERS.findall(text) for key in names.split(", ")}
+    descriptions = {
+        key: " ".join(description.split())
+        for names, description in _PARAMETERS.findall(text)
+        for key in names.split(", ")
+    }
     return {
-        key: _said(words.get(key, ""), None if needed else one.default, one.annotation, needed=needed)
-        for key, one in keys.items()
-        for needed in [one.default is one.empty]
+        key: _facts_of_key(
+            descriptions.get(key, ""), None if needed else parameter.default, parameter.annotation, needed=needed
+        )
+        for key, parameter in keys.items()
+        for needed in [parameter.default is parameter.empty]
     }
 
 
-def _said(words: str, usual: Any, annotation: Any, *, needed: bool = False) -> dict[str, Any]:
-    """Return what is said of a key, with the unit that its words end with."""
-    meaning, unit = meaning_and_unit(words)
+def _facts_of_key(description: str, default: Any, annotation: Any, *, needed: bool = False) -> dict[str, Any]:
+    """Return unit, meaning, type, default and choices of a key."""
+    meaning, unit = meaning_and_unit(description)
     return {
         "unit": unit,
         "words": meaning,
         "kind": _kind(annotation),
-        "usual": _usual(usual).strip("`"),
+        "usual": _as_code(default).strip("`"),
         "needed": needed,
         "choices": list(_choices(annotation)),
     }
 
 
 def _choices(annotation: Any) -> tuple[str, ...]:
-    """Return the words that a key takes, if there are few."""
+    """Return the allowed values of a key, if it is a flag or a list of choices."""
     if annotation is bool:
         return ("false", "true")
     return tuple(map(str, get_args(annotation))) if get_origin(annotation) is Literal else ()
 
 
 def _summary(documented: Any) -> str:
-    words = _first_line(documented).removeprefix("Return ").rstrip(".")
-    return f"{words[:1].upper()}{words[1:]}"
+    summary = _first_line(documented).removeprefix("Return ").rstrip(".")
+    return f"{summary[:1].upper()}{summary[1:]}"
 
 
 def keys_of(name: str) -> list[str]:
-    """Return the keys of a table as they are written; none where no table has the name."""
+    """Return the keys of a table as written in files; empty for an unknown table."""
     table = _tables().get(name)
     return [] if table is None else [field.alias or key for key, field in table[0].model_fields.items()]
 
 
 def _names() -> Iterator[str]:
-    """Give the names that stand as values: axes of maps, measures, synthetic families, pulses."""
+    """Yield the names of values: axes of maps, intensity measures, synthetic families, pulses, steps, spectra."""
     from rocking.motions.intensity import MEASURES
     from rocking.motions.pulses import catalogue
     from rocking.motions.synthetic import families
@@ -196,28 +214,28 @@ def _names() -> Iterator[str]:
     ]
     for title, head, rows in (
         ("Axes of a map", "axis", [(name, f"{axis.meaning} [{axis.unit}]") for name, axis in axes().items()]),
-        ("Measures of intensity", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
+        ("Intensity measures", "measure", [*measures, ("sa(T)", "spectral acceleration at the period T [m/s2]")]),
         ("Families of synthetic motions", "family", [(name, family.title) for name, family in families().items()]),
         ("Pulses", "pulse", pulses),
-        ("Steps of a record", "step", _written(steps())),
-        ("Target spectra", "spectrum", _written(targets())),
+        ("Processing steps of a record", "step", _rows_of_entries(steps())),
+        ("Target spectra", "spectrum", _rows_of_entries(targets())),
     ):
         yield f"## {title}\n\n| {head} | meaning |\n|---|---|"
-        yield from (f"| `{name}` | {words.replace('[1]', '[-]').rstrip('.')} |" for name, words in rows)
+        yield from (f"| `{name}` | {meaning.replace('[1]', '[-]').rstrip('.')} |" for name, meaning in rows)
         yield ""
 
 
-def _written(described: dict[str, dict[str, Any]]) -> list[tuple[str, str]]:
-    """Return a row for each of some things with keys: how it is written, and what it is."""
+def _rows_of_entries(described: dict[str, dict[str, Any]]) -> list[tuple[str, str]]:
+    """Return one row per step or spectrum: name with keys, and meaning."""
     rows = []
-    for name, one in described.items():
-        keys = ",".join(f"{key}={each['usual']}" for key, each in one["keys"].items() if not one["one"])
-        means = "; ".join(
-            f"{key}: {each['words'].rstrip('.')}" + (f" [{each['unit']}]" if each["unit"] else "")
-            for key, each in one["keys"].items()
+    for name, entry in described.items():
+        keys = ",".join(f"{key}={key_facts['usual']}" for key, key_facts in entry["keys"].items() if not entry["one"])
+        meaning = "; ".join(
+            f"{key}: {key_facts['words'].rstrip('.')}" + (f" [{key_facts['unit']}]" if key_facts["unit"] else "")
+            for key, key_facts in entry["keys"].items()
         )
         head = f"{name}:{keys}" if keys else name
-        rows.append((head, f"{one['words']}. {means}".strip()))
+        rows.append((head, f"{entry['words']}. {meaning}".strip()))
     return rows
 
 
@@ -231,11 +249,11 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield "| key | type | unit | default | range | meaning |"
     yield "|---|---|---|---|---|---|"
     for key, field in table.model_fields.items():
-        default = "required" if field.is_required() else _usual(field.default)
+        default = "required" if field.is_required() else _as_code(field.default)
         if table is StudySettingsTable and not default:
-            default = _usual_setting(key)
+            default = _default_of_setting(key)
         elif table is ThresholdsTable:
-            default = _usual(getattr(Thresholds(), key))
+            default = _as_code(getattr(Thresholds(), key))
         choices = ", ".join(questions()) if (table, key) == (CampaignTable, "kind") else _kind(field.annotation)
         meaning, unit = meaning_and_unit(field.description or "")
         if '"' in unit:  # the name of a table
@@ -256,27 +274,27 @@ def _range(field: FieldInfo) -> str:
     return ", ".join(f"{_SIGNS[name]} {limit:,.10g}" for name, limit in limits_of(field).items() if limit < _HUGE)
 
 
-def _usual(value: Any) -> str:
+def _as_code(value: Any) -> str:
     if value is None or value is PydanticUndefined or isinstance(value, JobTable):
         return ""
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 
 
-def _usual_setting(key: str) -> str:
-    """Return the usual value of a setting: one, or that of rocking, with friction and in space."""
-    ways = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in space"}
-    values = {words: settings().stated.get(key) for settings, words in ways.items() if key != "friction"}
+def _default_of_setting(key: str) -> str:
+    """Return the default of a setting: a common one, or those of rocking, with friction and in 3D."""
+    suffixes = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in 3D"}
+    values = {suffix: settings().stated.get(key) for settings, suffix in suffixes.items() if key != "friction"}
     if len({*values.values()}) == 1:
-        return _usual(values[""])
-    return ", ".join(_usual(value) + words for words, value in values.items() if value is not None)
+        return _as_code(values[""])
+    return ", ".join(_as_code(value) + suffix for suffix, value in values.items() if value is not None)
 
 
 def _kind(annotation: Any) -> str:
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return ", ".join(str(one).lower() if isinstance(one, bool) else str(one) for one in inner)
+        return ", ".join(str(argument).lower() if isinstance(argument, bool) else str(argument) for argument in inner)
     if origin in {Union, types.UnionType}:
-        return " or ".join(dict.fromkeys(_kind(one) for one in inner if one is not type(None)))
+        return " or ".join(dict.fromkeys(_kind(argument) for argument in inner if argument is not type(None)))
     if origin is list:
         return f"list of {_kind(inner[0])}"
     if isinstance(annotation, type) and issubclass(annotation, Values):

@@ -1,4 +1,4 @@
-"""One body and what moves it: the problem of a response, made from its tables, and its answer."""
+"""The problem of a response: one body and its motion, from the tables of an input file; and its answer."""
 
 import math
 import warnings
@@ -15,7 +15,7 @@ from rocking.dynamics.plane.settings import PlaneSettings
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning, located
 from rocking.motions.components import together
-from rocking.spec.bodies import body_moved
+from rocking.spec.bodies import body_for_motion
 from rocking.spec.construction import components_of, motion_of, restitutions_of
 from rocking.spec.reading import InputFiles
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ResponseProblem:
-    """Everything that a response depends on."""
+    """Body, motion, restitutions and settings of a response."""
 
-    body: Any  # a plane body, or a `Solid`
-    motion: Any  # not scaled; by axis for a body in space, None for free rocking
+    body: Any  # a `Body` or a `Solid`
+    motion: Any  # not scaled; by axis for a 3D body, None for free rocking
     restitutions: dict[str, Any] = field(
         default_factory=lambda: {DEFAULT_RESTITUTION: DEFAULT_RESTITUTION}
-    )  # by label, as `simulate` takes them
-    settings: Settings = field(default_factory=PlaneSettings)  # how it moves, and how to integrate
+    )  # by label, values as in `simulate`
+    settings: Settings = field(default_factory=PlaneSettings)  # of mechanics and integration
     engine: str = "auto"
-    assumed_friction: float = DEFAULT_FRICTION  # what pure rocking is compared with [-]
-    initial_rotation: float | None = None  # first rotation over the slenderness angle of the side it leans to [-]
+    assumed_friction: float = DEFAULT_FRICTION  # coefficient of friction for the sliding check [-]
+    initial_rotation: float | None = None  # initial rotation / slenderness angle of its side [-]
     start_height: float = 0.0  # of the lowest point above the ground, with friction [m]
-    start_velocity: tuple[float, ...] = ()  # of the lowest point: x and up in a plane, x, y and up in space [m/s]
-    scale: float = 1.0  # factor on the motion [-]
+    start_velocity: tuple[float, ...] = ()  # of the lowest point: (x, up) in 2D, (x, y, up) in 3D [m/s]
+    scale: float = 1.0  # scale factor of the motion [-]
 
     def __post_init__(self) -> None:
-        """Check what the engines do not check."""
+        """Check the values that the engines do not check."""
         plausibility.warn(plausibility.of_friction(checks.positive("friction", self.assumed_friction)))
         if self.initial_rotation is not None:
             checks.number("initial_rotation", self.initial_rotation)
@@ -57,52 +57,52 @@ class ResponseProblem:
 
     @property
     def mechanics(self) -> Mechanics:
-        """How it moves."""
+        """Mechanics of the settings."""
         return mechanics_of(self.settings)
 
     @property
     def balance_angle(self) -> float:
-        """Rotation at which the body balances on the side of `initial_rotation`, its slenderness angle [rad]."""
+        """Slenderness angle on the side of `initial_rotation` [rad]."""
         right = self.initial_rotation is None or self.initial_rotation > 0.0
         if isinstance(self.body, Body):
             return self.body.side("right" if right else "left", self.settings.gravity).slenderness_angle
         space = SpatialBody.of(self.body)
-        way, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
-        ends = [space.radius] if space.round else (way * space.vertices[:, 0]).tolist()
-        return math.atan2(max(ends) - way * x, height)
+        sign, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
+        ends = [space.radius] if space.round else (sign * space.vertices[:, 0]).tolist()
+        return math.atan2(max(ends) - sign * x, height)
 
     @property
     def rotation(self) -> float:
-        """Rotation at the start, positive to the right [rad]."""
+        """Initial rotation, positive to the right [rad]."""
         return 0.0 if self.initial_rotation is None else float(self.initial_rotation * self.balance_angle)
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Axes of the initial velocity: those of a plane body, or of one in space."""
+        """Axes of the initial velocity."""
         return ("x", "up") if isinstance(self.body, Body) else ("x", "y", "up")
 
     @property
     def dropped(self) -> bool:
-        """Whether the body starts above the ground, or in motion."""
+        """True if the body starts above the ground, or with a velocity."""
         return bool(self.start_height) or any(self.start_velocity)
 
     @property
     def start(self) -> SpatialStart | Start:
-        """Initial position and velocity; in space the tilt is towards x, or -x for an `initial_rotation` below zero."""
+        """Initial position and velocity; in 3D the tilt is towards +x, or -x if `initial_rotation` < 0."""
         velocity = self.start_velocity or (0.0,) * len(self.axes)
         if isinstance(self.body, Body):
             x, up = velocity
             return Start(self.rotation, horizontal_velocity=x, height=self.start_height, vertical_velocity=up)
-        way = 0.0 if self.rotation >= 0.0 else math.pi
-        return SpatialStart(abs(self.rotation), way, height=self.start_height, velocity=velocity)
+        azimuth = 0.0 if self.rotation >= 0.0 else math.pi
+        return SpatialStart(abs(self.rotation), azimuth, height=self.start_height, velocity=velocity)
 
     def answer(self, restitution: Any = ...) -> Any:
-        """Return the response with one restitution, the first if none is given."""
+        """Return the response with one restitution, by default the first."""
         law = next(iter(self.restitutions.values())) if restitution is ... else restitution
         options: dict[str, Any] = dict(self.settings.stated)
         if "engine" in self.mechanics.options:
             options["engine"] = self.engine
-        with warnings.catch_warnings():  # whoever shows the response shows its doubts
+        with warnings.catch_warnings():  # the output of the response contains its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.initial_rotation is not None or self.dropped:
                 options["start"] = self.start
@@ -114,7 +114,7 @@ class ResponseProblem:
 def problem_of(
     tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
 ) -> ResponseProblem:
-    """Return the problem of tables with its body and motion made; scale, if given, in place of the tables' own."""
+    """Return the problem of tables with their body and motion; scale replaces the scale factor of the tables."""
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = mechanics_for(body, start.friction)
     ground = start.model_dump(include={"friction", "normal_restitution", "normal_restitution_law"}, exclude_none=True)
@@ -122,18 +122,18 @@ def problem_of(
         mechanics.refuse_others(ground, {*mechanics.settings.names()})
         if start.dropped and not mechanics.slides:
             raise InvalidValueError(
-                "without friction a body neither slides nor flies: start_height, start_velocity need friction"
+                "start_height and start_velocity need friction. Add response.friction, or remove them."
             )
     if not mechanics.is_compared:
-        _refuse(f"{mechanics.title} is not compared with an assumed friction", start, {"assumed_friction"})
-        _refuse(f"{mechanics.title} has one engine, with the full equations", tables.settings, {"linear", "engine"})
+        _refuse(f"{mechanics.title} has no sliding check", start, {"assumed_friction"})
+        _refuse(f"{mechanics.title} has one engine with the nonlinear equations", tables.settings, {"linear", "engine"})
     with located("settings"):
         settings, _ = mechanics.split(tables.settings.stated() | ground, mechanics.settings, frozenset())
     restitutions = restitutions_of(tables.restitution, 0, [body], inputs, mechanics=mechanics)
     if not mechanics.is_compared and len(restitutions) > 1:
         names = ", ".join(restitutions)
         raise InvalidValueError(
-            "restitution: {mechanics} is computed with one, got {names}", parameter="restitution",
+            "{mechanics} accepts one restitution model, got {names}.", parameter="restitution",
             mechanics=mechanics.title, names=names,
         )  # fmt: skip
     return ResponseProblem(
@@ -153,14 +153,14 @@ def problem_of(
 def _refuse(reason: str, table: Any, keys: set[str]) -> None:
     stated = [name for name in type(table).model_fields if name in keys & table.model_fields_set]
     if any(getattr(table, name) not in {None, False} for name in stated):
-        raise InvalidValueError("{reason}, so it takes no {keys}", reason=reason, keys=", ".join(stated))
+        raise InvalidValueError("{reason}. Remove {keys}.", reason=reason, keys=", ".join(stated))
 
 
 def response_problem(document: "ResponseDocument", files: InputFiles, *, in_space: bool = False) -> ResponseProblem:
-    r"""Return the problem that a file describes; files: those that it may name; in space: of a plane body too."""
+    """Return the problem of an input file; files: the files that it may name, in_space: use a 3D body."""
     table = document.motion
     with located("body"):
-        body = body_moved(document.body, files, turned=in_space or (table is not None and table.y is not None))
+        body = body_for_motion(document.body, files, in_space=in_space or (table is not None and table.y is not None))
     motion: Any = None
     with located("motion"):
         if table is not None:

@@ -1,11 +1,11 @@
-"""The numbered schema of files with questions, and the keys that each number has renamed."""
+"""Schema numbers of input files, and the renamed keys of each number."""
 
 from collections.abc import Iterator
 from typing import Any
 
 from rocking.errors import InvalidValueError
 
-SCHEMA = 2  # number of the present tables, which a file may state; without a number it is 1
+SCHEMA = 2  # current number; a file without a number has 1
 
 RENAMED: dict[int, dict[str, str]] = {
     1: {
@@ -27,13 +27,13 @@ RENAMED: dict[int, dict[str, str]] = {
         "settings.bounce_law": "normal_restitution_law",
     },
 }
-"""New names of keys by the number of the schema that had the old ones: ``table.key``, or the path of a nested key."""
+"""New names of keys by schema number of the old name, and by path of the old key, such as ``table.key``."""
 
-_FORMS = {"range": "minimum", "unknown": "predict"}  # parts of the form of an assessment that are tables
+_FORMS = {"range": "minimum", "unknown": "predict"}  # tables by their name in the form of an assessment
 
 
 def migrated(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a file of any schema as those of the present one.
+    """Return the tables of a file of any schema, converted to the current schema.
 
     >>> migrated({"fragility": {"measure": "pgv"}}), migrated({"schema": 2, "fragility": {"measure": "pgv"}})
     ({'fragility': {'im': 'pgv'}}, {'fragility': {'measure': 'pgv'}})
@@ -51,22 +51,22 @@ def migrated(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def migrated_document(document: dict[str, Any]) -> dict[str, Any]:
-    """Return the document of a project with the present keys, in its inputs and in what was typed in its forms."""
+    """Return the document of a project with the current keys in inputs and forms."""
     inputs, forms = document.get("inputs"), document.get("forms")
     if isinstance(inputs, dict):
         document = {**document, "inputs": migrated(inputs)}
     if isinstance(forms, dict):
         forms = {**forms, **migrated({"inventory": forms["inventory"]} if "inventory" in forms else {})}
         if isinstance(decide := forms.get("decide"), dict):
-            tables = migrated({table: decide[part] for part, table in _FORMS.items() if part in decide})
-            parts = {part: tables[table] for part, table in _FORMS.items() if table in tables}
+            tables = migrated({table: decide[form_name] for form_name, table in _FORMS.items() if form_name in decide})
+            parts = {form_name: tables[table] for form_name, table in _FORMS.items() if table in tables}
             forms = {**forms, "decide": {**decide, **parts}}
         document = {**document, "forms": forms}
     return document
 
 
 def _renamed(table: dict[str, Any], path: list[str], new: str) -> dict[str, Any]:
-    """Return a table with the last key of a path renamed; a list of tables counts as each of its tables."""
+    """Return a table with the last key of a path renamed, in all tables of a list."""
     key, *inner = path
     if key not in table:
         return table
@@ -76,7 +76,7 @@ def _renamed(table: dict[str, Any], path: list[str], new: str) -> dict[str, Any]
         return {new if name == key else name: value for name, value in table.items()}
     value = table[key]
     if isinstance(value, list):
-        value = [_renamed(one, inner, new) if isinstance(one, dict) else one for one in value]
+        value = [_renamed(item, inner, new) if isinstance(item, dict) else item for item in value]
     elif isinstance(value, dict):
         value = _renamed(value, inner, new)
     return {**table, key: value}

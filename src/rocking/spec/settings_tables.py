@@ -11,25 +11,25 @@ BOUNCE_LAW = (
 
 
 class SettingsTable(JobTable):
-    """How to integrate: what is left out has its usual value."""
+    """Settings of the integration."""
 
     gravity: Positive | None = key("acceleration of gravity [m/s2]")
-    linear: bool | None = key("slender-linear equations")
-    rest_speed: float | None = key("speed below which a motion ends at once [-]")
-    most_events: int | None = key("a history with more impacts and changes of contact is stopped")
-    longest_step: float | None = key("longest Taylor step as p times time [-]")
+    linear: bool | None = key("linear equations of a slender body")
+    rest_speed: float | None = key("dimensionless speed below which the body comes to rest [-]")
+    most_events: int | None = key("largest number of impacts and contact changes of one history")
+    longest_step: float | None = key("longest time step, as p times the time [-]")
     order: int | None = key("order of the Taylor series")
-    tolerance: float | None = key("bound on the last two terms of a Taylor step [-]")
-    engine: Literal["auto", "fast", "reference"] = key("which engine computes", "auto")
+    tolerance: float | None = key("largest size of the last two terms of a Taylor step [-]")
+    engine: Literal["auto", "fast", "reference"] = key("computation engine", "auto")
 
     def stated(self) -> dict[str, Any]:
-        """Return what was stated, without the engine, as `Settings` takes it."""
+        """Return the stated settings without the engine, as keywords of `Settings`."""
         return self.model_dump(exclude={"engine"}, exclude_none=True)
 
 
 class StudySettingsTable(SettingsTable):
-    """How to integrate: what is left out has its usual value. Friction is of studies; one history has its own table."""
+    """Settings of the integration, and of the contact in studies; the table of a response has its own contact keys."""
 
     friction: float | None = key("coefficient of friction; enables sliding [-]", None, ge=0.0)
-    normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)
     normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)

@@ -1,4 +1,4 @@
-"""What the tables of a study describe: bodies, motions, restitutions and settings."""
+"""The problem of a study: bodies, motions, restitutions and settings from its tables."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, located
-from rocking.spec.bodies import body_moved
+from rocking.spec.bodies import body_for_motion
 from rocking.spec.construction import motions_of, restitutions_of
 from rocking.spec.reading import InputFiles
 from rocking.studies.axis import friction_beside
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StudyProblem:
-    """What the histories of a study are made of."""
+    """Bodies, motions, restitutions and settings of a study."""
 
-    document: Any  # the question, of its own class
-    bodies: list[Any]  # plane ones, or solids; none for spectra
+    document: Any  # an instance of a subclass of `StudyQuestion`
+    bodies: list[Any]  # all 2D or all 3D; empty for spectra
     motions: MotionSet
     restitutions: dict[str, Any]  # by label
-    settings: Settings  # how to integrate
-    inputs: InputFiles  # the files that were read
+    settings: Settings  # of mechanics and integration
+    inputs: InputFiles  # input files with their hashes
 
     @classmethod
     def of(cls, document: "StudyQuestion", files: Path | InputFiles) -> "StudyProblem":
-        """Return what tables describe; files: those that they may name, or the folder of them."""
+        """Return the problem of the tables; files: the files that they may name, or the folder of these files."""
         inputs = files if isinstance(files, InputFiles) else InputFiles(files)
         with located("settings"):
             stated, axes = document.settings.stated(), document.axes
@@ -45,16 +45,18 @@ class StudyProblem:
         turned = any(table.y is not None for table in document.motions) or any(axis.name == "azimuth" for axis in axes)
         if turned and document.plane:
             raise InvalidValueError(
-                "motions: its blocks move along x and z, not along y", parameter="motions", hint=document.without_body
+                "The blocks of a spectrum accept motions along x and z only",
+                parameter="motions",
+                hint=document.without_body,
             )
         bodies = []
         for k, table in enumerate(document.bodies):
             with located("body" if len(document.bodies) == 1 else f"body[{k}]"):
-                bodies.append(body_moved(table, inputs, turned=turned))
+                bodies.append(body_for_motion(table, inputs, in_space=turned))
         with located("settings"):
             kinds = {isinstance(body, Body) for body in bodies}
             if len(kinds) > 1:
-                raise InvalidValueError("bodies of a study are all plane or all in space")
+                raise InvalidValueError("A study needs only 2D bodies or only 3D bodies.")
             settings = study_settings(next(iter(bodies), None), stated, stated.pop("gravity", g))
         plane = document.plane or kinds == {True}
         motions: MotionSet = MotionList.empty()
@@ -66,12 +68,12 @@ class StudyProblem:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Settings and engine, as the studies take them."""
+        """Settings and engine, as keywords of the studies."""
         return {**self.settings.stated, "engine": self.document.settings.engine}
 
     @property
     def stated(self) -> dict[str, Any]:
-        """Settings that the document states, and engine."""
+        """Stated settings of the document, and engine."""
         return {**self.document.settings.stated(), "engine": self.document.settings.engine}
 
     @property
@@ -86,7 +88,7 @@ class StudyProblem:
         return {} if stated else {name: replace(self, restitutions={name: name}) for name in COMPARED_RESTITUTIONS}
 
     def answer(self, progress: Callable[[int], None] | None = None, threads: int | None = None) -> Any:
-        """Compute the study in memory, as its question says."""
+        """Compute the study in memory."""
         return self.document.answer(self, progress, threads)
 
     @property
@@ -95,23 +97,23 @@ class StudyProblem:
         motions = self.motions
         return motions if isinstance(motions, MotionList) else MotionList([motions[k] for k in range(len(motions))])
 
-    def only(self, things: str) -> Any:
-        """Return the one body, motion or restitution of a study that takes no more."""
-        held: Any = getattr(self, things)
-        if len(held) != 1:
+    def only(self, field_name: str) -> Any:
+        """Return the only body, motion or restitution; raise an error for several."""
+        items: Any = getattr(self, field_name)
+        if len(items) != 1:
             raise InvalidValueError(
-                "{name}: in memory this is computed with one, got {count}", parameter=things, name=things,
-                count=len(held), hint="rocking campaign takes several",
+                "{name}: one is needed without a campaign, got {count}", parameter=field_name, name=field_name,
+                count=len(items), hint="rocking campaign accepts several",
             )  # fmt: skip
-        return self.restitution if things == "restitutions" else held[0]
+        return self.restitution if field_name == "restitutions" else items[0]
 
     def product(self, bodies: Sequence[Body], scales: FloatArray) -> "tuple[Product, dict[str, Any]]":
-        """Return bodies with every motion, scale and restitution, and what a Python call says of such a study."""
+        """Return the histories of all bodies, motions, scales and restitutions, and the attributes of the study."""
         from rocking.studies.histories import Product
 
         settings, restitutions = self.settings, list(self.restitutions.values())
         make = mechanics_of(settings).parameters
-        parameters = [[make(body, each, settings) for body in bodies] for each in restitutions]
+        parameters = [[make(body, restitution, settings) for body in bodies] for restitution in restitutions]
         columns = [sides_of(row) for row in parameters]
         sides = {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}
         law, engine = parameters[0][0].law, self.document.settings.engine

@@ -1,4 +1,4 @@
-"""A folder with a body, records and a table of outcomes: what is foreseen of each trial, and how good that was."""
+"""Validation with a folder: a body, records and a table of outcomes give predictions of the trials and their scores."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,31 +26,33 @@ if TYPE_CHECKING:
     from rocking.spec.documents.validation import ValidationDocument
     from rocking.tables import Table
 
-_HOW = "a folder holds one body file, record files, and one table of outcomes"
+_HOW = "a folder contains one body file, record files, and one table of outcomes"
 
 
 def files_of(folder: Path) -> tuple[Path, Path]:
-    """Return the one body file of a folder and its one table of outcomes, which names the records."""
+    """Return the body file and the table of outcomes of a folder; the table names the records."""
     if not folder.is_dir():
-        raise InvalidValueError("no such folder", hint=_HOW).at(str(folder))
+        raise InvalidValueError("The folder does not exist", hint=_HOW).at(str(folder))
     files = sorted(path for path in folder.iterdir() if path.is_file())
-    seen = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
+    outcome_tables = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
     bodies = [path for path in files if path.suffix.lower() in FORMATS]
-    # a file that says everything may name another one as its body
-    asked = [path for path in bodies if is_question(path)]
-    body = _one(asked or bodies, folder, f"body file ({', '.join(FORMATS)})")
-    return body, _one(seen, folder, "table of outcomes, a .csv file with the columns motion and overturned")
+    # an input file may name another file as its body
+    questions = [path for path in bodies if is_question(path)]
+    body = _only_file(questions or bodies, folder, f"body file ({', '.join(FORMATS)})")
+    return body, _only_file(
+        outcome_tables, folder, "table of outcomes, a .csv file with the columns motion and overturned"
+    )
 
 
 def is_question(path: Path) -> bool:
-    """Return whether a file has a table [body] or [predict], rather than being a body. Never raises."""
+    """Return True if a file has a table [body] or [predict], False for a body file. Never raises."""
     return bool({"body", "predict"} & set(tables_in(path) or ()))
 
 
-def _one(paths: Sequence[Path], folder: Path, what: str) -> Path:
+def _only_file(paths: Sequence[Path], folder: Path, content: str) -> Path:
     if len(paths) != 1:
         got = ", ".join(path.name for path in paths) or "none"
-        raise InvalidValueError("there must be one {content}, got {files:.200}", content=what, files=got, hint=_HOW).at(
+        raise InvalidValueError("Use one {content}, got {files:.200}", content=content, files=got, hint=_HOW).at(
             str(folder)
         )
     return paths[0]
@@ -58,73 +60,73 @@ def _one(paths: Sequence[Path], folder: Path, what: str) -> Path:
 
 @dataclass(frozen=True, eq=False)
 class FolderValidation(Exported):
-    """What was foreseen of the trials of a folder, and how good that was."""
+    """Predictions of the trials of a folder, and their scores."""
 
     name: str  # of the body
     source: str  # name of the table of outcomes
-    prediction: Prediction  # one motion each time that a record stands at another scale
+    prediction: Prediction  # with one motion per record and scale
     trials: tuple[Trial, ...]
     refused: tuple[RefusedRow, ...]
-    ignored: tuple[str, ...]  # columns of the table that were not read
-    repairs: tuple[str, ...]  # what a scan needed
-    found: dict[str, Validation]  # by event, overturning first
+    ignored: tuple[str, ...]  # ignored columns of the table
+    repairs: tuple[str, ...]  # of a scan
+    scores: dict[str, Validation]  # by event, overturning first
 
     def answer(self) -> Answer:
-        """Return everything that is shown."""
+        """Return all results."""
         return Answer({
             "body": repr(self.prediction.body),
             "assumed": self.prediction.assumed,
             "not_sampled": self.prediction.not_sampled,
-            "motions": [each.answer() for each in self.prediction.motions],
+            "motions": [item.answer() for item in self.prediction.motions],
             "inputs": self.prediction.inputs,
             "count": self.prediction.count,
             "histories": self.prediction.histories,
             "failed": self.prediction.failed,
             "trials": len(self.trials),
-            "not_read": [f"{self.source}, line {each.line}: {each.reason}" for each in self.refused],
+            "not_read": [f"{self.source}, line {item.line}: {item.reason}" for item in self.refused],
             "ignored": self.ignored,
-            "events": {event: each.answer() for event, each in self.found.items()},
+            "events": {event: item.answer() for event, item in self.scores.items()},
         })  # fmt: skip
 
     def exported(self) -> "Table":
-        """Return what files of it hold: one row a trial and event."""
+        """Return the exported table with one row per trial and event."""
         from rocking.tables import Column, Table, text_array
 
-        pairs = [(event, k, trial) for event in self.found for k, trial in enumerate(self.trials)]
+        pairs = [(event, k, trial) for event in self.scores for k, trial in enumerate(self.trials)]
         columns = {
             "line": Column(np.array([trial.line for _, _, trial in pairs]), "1", f"line of {self.source}"),
             "motion": Column(text_array([trial.motion for _, _, trial in pairs]), "", "record files"),
-            "scale": Column(np.array([trial.scale for _, _, trial in pairs]), "1", "factor on the acceleration"),
-            "event": Column(text_array([event for event, _, _ in pairs]), "", "what was foreseen"),
-            "outcome": Column(np.concatenate([each.outcome for each in self.found.values()]), "1", "1 if it happened"),
+            "scale": Column(np.array([trial.scale for _, _, trial in pairs]), "1", "scale factor of the acceleration"),
+            "event": Column(text_array([event for event, _, _ in pairs]), "", "predicted event"),
+            "outcome": Column(np.concatenate([item.outcome for item in self.scores.values()]), "1", "1 if it occurred"),
         }
-        for name in next(iter(self.found.values())).probability:
-            values = np.concatenate([each.probability[name] for each in self.found.values()])
+        for name in next(iter(self.scores.values())).probability:
+            values = np.concatenate([validation.probability[name] for validation in self.scores.values()])
             columns[name.replace(" ", "_")] = Column(values, "1", f"probability by the {name}")
-        verdicts = {f"verdict_{event}": each.verdict for event, each in self.found.items()}
+        verdicts = {f"verdict_{event}": validation.verdict for event, validation in self.scores.items()}
         return Table("trial", columns, {"body": repr(self.prediction.body), **verdicts})
 
 
 @dataclass(frozen=True)
 class ValidationProblem:
-    """A body, what shook it, and what was seen."""
+    """A body, its motions, and the observed outcomes."""
 
     body: Body | Solid
-    options: dict[str, Any]  # as `predict` takes them
+    options: dict[str, Any]  # keywords of `predict`
     outcomes: Outcomes
-    trials: tuple[Trial, ...]  # of which all records could be read
+    trials: tuple[Trial, ...]  # with readable records
     refused: tuple[RefusedRow, ...]
-    clusters: tuple[str, ...]  # record files of each trial: components of one file are of one motion
+    clusters: tuple[str, ...]  # record files of each trial; the components of one file belong to one motion
     motions: dict[tuple[Any, float], dict[str, GroundMotion]]  # by files and scale
     name: str
 
     @classmethod
     def of(cls, document: "ValidationDocument", files: tuple[Path, Path], inputs: InputFiles) -> "ValidationProblem":
-        """Return what a folder says; files: its body file, and its table of outcomes."""
+        """Return the problem of a folder; files: its body file, and its table of outcomes."""
         with located("body"):
             body = any_body_of(document.body, inputs)
         if document.predict.pga is not None:
-            raise InvalidValueError("predict.pga is not allowed in a validation: its motions are those that were seen")
+            raise InvalidValueError("predict.pga is not allowed in a validation. Use the scale column of the outcomes.")
         outcomes = Outcomes.read(files[1])
         records = _Records(inputs, document.motion.model_dump(exclude_none=True, exclude={"scale"}))
         trials, refused, motions = list[Trial](), list(outcomes.refused), dict[Any, Any]()
@@ -134,42 +136,58 @@ class ValidationProblem:
                 trials.append(trial)
             except RockingError as error:
                 refused.append(RefusedRow(trial.line, error.spelt(by_key)))
-        refused.sort(key=lambda each: each.line)
+        refused.sort(key=lambda row: row.line)
         if not trials:
-            why = f"line {refused[0].line}: {refused[0].reason}" if refused else "it has no rows"
-            raise InvalidValueError("no row could be taken", hint=why).at(outcomes.source)
+            reason = f"line {refused[0].line}: {refused[0].reason}" if refused else "the table is empty"
+            raise InvalidValueError("No row is usable", hint=reason).at(outcomes.source)
         options = {**options_of(document, body, inputs), "contributions": False}
         name = files[0].stem
-        clusters = tuple(" ".join(records.place(word)["record"] for _, word in trial.files) for trial in trials)
+        clusters = tuple(
+            " ".join(records.file_and_component(word)["record"] for _, word in trial.files) for trial in trials
+        )
         return cls(body, options, outcomes, tuple(trials), tuple(refused), clusters, motions, name)
 
     def answer(
         self, progress: Callable[[int], None] | None = None, threads: int | None = None
     ) -> FolderValidation:  # fmt: skip
-        """Foresee every trial from the body alone, then score it."""
-        several = list(self.motions.values())
-        found = predict(self.body, several, **self.options, threads=threads, progress=progress)
-        number = {key: k for k, key in enumerate(self.motions)}
-        which = np.array([number[trial.files, trial.scale] for trial in self.trials])
+        """Predict every trial from the body alone, and score the predictions."""
+        motions = list(self.motions.values())
+        prediction = predict(self.body, motions, **self.options, threads=threads, progress=progress)
+        index_of_key = {key: k for k, key in enumerate(self.motions)}
+        motion_index = np.array([index_of_key[trial.files, trial.scale] for trial in self.trials])
         names = np.array(self.clusters)
-        pga, pgv = np.array([_peaks(motion) for motion in several]).T[:, which]
+        pga, pgv = np.array([_peaks(motion) for motion in motions]).T[:, motion_index]
         scored = {}
         for event in EVENTS.values():
-            seen = column(self.trials, event)
-            said = found.chances[event].per_motion[which]
-            if event == "overturning" or not np.isnan(seen).all():
+            observed = column(self.trials, event)
+            probabilities = prediction.chances[event].per_motion[motion_index]
+            if event == "overturning" or not np.isnan(observed).all():
                 with located(self.outcomes.source, "file"):
                     scored[event] = score(
-                        said, seen, names, pga=pga, pgv=pgv, count=found.count, event=event, seed=found.seed
+                        probabilities,
+                        observed,
+                        names,
+                        pga=pga,
+                        pgv=pgv,
+                        count=prediction.count,
+                        event=event,
+                        seed=prediction.seed,
                     )
         repairs = tuple(getattr(self.body, "repairs", ()))
         return FolderValidation(
-            self.name, self.outcomes.source, found, self.trials, self.refused, self.outcomes.ignored, repairs, scored
+            self.name,
+            self.outcomes.source,
+            prediction,
+            self.trials,
+            self.refused,
+            self.outcomes.ignored,
+            repairs,
+            scored,
         )
 
 
 class _Records:
-    """Records by the word that names them, each read once; what is wrong with one is kept too."""
+    """Records by their text in the table of outcomes, each read once; stores errors too."""
 
     def __init__(self, inputs: InputFiles, keys: dict[str, Any]) -> None:
         self._inputs, self._keys, self._read = inputs, keys, dict[str, GroundMotion | RockingError]()
@@ -191,19 +209,19 @@ class _Records:
     def _record(self, word: str) -> GroundMotion:
         from rocking.spec.motion_tables import OneMotionTable
 
-        own = self.place(word)
+        own = self.file_and_component(word)
         if not (self._inputs.folder / own["record"]).is_file():
             raise InvalidValueError(
-                "{record}: no such record file in {folder}", record=own["record"], folder=self._inputs.folder
+                "The record file {record} does not exist in {folder}.", record=own["record"], folder=self._inputs.folder
             )
         record = motion_of(checked(OneMotionTable, {**self._keys, **own}), self._inputs)
         assert isinstance(record, GroundMotion)
         if record.peak == 0.0:
-            raise InvalidValueError("{motion} is zero throughout: nothing moves", motion=word)
+            raise InvalidValueError("The acceleration of {motion} is zero at all times.", motion=word)
         return record
 
-    def place(self, word: str) -> dict[str, str]:
-        """Return the file that a word names, and the component behind #."""
+    def file_and_component(self, word: str) -> dict[str, str]:
+        """Return the record file and the component from FILE#COMPONENT."""
         path, mark, component = word.rpartition("#")
         if mark and not (self._inputs.folder / word).is_file():
             return {"record": path, "component": component}
@@ -211,6 +229,6 @@ class _Records:
 
 
 def _peaks(motion: dict[str, GroundMotion]) -> tuple[float, float]:
-    """Return PGA [m/s2] and PGV [m/s], of two components the larger."""
-    level = [each for axis, each in motion.items() if axis != "z"]
-    return max(each.peak for each in level), max(map(peak_ground_velocity, level))
+    """Return PGA [m/s2] and PGV [m/s] of the larger horizontal component."""
+    horizontal = [component for axis, component in motion.items() if axis != "z"]
+    return max(component.peak for component in horizontal), max(map(peak_ground_velocity, horizontal))

@@ -108,8 +108,8 @@ def test_a_drawing_becomes_a_body(client, tmp_path):
 
 
 BROKEN = {
-    "no unit": ("x.wkt", b"POLYGON ((0 0, 1 0, 1 2, 0 0))", "does not state its unit"),
-    "ending": ("x.exe", b"MZ", "the name must end in"),
+    "no unit": ("x.wkt", b"POLYGON ((0 0, 1 0, 1 2, 0 0))", "states no unit"),
+    "ending": ("x.exe", b"MZ", "Unsupported file. Use "),
     "not TOML": ("x.toml", b"units = ", "is not readable TOML"),
     "not text": ("x.toml", b"\xff\xfe", "is not readable TOML"),
     "names a file": ("x.toml", b'units = "m"\n[[section.region]]\ndxf = "/etc/passwd"\n', "cannot open files by name"),

@@ -178,7 +178,7 @@ REFUSED = {
     "nothing moves": ({"motion": None}, "No ground motion"),
     "both": ({"response": {"initial_rotation": 0.5}}, "not both"),
     "nan": ({"motion": {**PULSE, "scale": 1e400}}, "exceeds the range of float64"),
-    "zero scale": ({"motion": {**PULSE, "scale": 0.0}}, "nothing would move"),
+    "zero scale": ({"motion": {**PULSE, "scale": 0.0}}, "scale must not be 0"),
     "unknown key": ({"moton": PULSE}, "did you mean motion?"),
     "two sources": ({"motion": {**PULSE, "synthetic": "pulse-like"}}, "exactly one of pulse, record, synthetic"),
     "no such record": ({"motion": {"record": "0" * 64}}, "upload the file again"),

@@ -137,7 +137,7 @@ def test_the_largest_moment_of_a_polygon():
         return rk.Section.from_points(OUTLINE, mass=100.0, centre=(0.55, 0.6), moment_of_inertia=moment)
 
     assert section(most * (1.0 - 1e-9)).moment_of_inertia == most * (1.0 - 1e-9)
-    with pytest.raises(GeometryError, match=r"moment_of_inertia must be at most .* got .* about a foot"):
+    with pytest.raises(GeometryError, match=r"moment_of_inertia must be at most .* got .* about the centre of mass"):
         section(most * 1.001)
     assumed = rk.Section.from_points(OUTLINE, mass=100.0, centre=(0.55, 0.6)).moment_of_inertia
     own = rk.Section.from_points(OUTLINE, mass=100.0)
@@ -178,7 +178,7 @@ def test_mirror_scale_feet_and_section():
         (
             {"centre": (0.9, 0.5)},
             GeometryError,
-            r"x in \(0, 0\.8\) m, .* got \(0\.9 m, 0\.5 m\); was it",
+            r"x in \(0, 0\.8\) m, .* got \(0\.9 m, 0\.5 m\); check the origin",
         ),
         ({"centre": (0.4, 0.0)}, GeometryError, "within the outline"),
         ({"centre": (0.4, 2.1)}, GeometryError, "within the outline"),
@@ -192,7 +192,7 @@ def test_mirror_scale_feet_and_section():
         ({"mass": 0.0}, InvalidValueError, "mass must be > 0 kg"),
         ({"mass": -3.0}, InvalidValueError, "mass must be > 0 kg"),
         ({"mass": "300"}, InvalidValueError, "mass must be a number"),
-        ({"mass": 1e300}, InvalidValueError, "density, which follows from mass and size"),
+        ({"mass": 1e300}, InvalidValueError, "density from mass and size"),
         ({"mass": 300.0, "density": 200.0}, InvalidValueError, "not both"),
     ],
 )
@@ -220,7 +220,7 @@ def test_only_a_homogeneous_block_changes_its_sides():
     assert changed_body(cabinet(), {"semi_diagonal": 2.0}).side("right").semi_diagonal == pytest.approx(2.0)
     with pytest.raises(InvalidValueError, match="homogeneous Block"):
         changed_body(cabinet(), {"height": 3.0})
-    with pytest.raises(InvalidValueError, match="leave centre out"):
+    with pytest.raises(InvalidValueError, match="Remove centre"):
         rk.Block.from_angle(0.3, 1.0, centre=(0.1, 0.1))
     assert rk.Block.from_angle(0.3, 1.0, mass=50.0).mass == pytest.approx(50.0)
 
@@ -292,7 +292,7 @@ def test_a_solid_turns_mirrors_and_scales_what_it_knows():
         ({"centre": (0.0, 0.7)}, GeometryError, "three finite numbers"),
         ({"inertia": (1.0, 1.0, 5.0)}, GeometryError, "triangle inequality"),
         ({"inertia": (20.0, 20.0, -3.0)}, GeometryError, "triangle inequality"),
-        ({"inertia": (1e4, 1e4, 1e4)}, GeometryError, "more than any mass within the body"),
+        ({"inertia": (1e4, 1e4, 1e4)}, GeometryError, "impossible for masses within the body"),
         ({"inertia": [1.0, 2.0]}, GeometryError, "symmetric tensor"),
         ({"inertia": [[95.0, 4.0, 0.0], [-4.0, 100.0, 0.0], [0.0, 0.0, 25.0]]}, GeometryError, "symmetric tensor"),
         ({"inertia": (math.nan, 1.0, 1.0)}, GeometryError, "symmetric tensor"),

@@ -10,7 +10,6 @@ from rocking import Block
 from rocking.bodies.formats import (
     FORMATS,
     body_from_toml,
-    geojson,
     read_body,
     schema,
     section_from_geojson,
@@ -25,7 +24,7 @@ SQUARE = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0
 LOAD = "POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0))"
 
 TOML = {
-    "units missing": ("[block]\nwidth = 1\nheight = 2", 'units is missing; add units = "m" or another of m, cm, mm'),
+    "units missing": ("[block]\nwidth = 1\nheight = 2", 'units is missing; add units = "m", or one of m, cm, mm'),
     "unit unknown": ('units = "furlong"\n[block]\nwidth = 1\nheight = 2', "units must be one of 'm', 'cm', 'mm'"),
     "no shape": ('units = "m"', "exactly one of [block], [trapezoid]"),
     "two shapes": (
@@ -45,10 +44,10 @@ TOML = {
     "too large": ('units = "m"\n[block]\nwidth = 1e12\nheight = 1', "width must be in [1e-09, 1e+09] m, got 1e+12"),
     "point": (REGION + "outline = [[0, 0], [1, 0, 3], [1, 1]]", "section.region[0].outline[1] must have at most 2"),
     "two points": (REGION + "outline = [[0, 0], [1, 0]]", "section.region[0].outline must have at least 3 entries"),
-    "no source": (REGION + "density = 1", "a region has one of outline, wkt, geojson or dxf, got none"),
+    "no source": (REGION + "density = 1", "A region needs one of outline, wkt, geojson or dxf, got none"),
     "two sources": (REGION + 'wkt = ""\ngeojson = ""', "got wkt and geojson"),
-    "holes with wkt": (REGION + 'wkt = ""\nholes = []', "holes cannot stand beside wkt"),
-    "file from text": (REGION + 'dxf = "a.dxf"', "text without a folder cannot name files"),
+    "holes with wkt": (REGION + 'wkt = ""\nholes = []', "holes is not allowed with wkt"),
+    "file from text": (REGION + 'dxf = "a.dxf"', "is not allowed in a text without a folder"),
     "no regions": ('units = "m"\n[section]\nregion = []', "section.region must have at least 1 entries, got 0"),
     "sides": (
         'units = "m"\n[ellipse]\nwidth = 1\nheight = 1\nsides = 2.5',
@@ -65,11 +64,11 @@ TOML = {
     ),
     "broken": (
         'units = "m"\n[block\n',
-        "is not TOML: Expected ']' at the end of a table declaration (at line 2, column",
+        "Invalid TOML: Expected ']' at the end of a table declaration (at line 2, column",
     ),
-    "digits": ("a = " + "9" * 5000, "is not TOML that can be read"),
-    "brackets": ("a = " + "[" * 9999, "is not TOML that can be read"),
-    "no text": (3, "a body file must be text, got int"),
+    "digits": ("a = " + "9" * 5000, "Unreadable TOML"),
+    "brackets": ("a = " + "[" * 9999, "Unreadable TOML"),
+    "no text": (3, "A body file must be text, got int"),
 }
 
 
@@ -91,18 +90,18 @@ def test_geometry_keeps_its_own_error():
 
 
 WKT = {
-    "": "has no text",
-    "POINT (0 0)": "a POINT encloses no area",
-    "LINESTRING (0 0, 1 1)": "a LINESTRING encloses no area",
-    "POLYGON EMPTY": "the POLYGON is empty",
-    "GEOMETRYCOLLECTION EMPTY": "the GEOMETRYCOLLECTION is empty",
+    "": "The text is empty",
+    "POINT (0 0)": "A POINT encloses no area",
+    "LINESTRING (0 0, 1 1)": "A LINESTRING encloses no area",
+    "POLYGON EMPTY": "The POLYGON is empty",
+    "GEOMETRYCOLLECTION EMPTY": "The GEOMETRYCOLLECTION is empty",
     "POLYGON ((0 0, 1 0, 1 1))": "closed linestring",
-    "POLYGON Z ((0 0 1, 1 0 1, 1 1 1, 0 0 1))": "z or m coordinates",
+    "POLYGON Z ((0 0 1, 1 0 1, 1 1 1, 0 0 1))": "z and m coordinates are not allowed",
     "POLYGON ((0 0, nan 0, 1 1, 0 0))": "must be finite",
     "POLYGON ((0 0, 1e400 0, 1 1, 0 0))": "must be finite",
-    "POLYGON ((0 0, 1 0, 1 1, 0 0)) x": "is not WKT: Unexpected text",
+    "POLYGON ((0 0, 1 0, 1 1, 0 0)) x": "Invalid WKT: Unexpected text",
     "POLYGON ((0 0, 1 0, 1 1, 0 0))\0": "NUL",
-    "CURVEPOLYGON ((0 0, 1 0, 1 1, 0 0))": "is not WKT",
+    "CURVEPOLYGON ((0 0, 1 0, 1 1, 0 0))": "Invalid WKT",
     "GEOMETRYCOLLECTION (" * 100_000: "nested more than 16",
     "POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))": "polygon 0: region: outline crosses",
 }
@@ -121,7 +120,7 @@ def test_densities_of_wkt():
     two = "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 1, 0 0)), ((0 1, 1 1, 1 2, 0 2, 0 1)))"
     assert [region.density for region in section_from_wkt(two, [1.0, 2.0]).regions] == [1.0, 2.0]
     assert section_from_wkt(two, 3.0, units="cm", depth=2.0).mass == pytest.approx(3.0 * 2e-4 * 2.0)
-    with pytest.raises(BodyFileError, match=r"2 polygon\(s\), but 3 densities"):
+    with pytest.raises(BodyFileError, match=r"number of polygons, 2, got 3"):
         section_from_wkt(two, [1.0, 2.0, 3.0])
     with pytest.raises(InvalidValueError, match="density must be a number"):
         section_from_wkt(two, "heavy")
@@ -140,10 +139,10 @@ def polygon(*positions):
 
 
 GEOJSON = {
-    "not JSON": ("{", "is not JSON: Expecting property name.*line 1 column 2"),
-    "NaN": ('{"type": NaN}', "holds NaN"),
-    "digits": ("9" * 5000, "cannot|can be read"),
-    "brackets": ("[" * 100_000, "can be read"),
+    "not JSON": ("{", "Invalid JSON: Expecting property name.*line 1 column 2"),
+    "NaN": ('{"type": NaN}', "value NaN is not allowed"),
+    "digits": ("9" * 5000, "Unreadable JSON"),
+    "brackets": ("[" * 100_000, "Unreadable JSON"),
     "no object": ("[]", "the document must be a GeoJSON object"),
     "no type": ({}, "has no member 'type'"),
     "line": ({"type": "LineString", "coordinates": []}, "got 'LineString'"),
@@ -151,7 +150,7 @@ GEOJSON = {
     "density": (feature(density=-1), "properties.density must be > 0 kg/m3, got -1"),
     "density text": (feature(density="2400"), "properties.density must be a number"),
     "properties": ({**feature(), "properties": 3}, "properties must be an object"),
-    "empty": ({"type": "FeatureCollection", "features": []}, "features must be a list that is not empty"),
+    "empty": ({"type": "FeatureCollection", "features": []}, "features must be a nonempty list"),
     "open": (polygon([0, 0], [1, 0], [1, 1], [0, 1]), "must end at its first position"),
     "short": (polygon([0, 0], [1, 0], [0, 0]), "at least 4 positions"),
     "three": (polygon([0, 0, 1], [1, 0], [1, 1], [0, 0]), r"coordinates\[0\]\[0\] must be a position \[x, y\]"),
@@ -205,14 +204,18 @@ def test_read_body(tmp_path):
     assert read_body(str(tmp_path / "b.toml"), units="cm") == Block(width=0.01, height=0.02)
     assert read_body(tmp_path / "e.json", units="m", density=3.0, depth=2.0).mass == 6.0
     for name, options, said in (
-        ("a.wkt", {}, "a.wkt: does not state its unit; give units=, one of m, cm"),
-        ("b.toml", {"units": "m"}, 'b.toml: states units = "cm", but units = "m" was asked'),
-        ("b.toml", {"density": 3.0}, "b.toml: a TOML body file states density itself; change it there"),
-        ("c.toml", {}, "c.toml: is not UTF-8 text"),
-        ("d.toml", {}, "d.toml: is not a file"),
-        ("e.json", {"units": "m", "ground": -1.0}, "e.json: the body floats above the ground"),
-        ("f.toml", {}, "f.toml: there is no such file"),
-        ("g.txt", {}, "g.txt: the name must end in .toml, .wkt"),
+        ("a.wkt", {}, "a.wkt: The file states no unit; add units=, one of m, cm"),
+        ("b.toml", {"units": "m"}, 'b.toml: The file has units = "cm", but units = "m" is requested'),
+        ("b.toml", {"density": 3.0}, "b.toml: density is not allowed with a TOML body file; edit the file"),
+        ("c.toml", {}, "c.toml: The file is not UTF-8 text"),
+        ("d.toml", {}, "d.toml: This is not a file"),
+        (
+            "e.json",
+            {"units": "m", "ground": -1.0},
+            "e.json: the lowest point of the body, y = 0 m, is above the ground",
+        ),
+        ("f.toml", {}, "f.toml: The file does not exist"),
+        ("g.txt", {}, "g.txt: Unsupported file. Use .toml, .wkt"),
     ):
         with pytest.raises(RockingError) as caught:
             read_body(tmp_path / name, **options)
@@ -226,11 +229,11 @@ def test_large_files_and_outlines(tmp_path, monkeypatch):
     """A file above the limit is not even opened; vertices have a limit of their own."""
     with (tmp_path / "a.wkt").open("wb") as file:
         os.truncate(file.fileno(), words.LARGEST_FILE + 1)
-    with pytest.raises(BodyFileError, match=r"a.wkt: has 64.0 MiB; body files may have up to 64 MiB"):
+    with pytest.raises(BodyFileError, match=r"a.wkt: A body file has at most 64 MiB, got 64.0 MiB"):
         read_body(tmp_path / "a.wkt", units="m")
     monkeypatch.setattr(words, "MOST_VERTICES", 4)
     for read, given in ((section_from_wkt, LOAD), (section_from_geojson, SQUARE)):
-        with pytest.raises(BodyFileError, match="has 5 vertices; a body may have up to 4"):
+        with pytest.raises(BodyFileError, match="The body has 5 vertices; at most 4 are allowed"):
             read(given)
 
 
@@ -267,7 +270,6 @@ def test_schema_agrees_with_the_package():
     """The schema's units are the package's, and every format has a reader."""
     assert schema.UnitName.__args__ == tuple(LENGTH_UNITS)
     assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf", ".stl", ".obj", ".ply", ".glb", ".xyz"}
-    assert "not interpreted" in geojson.__doc__
 
 
 def test_whatever_a_reader_raises_is_a_refusal(monkeypatch, tmp_path):
@@ -281,7 +283,7 @@ def test_whatever_a_reader_raises_is_a_refusal(monkeypatch, tmp_path):
     monkeypatch.setitem(FORMATS, ".toml", broken)
     monkeypatch.setattr("rocking.bodies.formats.reader.solid_from_mesh", broken)
     for name, units in (("a.wkt", "m"), ("a.stl", "m"), ("a.toml", None)):
-        with pytest.raises(BodyFileError, match=rf"{name}: cannot be read \(IndexError: list index") as caught:
+        with pytest.raises(BodyFileError, match=rf"{name}: The file is unreadable \(IndexError: list index") as caught:
             read_body(tmp_path / name, units=units)
         assert caught.value.__cause__ is cause
 

@@ -38,7 +38,7 @@ def test_the_page_says_it_in_words(printed, file):
     assert "12 saddles, 8 summits" in page
     page = printed(file(DRUM))
     assert "axis 90 deg from the vertical, centre of mass 0.5 m high." in page
-    assert "! round faces are taken as those of 360 corners" in page
+    assert "! round faces are polygons with 360 corners" in page
 
 
 def test_files(run, file, tmp_path):

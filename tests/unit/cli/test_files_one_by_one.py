@@ -111,7 +111,7 @@ def test_a_vertical_file_of_another_station_is_left_out_aloud(tmp_path):
     """It becomes no horizontal motion, nor the vertical one of a station that it is not of."""
     _write(tmp_path, "esm", "A.HNE.ASC", "HNE", 0)
     _write(tmp_path, "esm", "B.HNZ.ASC", "HNZ", 1, station="Attic")
-    with pytest.warns(UserWarning, match="vertical, and no horizontal component"):
+    with pytest.warns(UserWarning, match="vertical component of a record without horizontal component"):
         motions = motions_of([MotionTable(records=["A.HNE.ASC", "B.HNZ.ASC"])], InputFiles(tmp_path))
     assert len(motions) == 1
     assert motions[0].vertical is None
@@ -132,7 +132,7 @@ def test_what_is_named_and_cannot_be_used_is_refused(run, tmp_path):
     shutil.copy(damaged, tmp_path / "b" / "same.at2")
     with pytest.raises(RecordError, match=r"records: b/same\.at2: "):
         motions_of([MotionTable(records=["a/same.at2", "b/same.at2"])], InputFiles(tmp_path))
-    with pytest.raises(InvalidValueError, match="named twice"):
+    with pytest.raises(InvalidValueError, match="appears twice"):
         motions_of([MotionTable(records=[names[0], names[0]])], InputFiles(tmp_path))
     with pytest.raises(RecordError, match="no file: 0 files"):
         read_records([])

@@ -145,7 +145,7 @@ def test_a_shaken_floor(answered, refuses, tmp_path):
     assert found == json.loads(json.dumps(here.answer().plain()))
     assert found["forced"]["measured"] > 1.0
     assert found["mean"]["low"] < 0.9 < found["mean"]["high"]
-    refuses((tmp_path / "rotation.csv", *SIZE, *clock), "identify.clock goes with [motion]")
+    refuses((tmp_path / "rotation.csv", *SIZE, *clock), "identify.clock needs [motion]")
 
 
 @pytest.fixture
@@ -258,7 +258,7 @@ def test_other_files_are_passed_over(printed, answered, refuses, rocked, tmp_pat
         "readme.txt": "no row of numbers",
     }  # fmt: skip
     said = (
-        "Passed over 4 files that are no recordings: more (a folder); notes.csv, readme.txt (no row of numbers); "
+        "Ignored 4 files without a recording: more (a folder); notes.csv, readme.txt (no row of numbers); "
         "photo.jpg (another kind of file)."
     )
     page = " ".join(printed(tmp_path, *SIZE, "--output", tmp_path / "all.html").split())
@@ -267,8 +267,8 @@ def test_other_files_are_passed_over(printed, answered, refuses, rocked, tmp_pat
     assert said in (tmp_path / "all.html").read_text("utf-8")
     for name in ("0.csv", "1.csv", "damaged.wav", "gap.csv"):
         (tmp_path / name).unlink()
-    refuses((tmp_path, *SIZE), "no trials; their names end in .wav")
-    refuses((tmp_path, *SIZE), "passed over: ")
+    refuses((tmp_path, *SIZE), "No trials. Use files with .wav")
+    refuses((tmp_path, *SIZE), "Ignored: ")
 
 
 def test_two_files_of_one_event_are_told(printed, answered, rocked, tmp_path):
@@ -276,7 +276,7 @@ def test_two_files_of_one_event_are_told(printed, answered, rocked, tmp_path):
     for k in range(2):
         times_file(tmp_path / f"{k}.csv", rocked[0], seed=k)
     times_file(tmp_path / "again.csv", rocked[0])
-    again = "1.csv and again.csv say the same: perhaps they are of one event, which counts 2 times."
+    again = "1.csv and again.csv have equal results. If they record one event, remove the duplicates."
     assert answered(tmp_path, *SIZE)["doubts"] == [again]
     assert f"! {again}" in printed(tmp_path, *SIZE, "--output", tmp_path / "all.html")
     assert again in (tmp_path / "all.html").read_text("utf-8")

@@ -35,4 +35,4 @@ def test_a_plane_body_in_space(tmp_path, run, command):
         corners = {tuple(round(x, 9) for x in each) for each in answer["body"]["base"]["base_vertices"]}
         assert corners == {(x, y) for x in (0.1, 0.45) for y in (-0.2, 0.2)}
     file.write_text(TABLES.replace("depth = 40\n", ""))
-    assert "whose depth is given" in run(command, file, "--output", tmp_path / "more.glb")[2]
+    assert "section with a depth" in run(command, file, "--output", tmp_path / "more.glb")[2]

@@ -30,7 +30,7 @@ def test_measures_are_refused_by_the_name_of_the_option(refuses):
 def test_help_of_the_initial_rotation_offers_no_word(run):
     text = " ".join(run("simulate", "--help")[1].split())
     assert "-x [-]" not in text
-    assert "below 0 to the left" in text
+    assert "< 0 to the left" in text
 
 
 def test_the_manual_names_commands_as_they_are():

@@ -117,7 +117,7 @@ def test_every_model_has_a_row_and_what_was_assumed_is_printed(printed):
     assert "moment of inertia assumed" in page
     given = printed(*KNOWN, "--moment-of-inertia", 95)
     assert "moment of inertia assumed" not in given
-    assert "distribution of mass assumed by ked" in given
+    assert "mass distribution assumed by ked" in given
 
 
 def test_a_solid_leaves_out_the_models_that_need_more(printed, answered, tmp_path):

@@ -112,10 +112,10 @@ def test_meshes_and_their_repairs(run, answered, mesh):
     path = mesh("prism.stl", scale=1000.0, turn=3)
     answer = answered(path, "--units", "mm", "--density", "2700")
     assert answer["body"]["mass"] == pytest.approx(10800.0, rel=1e-6)
-    assert any("turned round 1 of 12 faces" in sentence for sentence in answer["body"]["repairs"])
+    assert any("reversed 1 of 12 faces" in sentence for sentence in answer["body"]["repairs"])
     r = answer["edges"][0]["coefficients"]["ked-3d"]["coefficient"]
     assert r == pytest.approx(0.947366835032369679, rel=1e-6)
-    assert "! turned round 1 of 12 faces" in run(path, "--units", "mm")[1]
+    assert "! reversed 1 of 12 faces" in run(path, "--units", "mm")[1]
 
 
 def test_edges_that_files_round_are_still_parallel(answered, mesh):

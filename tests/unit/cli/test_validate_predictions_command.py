@@ -89,7 +89,7 @@ def test_bad_rows_are_told_and_touch_nothing(run, answered, copy):
     (copy / "still.txt").write_text("0 0\n0.1 0\n0.2 0", "utf-8")
     after = answered(copy, *FEW)
     assert after["events"] == before["events"]
-    why = ("overturned must be 1, 0", "record_9.txt: no such record file", "broken.txt", "zero throughout")
+    why = ("overturned must be 1, 0", "The record file record_9.txt does not exist", "broken.txt", "zero at all times")
     for k, (each, words) in enumerate(zip(after["not_read"], why, strict=True)):
         assert each.startswith(f"outcomes.csv, line {14 + k}: ")
         assert words in each
@@ -128,11 +128,15 @@ def test_a_scan_in_two_components(answered, tmp_path):
 @pytest.mark.parametrize(
     ("damage", "words", "why"),
     [
-        (lambda at: (at / "outcomes.csv").unlink(), (), "there must be one table of outcomes"),
-        (lambda at: (at / "body.toml").unlink(), (), "there must be one body file (."),
+        (lambda at: (at / "outcomes.csv").unlink(), (), "Use one table of outcomes"),
+        (lambda at: (at / "body.toml").unlink(), (), "Use one body file (."),
         (lambda at: shutil.copy(at / "body.toml", at / "other.toml"), (), "got body.toml, other.toml"),
-        (lambda at: (at / "outcomes.csv").write_text("motion,overturned\n", "utf-8"), (), "it has no rows"),
-        (lambda at: (at / "outcomes.csv").write_text("motion,overturned\nx,1\n", "utf-8"), (), "line 2: x: no such"),
+        (lambda at: (at / "outcomes.csv").write_text("motion,overturned\n", "utf-8"), (), "the table is empty"),
+        (
+            lambda at: (at / "outcomes.csv").write_text("motion,overturned\nx,1\n", "utf-8"),
+            (),
+            "line 2: The record file x does not exist",
+        ),
         (lambda at: (at / "outcomes.csv").write_text("motion,overturned\nrecord_0.txt,\n", "utf-8"), (), "to score"),
         (
             lambda at: None,
@@ -141,7 +145,7 @@ def test_a_scan_in_two_components(answered, tmp_path):
         ),
         (lambda at: None, ("--set", "predict.fricton=0.4"), "did you mean friction"),
         (lambda at: None, ("--output", "found.xyz"), "unknown extension"),
-        (shutil.rmtree, (), "no such folder"),
+        (shutil.rmtree, (), "The folder does not exist"),
     ],
 )
 def test_refusals(refuses, copy, damage, words, why):

@@ -97,7 +97,7 @@ def test_lines_of_a_map_keep_away_from_what_has_no_result():
     grid = np.arange(4.0), np.arange(3.0)
     known = np.array([[True] * 4, [False] * 4, [True] * 4])
     assert contours_of(inside, *grid)
-    assert contours_of(inside, *grid, known=known) == []
+    assert contours_of(inside, *grid, is_known=known) == []
 
 
 def test_spectra_have_no_share_without_results():

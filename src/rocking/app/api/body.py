@@ -84,10 +84,10 @@ async def body_file(
     units: UnitName | None = None,
     density: Annotated[float | None, Query(gt=0.0, le=1e6, allow_inf_nan=False, description="kg/m3")] = None,
 ) -> JsonAnswer:
-    """Read a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is.
+    """Read a DXF, WKT, GeoJSON or TOML file; the extension of `name` selects the format.
 
-    `units` is needed for WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what
-    stands in the inputs.
+    `units` is needed for WKT and GeoJSON, and for a drawing without a unit. `body` of the answer is the table for the
+    inputs.
     """
     content = await request.body()
     return JsonAnswer(await heavy(request, _of_file, content, name, units, density))

@@ -126,18 +126,18 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
     if inputs.friction:
         start = start.but(friction=Coulomb(inputs.friction))
     dataset = study(inputs.varied, values, start, **options)
-    slender = [each if inputs.varied == "slenderness" else inputs.slenderness for each in values.tolist()]
+    slender = [entry if inputs.varied == "slenderness" else inputs.slenderness for entry in values.tolist()]
     return JsonAnswer(plain({
         "varied": inputs.varied, "unit": _unit(STUDIES[inputs.varied][0]), "values": values,
         "results": {
             str(name): {
-                "unit": _unit(each.attrs["units"]), "words": each.attrs.get("long_name", ""),
-                "values": each.values,
+                "unit": _unit(entry.attrs["units"]), "words": entry.attrs.get("long_name", ""),
+                "values": entry.values,
             }
-            for name, each in dataset.data_vars.items()
+            for name, entry in dataset.data_vars.items()
         },
         "rigid": {
-            name: [model.coefficient(start.but(slenderness=each).block) for each in slender]
+            name: [model.coefficient(start.but(slenderness=entry).block) for entry in slender]
             for name, model in (("ked", Ked()), ("housner", Housner()))
         },
     }))  # fmt: skip

@@ -93,10 +93,10 @@ ImpactAnswered: Any = shape(
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
 async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
-    """Answer with the keys of `rocking restitution --json`, and what its pictures are drawn from.
+    """Return the keys of `rocking restitution --json`, and the data of its figures.
 
-    `measured` and `curves` are for the picture; `stages` by foot has velocities at points of the body for the three
-    stages of KED; `warnings` are in plain words, each with the models that it concerns.
+    `measured` and `curves` are for the figure. `stages` contains, by foot, velocities at points of the body for the
+    three stages of KED. `warnings` contains texts with the affected models.
     """
     return await sized(request, size_of(inputs.body), answer, inputs)
 

@@ -71,10 +71,10 @@ MotionAnswered: Any = shape(
 
 @router.post("/motion", summary="Properties of a motion", responses=answered(MotionAnswered, "The motion."))
 async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
-    """Answer with the keys of `rocking record show --json` but its spectrum.
+    """Return the keys of `rocking record show --json` except its spectrum.
 
-    `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
-    given; `spectrum` at 100 periods for 5 % damping; `measures` as a list.
+    `series` contains the extremes of every curve in `points` intervals, between the two times of `window` if given.
+    `spectrum` has 100 periods and 5 % damping. `measures` is a list.
     """
     return await heavy(request, _answer, inputs, state_of(request).records)
 
@@ -110,6 +110,6 @@ def _facts(inputs: MotionRequest, records: RecordStore) -> Answer:
 
 
 def spectrum_of(samples: GroundMotion) -> ResponseSpectrum:
-    """Return the response spectrum that is drawn: at 100 periods, for 5 % damping."""
+    """Return the response spectrum of the figure: 100 periods, 5 % damping."""
     shortest = max(_SHORTEST, SHORTEST_PERIOD * samples.time_step)
     return response_spectrum(samples, np.geomspace(shortest, max(_LONGEST, 2.0 * shortest), _COUNT), DAMPING)

@@ -76,11 +76,11 @@ async def add_record(
     units: Word = None,
     time_step: Step = None,
 ) -> JsonAnswer:
-    """Keep a record file of any format, and answer with what it holds.
+    """Store a record file of any format, and return its properties.
 
-    `record` of the answer is its SHA-256, by which the inputs name it; `needs` says what must still be told (`units`,
-    `time_step`, `component`, `format`), `choices` what may be said. The same file can be sent again with what was
-    missing; a file that no format can read is refused and not kept.
+    `record` of the answer is its SHA-256, the reference in the inputs. `needs` lists the missing options (`units`,
+    `time_step`, `component`, `format`), and `choices` their allowed values. Send the file again with these options. An
+    unreadable file is refused and not stored.
     """
     content, stated = await request.body(), _stated(format, units, time_step)
     return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, stated))
@@ -162,9 +162,9 @@ def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str,
 
 
 def _read(path: Path, stated: dict[str, Any]) -> tuple[Record | None, dict[str, str]]:
-    """Return a file, read with stand-ins for what is missing, and why that must be told.
+    """Return a record with substitutes for missing options, and the reasons for these options.
 
-    There is no record where its format must be told first.
+    The record is None if the format is missing.
     """
     stated, reasons = dict(stated), {}
     while True:

@@ -126,12 +126,11 @@ ResponseAnswered: Any = shape(
     responses=answered(ResponseAnswered, "One answer per restitution, and a common verdict."),
 )
 async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
-    """Answer for every restitution, in the order in which they were chosen, with the keys of `rocking simulate --json`.
+    """Return the keys of `rocking simulate --json` for every restitution, in the order of the request.
 
-    `series` is as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if
-    given; states just before and just after every impact, and where the body turns round, are among them. `verdict`
-    says whether the choice of the model decides. A restitution that has no response for this body has `label` and
-    `error`.
+    `series` contains the extremes of every curve in `points` intervals, between the two times of `window` if given. It
+    includes the states before and after every impact, and at every peak. `verdict` compares the outcomes of the models.
+    A restitution without a response for this body has `label` and `error`.
     """
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
@@ -230,7 +229,7 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
     """Return times and curves; values after a jump are one smallest time step later."""
     dense_output = response.dense_output
     curves = _at_both_ends(response, dense_output)
-    jumps = np.any([np.append(True, each[1:, 0] != each[:-1, 1]) for each in curves.values()], axis=0)
+    jumps = np.any([np.append(True, pairs[1:, 0] != pairs[:-1, 1]) for pairs in curves.values()], axis=0)
     turns, x = _turns(dense_output)
     late = np.nextafter(dense_output.start, np.inf)
     late[0] = dense_output.start[0]
@@ -242,9 +241,9 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
         "angular_velocity": np.zeros(x.size),
     }
     columns = {}
-    for name, each in curves.items():
-        between = turned.get(name, each[turns, 0] + x * (each[turns, 1] - each[turns, 0]))
-        columns[name] = np.concatenate([each[:, 1], each[jumps, 0], between])[chosen]
+    for name, pairs in curves.items():
+        between = turned.get(name, pairs[turns, 0] + x * (pairs[turns, 1] - pairs[turns, 0]))
+        columns[name] = np.concatenate([pairs[:, 1], pairs[jumps, 0], between])[chosen]
     return time, columns
 
 
@@ -291,13 +290,13 @@ def _moved(response: Response, time: FloatArray) -> FloatArray:
 def thinned(
     time: FloatArray, curves: Sequence[FloatArray], points: int, window: tuple[float, float] | None = None
 ) -> IntArray:
-    """Return which samples of some curves to keep, so that a picture of them loses nothing that can be seen.
+    """Return the indices of samples for a figure without a visible difference from all samples.
 
-    The time that is shown is divided into equal runs, one for each dot of the picture. Of each run its first and its
-    last sample and the lowest and the highest of every curve are kept, and one where a curve has no number: what is
-    drawn covers the same dots as all samples would (Jugel et al. 2014, Proc. VLDB 7:797), whatever happens within one.
+    The time range is divided into equal intervals, one per pixel. Each interval keeps its first and last sample, the
+    lowest and highest of every curve, and one without a number. The curve covers the same pixels as all samples (Jugel
+    et al. 2014, Proc. VLDB 7:797).
 
-    Returns increasing indices; all in the window where it has no more than two samples for each run.
+    The indices increase; with at most two samples per interval, they are all in the window.
     """
     first, last = (time[0], time[-1]) if window is None else window
     begin, end = np.searchsorted(time, first, side="right") - 1, np.searchsorted(time, last) + 1

@@ -99,9 +99,9 @@ class Evaluation:
             raise InvalidValueError(response)
         return response
 
-    def file_stem(self, what: str, index: int | None) -> str:
+    def file_stem(self, content: str, index: int | None) -> str:
         """Return the file name of one response, with its restitution if there are several."""
-        restitution, stem = self.inputs.restitution, f"{self.label} {what}"
+        restitution, stem = self.inputs.restitution, f"{self.label} {content}"
         if len(restitution.models or ()) + len(restitution.values or ()) < 2:
             return stem
         return f"{stem} {plain_line(self.chosen(index).parameters.label, 60)}"
@@ -113,7 +113,7 @@ class Evaluation:
 
     @property
     def drawn_foot(self) -> Foot:
-        """The foot whose coefficients are drawn."""
+        """Impact foot of the coefficients in the figure."""
         return next(reversed(self.impact.tables))
 
     @property

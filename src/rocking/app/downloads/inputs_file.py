@@ -122,7 +122,7 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
 
 
 def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str | None:
-    """Return the command that gives the same result, quoted for a shell; None where only a file of inputs can say it.
+    """Return the command with the same result, quoted for a shell; None if an input file is necessary.
 
     >>> block = {"units": "cm", "width": 50.0, "height": 200.0}
     >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})

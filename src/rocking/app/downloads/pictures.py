@@ -1,4 +1,4 @@
-"""Pictures of reports and of compared studies, drawn one at a time."""
+"""Figures of reports and of compared studies, one at a time."""
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -23,23 +23,23 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ENOUGH = 2700  # drawn points of a curve: one per pixel of the widest figure
-ONE_AT_A_TIME = RLock()  # held by whoever draws
+_ENOUGH = 2700  # points of a curve: one per pixel of the widest figure
+ONE_AT_A_TIME = RLock()  # serializes all figures
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
-_BEYOND = 2.2  # drawn range of an overturning body, in slenderness angles
+_BEYOND = 2.2  # shown rotation of an overturning body / slenderness angle
 _SMALL = 0.2  # fraction of the slenderness angle below which rotations fill the panel, without +-1
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 
-def figure_of(what: str, evaluation: Evaluation) -> "Figure":
+def figure_of(picture: str, evaluation: Evaluation) -> "Figure":
     """Return a picture."""
     from rocking.plots.body import body_picture, coefficient_picture
     from rocking.plots.ground_motion import ground_motion_picture
     from rocking.plots.response import response_picture
 
-    match what:
+    match picture:
         case "motion":
             figure, scale = ground_motion_picture(evaluation.motion), evaluation.scale
             # the name of a motion speaks of the one that it was before it was scaled
@@ -94,14 +94,14 @@ def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
     from matplotlib.text import Text
 
     texts = {label: restitution_words(label) for label in labels}
-    rows = {label.replace(":", "\n"): words.replace(", ", ",\n", 1) for label, words in texts.items()}
+    rows = {label.replace(":", "\n"): text_of_label.replace(", ", ",\n", 1) for label, text_of_label in texts.items()}
     for axes in figure.axes:
         names = [text.get_text() for text in axes.get_yticklabels()]
         if any(text in rows for text in names):
             axes.set_yticks(axes.get_yticks(), [rows.get(text, text) for text in names], fontsize=6)
     for text in figure.findobj(Text):
-        for label, words in texts.items():
-            text.set_text(text.get_text().replace(f"restitution: {label};", f"restitution: {words};"))
+        for label, text_of_label in texts.items():
+            text.set_text(text.get_text().replace(f"restitution: {label};", f"restitution: {text_of_label};"))
     return figure
 
 
@@ -110,7 +110,7 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
     """Draw several responses to one motion: ground acceleration, rotations, velocities, energy lost at impacts."""
     first = next(iter(responses.values()))
     figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
-    verdict = ModelAgreement.of({restitution_words(label): one for label, one in responses.items()})
+    verdict = ModelAgreement.of({restitution_words(label): answer for label, answer in responses.items()})
     figure.suptitle(
         "\n".join(wrap(drawn_text(verdict.sentence, 330), 110)), x=0.01, ha="left", fontsize=8.5, fontweight="bold"
     )
@@ -134,7 +134,7 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
 
 
 def drawn_text(text: str, longest: int) -> str:
-    r"""Return a text that a picture shows as it is, with no dollar sign that begins a formula."""
+    r"""Return a text for a figure, with escaped dollar signs."""
     return plain_line(text, longest).replace("$", r"\$")
 
 

@@ -60,41 +60,41 @@ async def table(
     return attachment(data, f"{name}.{kind}")
 
 
-def _named_table(what: str, kind: str, evaluation: Evaluation, restitution: int | None) -> tuple[bytes, str]:
-    data = table_of(what, kind, evaluation, restitution)
-    of_one = what == "response" and (kind != "xlsx" or restitution is not None)
-    return data, evaluation.file_stem(what, restitution) if of_one else f"{evaluation.label} {what}"
+def _named_table(content: str, kind: str, evaluation: Evaluation, restitution: int | None) -> tuple[bytes, str]:
+    data = table_of(content, kind, evaluation, restitution)
+    of_one = content == "response" and (kind != "xlsx" or restitution is not None)
+    return data, evaluation.file_stem(content, restitution) if of_one else f"{evaluation.label} {content}"
 
 
-def table_of(what: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
+def table_of(content: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
     """Return a table as a file."""
-    if what == "response" and kind != "xlsx":  # the file that the library writes: numbers under names of its own
+    if content == "response" and kind != "xlsx":  # the file that the library writes: numbers under names of its own
         response = evaluation.chosen(restitution)
         write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
         with TemporaryDirectory(prefix="rocking-response-") as folder:
             data = write(Path(folder) / f"response.{kind}").read_bytes()
         return codecs.BOM_UTF8 + data if kind == "csv" else data
-    if what != "response":
-        return written([(what, _one_table(what, evaluation))], kind)
+    if content != "response":
+        return written([(content, _one_table(content, evaluation))], kind)
     about = evaluation.about
     if restitution is not None:
         chosen = evaluation.chosen(restitution)
         return written([(chosen.parameters.label, response_table(chosen, about))], kind)
     sheets = [(name, _one_table(name, evaluation)) for name in ("outcomes", "impacts")]
     return written(
-        [*sheets, *((label, response_table(one, about)) for label, one in evaluation.responses.items())], kind
+        [*sheets, *((label, response_table(answer, about)) for label, answer in evaluation.responses.items())], kind
     )
 
 
-def _one_table(what: str, evaluation: Evaluation) -> Table:
+def _one_table(content: str, evaluation: Evaluation) -> Table:
     about = evaluation.about
-    if what == "body":
+    if content == "body":
         return body_table(evaluation.body, evaluation.gravity, evaluation.name, about)
-    if what == "coefficients":
+    if content == "coefficients":
         return coefficient_table(evaluation.impact, about)
-    if what in {"impacts", "outcomes"}:
-        return (impacts_table if what == "impacts" else outcomes_table)(evaluation.responses, about)
-    of_motion = {"motion": motion_table, "measures": measures_table, "spectrum": spectrum_table}[what]
+    if content in {"impacts", "outcomes"}:
+        return (impacts_table if content == "impacts" else outcomes_table)(evaluation.responses, about)
+    of_motion = {"motion": motion_table, "measures": measures_table, "spectrum": spectrum_table}[content]
     return of_motion(evaluation.motion, about)
 
 

@@ -61,11 +61,11 @@ def project_file(state: "AppState", project: Project) -> bytes:
                 names[sha], contents[sha] = store.get(sha).file_name, store.content(sha)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:
-        whole = {
+        manifest = {
             "format": _FORMAT, "version": __version__, "name": project.name, "document": document, "records": records,
             "studies": studies, **({"files": files} if files else {}),
         }  # fmt: skip
-        add_file(archive, _WHAT, json.dumps(whole, indent=1, ensure_ascii=False).encode())
+        add_file(archive, _WHAT, json.dumps(manifest, indent=1, ensure_ascii=False).encode())
         for sha, content in contents.items():
             add_file(archive, f"{sha[:12]}-{record_file_name({**files, **records}[sha])}", content)
     data, most = stream.getvalue(), state.settings.limits.project_bytes
@@ -97,19 +97,21 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
         content = archive.content(_WHAT, 8 * LARGEST)
         check_json(content, _DEEPEST)
         try:
-            whole = _ProjectFile.model_validate_json(content)
+            project_file = _ProjectFile.model_validate_json(content)
         except ValidationError as error:
             raise from_pydantic(error.errors(include_url=False), kind=Refused) from error
-    if len(whole.studies) > MOST_STUDIES:
+    if len(project_file.studies) > MOST_STUDIES:
         raise TooLarge(
-            "a project file may contain {limit} studies, got {count}", limit=MOST_STUDIES, count=len(whole.studies)
+            "a project file may contain {limit} studies, got {count}",
+            limit=MOST_STUDIES,
+            count=len(project_file.studies),
         )
-    for study in whole.studies:
+    for study in project_file.studies:
         JobDocument.of(study.job)  # before anything is kept
-    _keep_files(state, archive, whole)
-    project = state.projects.create(whole.name, migrated_document(whole.document), "from a file")
+    _keep_files(state, archive, project_file)
+    project = state.projects.create(project_file.name, migrated_document(project_file.document), "from a file")
     try:
-        for study in whole.studies:
+        for study in project_file.studies:
             state.studies.create(study.name, study.job, project.id, brought=True)
     except RockingError:
         state.projects.delete(project.id)
@@ -117,8 +119,8 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
     return project
 
 
-def _keep_files(state: "AppState", archive: Archive, whole: _ProjectFile) -> None:
-    for store, names in ((state.records, whole.records), (state.files, whole.files)):
+def _keep_files(state: "AppState", archive: Archive, project_file: _ProjectFile) -> None:
+    for store, names in ((state.records, project_file.records), (state.files, project_file.files)):
         for sha, name in names.items():
             content = archive.content(_entry(archive, sha), store.largest)
             store.check_upload(content)

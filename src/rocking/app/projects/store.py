@@ -140,7 +140,7 @@ class ProjectStore:
         return [ProjectState(number, description, time, number == here) for number, description, time in rows]
 
     @_alone
-    def create(self, name: str, document: dict[str, Any], words: str = "begun") -> Project:
+    def create(self, name: str, document: dict[str, Any], description: str = "begun") -> Project:
         """Create a project."""
         now, project, packed = _instant(), secrets.token_hex(8), _packed(document)
         with self._changing() as database:
@@ -152,18 +152,20 @@ class ProjectStore:
                     hint="delete items that are no longer needed",
                 )
             database.execute("INSERT INTO projects VALUES (?, ?, ?, ?, 1, 1, NULL)", (project, _name(name), now, now))
-            database.execute("INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, words, now, packed))
+            database.execute(
+                "INSERT INTO states VALUES (?, 1, NULL, NULL, ?, ?, ?)", (project, description, now, packed)
+            )
         return self.get(project)
 
     @_alone
-    def save(self, project: str, version: int, document: dict[str, Any], words: str) -> Project:
+    def save(self, project: str, version: int, document: dict[str, Any], description: str) -> Project:
         """Save a new state of a project after its current state."""
         packed = _packed(document)
         with self._followed(project, version) as (database, now, saved):
             (last,) = database.execute("SELECT max(number) FROM states WHERE project = ?", (project,)).fetchone()
             database.execute(
                 "INSERT INTO states VALUES (?, ?, ?, NULL, ?, ?, ?)",
-                (project, last + 1, saved.state, shown(words), now, packed),
+                (project, last + 1, saved.state, shown(description), now, packed),
             )
             self._lead(project, saved.state, last + 1)
             database.execute(

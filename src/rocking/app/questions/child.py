@@ -1,8 +1,8 @@
 """A command that a server runs: `python -m rocking.app.questions.child`.
 
-It loads what most questions need, until a line of its standard input tells it a folder and the words of a command:
-then it runs `rocking COMMAND WORDS ...` there, with limits, and opens nothing that was not sent there. It ends when the
-server does: its standard input is a pipe.
+The process loads common modules until it reads a line with a folder and the arguments of a command. Then it runs
+`rocking COMMAND ARGUMENTS ...` in the folder, with limits, and opens only files there. It ends with the server, because
+its standard input is a pipe.
 """
 
 # ruff: noqa: F401 - modules that are imported ahead
@@ -71,7 +71,7 @@ def main() -> None:
     _answer(**json.loads(question))
 
 
-def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list[str]) -> None:
+def _answer(folder: str, file: str, answer: str, log: str, own: str, arguments: list[str]) -> None:
     """Run a command in a folder; answer, log and library output are files there."""
     os.chdir(folder)
     for number, name in ((1, answer), (2, log)):
@@ -90,7 +90,7 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, words: list
         sys.exit(2)
     models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
-    sys.argv[1:] = words
+    sys.argv[1:] = arguments
     run_module("rocking", {"unnamed_file": file}, "__main__")
 
 

@@ -137,8 +137,8 @@ class QuestionDesk:
                     hint="delete items that are no longer needed",
                 )  # fmt: skip
         check_room(self.folder, _ROOM, self._limits.questions_bytes, "questions")
-        asked = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
-        question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, asked, format=format)
+        now = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        question = HostedQuestion(secrets.token_hex(8), command, shown(name or command), project, now, format=format)
         folder = self.folder / question.id
         try:
             with room_on_disk():
@@ -313,7 +313,7 @@ class QuestionDesk:
         own.mkdir(mode=0o700, exist_ok=True)
         job = {
             "folder": str(folder), "file": QUESTION, "answer": _ANSWER, "log": _LOG, "own": own.name,
-            "words": _command(question),
+            "arguments": _command(question),
         }  # fmt: skip
         for name in (_ANSWER, _LOG):
             (folder / name).write_bytes(b"")
@@ -400,7 +400,7 @@ def refuse_outside(tables: dict[str, Any]) -> None:
                 raise Refused("{name!r:.60} is a path; send the file and use its name only", name=word)
 
 
-def _refusal(place: Path, code: int | None) -> dict[str, Any]:
+def _refusal(folder: Path, code: int | None) -> dict[str, Any]:
     """Return the reason for a missing answer as data."""
     if code is None:
         message = Message(
@@ -408,7 +408,7 @@ def _refusal(place: Path, code: int | None) -> dict[str, Any]:
             {"minutes": _SECONDS / 60.0},
         )
         return RockingError(message).data()
-    log = (place / _LOG).read_text(encoding="utf-8", errors="replace").replace(f"{place}{os.sep}", "")
+    log = (folder / _LOG).read_text(encoding="utf-8", errors="replace").replace(f"{folder}{os.sep}", "")
     for line in reversed(log.splitlines()):
         with suppress(ValueError, TypeError, KeyError):
             refusal: dict[str, Any] = json.loads(line)["error"]

@@ -77,12 +77,12 @@ async def add_file(request: Request, name: Annotated[str, Query(max_length=500)]
 @router.post(
     "/questions", status_code=202, summary="Queue a run", responses=answered(QuestionFacts, "The item is queued.", 202)
 )
-async def ask_question(request: Request, asked: NewQuestion) -> JsonAnswer:
+async def ask_question(request: Request, item: NewQuestion) -> JsonAnswer:
     """Queue a run; its answer is the output of the command with --json."""
-    if asked.project:
-        await run_in_threadpool(state_of(request).projects.get, asked.project)
+    if item.project:
+        await run_in_threadpool(state_of(request).projects.get, item.project)
     question = await run_in_threadpool(
-        _desk(request).ask, asked.command, asked.tables, asked.files, asked.name, asked.project, asked.format
+        _desk(request).ask, item.command, item.tables, item.files, item.name, item.project, item.format
     )
     return JsonAnswer(_facts(question), status_code=202)
 

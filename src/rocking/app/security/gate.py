@@ -195,7 +195,7 @@ CHECKS: dict[str, Check] = {
 _PAGE = (Path(__file__).parents[1] / "static" / "index.html").read_text(encoding="utf-8")
 _IMPORTS = re.findall(r'<script type="importmap">(.*?)</script>', _PAGE, re.DOTALL)
 # the only inline script of the page: the import map
-_KNOWN = [f"'sha256-{b64encode(sha256(words.encode()).digest()).decode()}'" for words in _IMPORTS]
+_KNOWN = [f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" for script in _IMPORTS]
 CONTENT_POLICY = "; ".join((
     "default-src 'none'",
     " ".join(("script-src 'self'", *_KNOWN)),

@@ -101,10 +101,10 @@ async def _drain(pieces: AsyncIterator[bytes]) -> None:
 
 
 def _again(body: bytes, receive: Receive) -> Receive:
-    whole: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
+    pending: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
     async def again() -> Message:
-        return whole.pop() if whole else await receive()
+        return pending.pop() if pending else await receive()
 
     return again
 

@@ -181,7 +181,7 @@ class Sessions:
         return {bytes.fromhex(key): seen for seen, key in live[-_MOST_SESSIONS:]}
 
     def _write(self) -> None:
-        """Keep the sessions, for this user alone; where the disk takes nothing, a restart asks to sign in again."""
+        """Store the sessions for this user only; without disk space, a restart needs a new sign-in."""
         self._written = self._clock()
         if self._kept is not None:
             with suppress(OSError):
@@ -194,6 +194,6 @@ def _digest(token: str) -> bytes:
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).digest()
 
 
-def _known(token: str | None, known: dict[bytes, float]) -> bytes | None:
+def _known(token: str | None, digests: dict[bytes, float]) -> bytes | None:
     digest = _digest(token or "")
-    return next(iter([other for other in known if hmac.compare_digest(other, digest)]), None)
+    return next(iter([other for other in digests if hmac.compare_digest(other, digest)]), None)

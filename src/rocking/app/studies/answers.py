@@ -19,9 +19,9 @@ _MEASURE = "in the unit of the measure"
 _PEAK = "peak rotation over alpha"
 
 
-def _left_out(words: str, default: Any = None) -> Any:
+def _left_out(description: str, default: Any = None) -> Any:
     """Return the description of an optional key."""
-    return Field(default, description=words)
+    return Field(default, description=description)
 
 
 Coordinate: Any = shape(

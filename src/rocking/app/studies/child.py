@@ -1,7 +1,7 @@
 """The process of a study: `python -m rocking.app.studies.child FOLDER WORKERS`.
 
-It ends when the server does: its standard input is a pipe that nobody writes to, and whose end is the server's end.
-Exit codes: 0 done, 2 refused, 3 stopped (what is finished is safe).
+The process ends with the server, because its standard input is a pipe that closes with the server. Exit codes: 0 done,
+2 refused, 3 stopped (finished histories are safe).
 """
 
 import contextlib

@@ -104,7 +104,7 @@ def written(
     study: OpenStudy,
     kind: Kind,
     target: Path,
-    what: str | None,
+    content: str | None,
     restitution: int,
     crossing_curves: Crossing | None = None,
 ) -> None:
@@ -133,13 +133,13 @@ def written(
     else:
         from rocking.campaigns.jobs import export
 
-        what = what or ("fragility" if kind == "xml" else None)
-        of_curves = what in {"fragility", "fema-p58"}
+        content = content or ("fragility" if kind == "xml" else None)
+        of_curves = content in {"fragility", "fema-p58"}
         try:
             export(
                 study.opened,
                 target,
-                what,
+                content,
                 restitution=labels[restitution] if of_curves else None,
                 crossing_curves=crossing_curves,
             )

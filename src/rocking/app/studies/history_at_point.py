@@ -97,35 +97,35 @@ class Variation:
     angular_velocity: float = 0.0
 
     @classmethod
-    def of(cls, study: OpenStudy, place: HistoryPlace) -> "Variation":
+    def of(cls, study: OpenStudy, point: HistoryPlace) -> "Variation":
         """Return the inputs of one simulation."""
         job = study.job
-        label, restitution, choice = _choice(study, place)
-        rows = job.study.histories.rows(place.number, place.number + 1)
+        label, restitution, choice = _choice(study, point)
+        rows = job.study.histories.rows(point.number, point.number + 1)
         scale = float(rows.values["scale"][0])
         if getattr(restitution, "per_history", False):
             restitution = {side: float(rows.values[f"r_{side}"][0]) for side in ("left", "right")}
             choice = dict(restitution)
         if job.document.axes:
             body, table = job.problem.bodies[0], dict(job.document.bodies[0])
-            return _on_map(cls(body, table, label, restitution, choice, scale), study, place)
+            return _on_map(cls(body, table, label, restitution, choice, scale), study, point)
         if not job.problem.bodies:
             angle, period = (job.study.coordinates[name].values for name in ("slenderness_angle", "semi_diagonal"))
             body = Block.from_angle(
-                float(angle[place.index["slenderness_angle"]]), float(period[place.index["period"]])
+                float(angle[point.index["slenderness_angle"]]), float(period[point.index["period"]])
             )
             return cls(body, body_table(body), label, restitution, choice, scale)
-        number = place.index.get("body", 0)
+        number = point.index.get("body", 0)
         body, table = job.problem.bodies[number], dict(job.document.bodies[number])
         return cls(body, table, label, restitution, choice, scale)
 
 
-def _on_map(variation: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
+def _on_map(variation: Variation, study: OpenStudy, point: HistoryPlace) -> Variation:
     """Return the inputs of a cell of a map."""
     job = study.job
     x, y = job.document.axes
     question = Question(variation.body, job.problem.motions[0], variation.restitution, job.problem.settings)
-    case = Plane(question, x, y).case(*(axis.values[place.index[axis.name]][None] for axis in (x, y)))
+    case = Plane(question, x, y).case(*(axis.values[point.index[axis.name]][None] for axis in (x, y)))
     geometry = {name: float(values[0]) for name, values in case.geometry.items()}
     body = changed_body(variation.body, geometry)
     start: dict[str, Any] = {name: float(case.sides.get(row, [0.0])[0]) for name, row in _STARTS.items()}
@@ -144,9 +144,9 @@ def body_table(body: Body) -> dict[str, Any]:
     return {"units": table["units"], **table["block"]} if "block" in table else table
 
 
-def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
+def _choice(study: OpenStudy, point: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
     """Return label, restitution and its table of inputs."""
-    table, number = study.job.document.restitution, place.restitution
+    table, number = study.job.document.restitution, point.restitution
     label, restitution = list(study.job.problem.restitutions.items())[number]
     tables: list[dict[str, Any] | None] = [{"model": table.model}] if table.model else []
     tables += [{"model": word} for word in table.models or []]
@@ -159,16 +159,16 @@ def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, 
 
 def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, dict[str, Any] | None, float]:
     """Return a motion with stretched time, its table of inputs or None, and its scale."""
-    place = number
+    index = number
     for table in study.job.document.motions:
-        if place < table.size:
+        if index < table.size:
             break
-        place -= table.size
+        index -= table.size
     if table.pulse is not None:
-        text = stretched_words(table.pulse[place], stretch)
+        text = stretched_words(table.pulse[index], stretch)
         return pulse(text), {"pulse": text}, table.scale
     if table.records is not None:
-        name = table.records[place]
+        name = table.records[index]
         alone = table.model_copy(update={"records": [name], "scale": 1.0})
         motion = motions_of([alone], InputFiles(study.folder.path))[0]
         source: dict[str, Any] = {"record": PurePosixPath(name).parent.name, "file_name": PurePosixPath(name).name}
@@ -176,7 +176,7 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
         scale = table.scale
     else:
         motion = study.job.problem.motions[number]
-        source = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": place}
+        source = {"synthetic": table.synthetic, "seed": table.seed or 0, "member": index}
         keys, scale = _OF_FAMILIES, 1.0
     source |= {key: getattr(table, key) for key in keys if getattr(table, key) is not None}
     if stretch == 1.0:
@@ -185,35 +185,35 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
     return replace(motion, time_step=motion.time_step * stretch), None, scale
 
 
-def stretched_words(words: str, stretch: float) -> str:
+def stretched_words(text: str, stretch: float) -> str:
     """Return a pulse, in words, whose time is stretched by a factor [-] while its acceleration stays."""
     if stretch == 1.0:
-        return words
-    name, _, tail = words.partition(":")
+        return text
+    name, _, tail = text.partition(":")
     pairs = [tuple(word.strip() for word in item.partition("=")[::2]) for item in filter(None, tail.split(","))]
     changed = [(key, repr(whole_or_number(key, value) * stretch) if key in _TIMES else value) for key, value in pairs]
     stretched = f"{name}:{','.join(f'{key}={value}' for key, value in changed)}"
-    before, after = pulse(words), pulse(stretched)
+    before, after = pulse(text), pulse(stretched)
     if abs(after.duration / (stretch * before.duration) - 1.0) + abs(after.peak / before.peak - 1.0) > _CLOSE:
-        raise ArithmeticError(f"{stretched} is not {words} stretched by {stretch!r}")
+        raise ArithmeticError(f"{stretched} is not {text} stretched by {stretch!r}")
     return stretched
 
 
-def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
+def cell_of(study: OpenStudy, point: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
     """Return the simulation of a point, `HistoryAnswer`."""
     # ``difference`` is of the peak rotations of the study and of the response here, which take other steps to the
     # same accuracy
     cell: dict[str, Any] = {
-        **Answer({"stored": stored(study, place), "answer": None, "difference": None}).plain(), "inputs": None,
+        **Answer({"stored": stored(study, point), "answer": None, "difference": None}).plain(), "inputs": None,
     }  # fmt: skip
     if "friction" in study.job.problem.settings.stated:
         return cell | {"note": "time histories with friction are not shown here; use `rocking simulate --friction`"}
     try:
-        variation = Variation.of(study, place)
+        variation = Variation.of(study, point)
         if isinstance(variation.restitution, float) and not np.isfinite(variation.restitution):
             return cell | {"note": "the coefficient of this cell would create energy; it was not computed"}
-        motion, source, scale = _motion_at(study, place.index["motion"], variation.stretch)
-        problem, response = _responded(study, place, variation, motion, scale * variation.scale)
+        motion, source, scale = _motion_at(study, point.index["motion"], variation.stretch)
+        problem, response = _responded(study, point, variation, motion, scale * variation.scale)
     except InvalidValueError as error:
         return cell | {"note": str(error)}
     note = _why_not(variation, source)
@@ -231,25 +231,25 @@ def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict
     return cell | document
 
 
-def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
+def stored(study: OpenStudy, point: HistoryPlace) -> dict[str, Any]:
     """Return the stored results of a simulation, `StoredHistory`."""
-    history = study.history(place.number)
+    history = study.history(point.number)
     results = {name: plain(history[name]) for name in _STORED}
-    return {"history": place.number, "meaning": mode_words(results["mode"]), **results}
+    return {"history": point.number, "meaning": mode_words(results["mode"]), **results}
 
 
 def _responded(
-    study: OpenStudy, place: HistoryPlace, variation: Variation, motion: Motion, scale: float
+    study: OpenStudy, point: HistoryPlace, variation: Variation, motion: Motion, scale: float
 ) -> tuple[ResponseProblem, Response]:
     job, engine = study.job, study.job.document.settings.engine
     problem = ResponseProblem(
         variation.body, motion, {variation.label: variation.restitution}, job.problem.settings, engine, scale=scale
     )
     start = {name: getattr(variation, name) for name in _STARTS}
-    how = {**problem.settings.stated, "engine": engine, "stream": place.number, **start}
+    options = {**problem.settings.stated, "engine": engine, "stream": point.number, **start}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
-        return problem, simulate(variation.body, motion, variation.restitution, scale=scale, **how)
+        return problem, simulate(variation.body, motion, variation.restitution, scale=scale, **options)
 
 
 def _why_not(variation: Variation, source: dict[str, Any] | None) -> str:

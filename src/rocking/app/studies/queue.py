@@ -37,7 +37,7 @@ class StudyQueue:
     def enter(self, make: Callable[[], HostedStudy], *, brought: bool = False) -> HostedStudy:
         """Put a study in the queue; a place is reserved during its creation."""
         with self.lock:
-            waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
+            waiting = self._entering + sum(study.meta.state == WAITING for study in self._studies.values())
             if waiting >= self._longest and not brought:
                 raise Busy(
                     "{count} studies are queued", count=waiting, hint="try again when a study is finished", seconds=30

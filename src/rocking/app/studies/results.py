@@ -26,7 +26,7 @@ from rocking.version import __version__
 
 NAME = f"result-{__version__}-{SCHEMA}.json"  # other versions may contain other keys
 _LARGEST = 20_000
-_PACKED = 100_000  # least number of values of a map table that is sent as bytes
+_PACKED = 100_000  # smallest number of values of a map table that is sent as bytes
 _WHOLE = ("uint8", "int8", "uint16", "int16", "int32")
 _FINE = 120
 
@@ -151,7 +151,7 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     return {
         **coordinates(study, x="period", angles="slenderness_angle", motions="motion", semi_diagonals="semi_diagonal"),
         "curves": curves,
-        "shares": [mode_shares(each) for each in modes],
+        "shares": [mode_shares(mode) for mode in modes],
     }
 
 
@@ -188,9 +188,9 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         "mode_words": {mode: mode_words(mode) for mode in np.unique(modes).tolist()},
         "peak": packed(by_restitution(study, "peak_ratio")),
         "impacts": packed(by_restitution(study, "impacts")),
-        "shares": [mode_shares(each) for each in modes],
+        "shares": [mode_shares(mode) for mode in modes],
         "islands": [list(safe_islands(study.dataset(k)).sentences) for k in range(len(modes))],
-        "contours": [contours_of(each >= 0, x, y, known=each != -3) for each in modes],
+        "contours": [contours_of(mode >= 0, x, y, is_known=mode != -3) for mode in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
         "tables": {} if study.job.study.search is None else tables_of(study),
@@ -198,14 +198,14 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def contours_of(
-    inside: np.ndarray, x: FloatArray, y: FloatArray, known: np.ndarray | None = None
+    inside: np.ndarray, x: FloatArray, y: FloatArray, is_known: np.ndarray | None = None
 ) -> list[list[list[float]]]:
     """Return polylines of x and y between inside and outside; closed lines repeat their first point."""
     if min(inside.shape) < 2:
         return []
     corners = _corners(inside)
     mixed = np.flatnonzero(
-        corners.any(axis=1) & ~corners.all(axis=1) & (True if known is None else _corners(known).all(axis=1))
+        corners.any(axis=1) & ~corners.all(axis=1) & (True if is_known is None else _corners(is_known).all(axis=1))
     )
     j, i = np.divmod(mixed, inside.shape[1] - 1)
     joined = segments(corners[mixed], edge_numbers(i, j, inside.shape[1]), np.zeros(mixed.size, dtype=bool))

@@ -32,7 +32,7 @@ The tables of a job file (`rocking.examples`) as JSON. Records are named by the 
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
 _ONE = answered(StudyFacts, "State and progress.")
-SHORTEST = 0.2  # least interval between two messages [s]
+SHORTEST = 0.2  # smallest interval between two messages [s]
 MOST = 64  # browsers informed at the same time
 _TRY_LATER = 1013
 
@@ -193,20 +193,25 @@ def _cell(manager: StudyManager, study: str, point: PointRequest) -> bytes:
 
     with _there(manager, study) as folder:
         opened = manager.open(folder)
-        place = HistoryPlace.of(opened, point.x, point.y, point.restitution, point.motion)
-        key = (study, "cell", place.number, point.points)
-        return manager.answers.get(key, lambda: bytes(JsonAnswer(cell_of(opened, place, point.points)).body))
+        history_point = HistoryPlace.of(opened, point.x, point.y, point.restitution, point.motion)
+        key = (study, "cell", history_point.number, point.points)
+        return manager.answers.get(key, lambda: bytes(JsonAnswer(cell_of(opened, history_point, point.points)).body))
 
 
 def _file(
-    manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int, crossing_curves: Crossing | None
+    manager: StudyManager,
+    study: str,
+    kind: Kind,
+    content: str | None,
+    restitution: int,
+    crossing_curves: Crossing | None,
 ) -> Path:
     from rocking.app.studies.finished import written
 
     path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
     try:
         with _there(manager, study) as folder:
-            written(manager.open(folder), kind, path, what, restitution, crossing_curves)
+            written(manager.open(folder), kind, path, content, restitution, crossing_curves)
     except BaseException:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise

@@ -28,7 +28,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class StudyPace:
-    """How fast histories are finished, over the last seconds, and how much work is done in a second.
+    """Rate of finished histories over the last seconds, and work per second.
 
     >>> pace = StudyPace()
     >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(600, 11.5, now=16.0)
@@ -40,9 +40,9 @@ class StudyPace:
         self._speed, self._pace = Speed(), 0.0
 
     def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
-        """Note how many histories are finished and what all workers spent on them [s]; now: instant of a clock [s]."""
-        # returns histories a second over the last seconds [1/s], and the work done in a second since the first were
-        # finished [-]; 0 while nothing is known
+        """Store the number of finished histories and the work of all workers [s]; now: time of a clock [s]."""
+        # returns histories per second over the last seconds [1/s], and work per second since the first finished
+        # histories [-]; 0 before the first ones
         instant = time.monotonic() if now is None else now
         # a study finishes in blocks: only checks with new histories count
         if not self._looks or done > self._looks[-1][1]:

@@ -1,4 +1,4 @@
-"""In which ways a body can stand: its stable poses, saddles and summits, and what lies between them."""
+"""Equilibria of a body: stable poses, saddles and summits, and the passes between stable poses."""
 
 from rocking.bodies.equilibria._equilibria import Equilibria, equilibria
 from rocking.bodies.equilibria.base_tolerance import TOLERANCES, BaseTolerance, base_tolerances

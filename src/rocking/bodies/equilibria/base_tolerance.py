@@ -1,4 +1,4 @@
-"""What a body would stand on, and how firmly, if points a little above the ground touched it too."""
+"""Base and stability of a body if points slightly above the ground are contact points."""
 
 import math
 from collections.abc import Sequence
@@ -12,31 +12,31 @@ from rocking.bodies.equilibria.poses import StablePose
 from rocking.conventions import FloatArray, g
 
 TOLERANCES = (0.0, 0.0005, 0.001, 0.002, 0.005)
-"""By default [m]: what a scan, a gap or dust leaves open."""
+"""Default tolerances, typical of scans, gaps and dust [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class BaseTolerance:
-    """How a body would stand if all points of its hull up to some height touched the ground.
+    """Stability of a body if all points of its hull up to a tolerance are contact points.
 
     Parameters
     ----------
     tolerance : float
-        That height [m].
+        Largest height of contact points above the ground [m].
     points : int
-        How many vertices of the hull would touch.
+        Number of contact points.
     support : ndarray, shape (n, 2)
-        Support polygon from the plumb line, counter-clockwise seen from above [m].
+        Support polygon relative to the projection of the centre of mass, counter-clockwise seen from above [m].
     edge_distance : float
-        Distance of its nearest edge from the plumb line [m].
+        Distance of the nearest edge from the projection of the centre of mass [m].
     azimuth : float
-        Direction of that edge from the plumb line [rad].
+        Direction of this edge from the projection of the centre of mass [rad].
     uplift_acceleration : float
-        Least steady acceleration of the ground that lifts the body, over that edge [m/s2].
+        Smallest constant ground acceleration with uplift, about this edge [m/s2].
     barrier : float
-        Rise of the centre on the lowest way into another stable pose [m].
+        Energy barrier to another stable pose, as a rise of the centre of mass [m].
     energy : float
-        What this rise costs [J].
+        Energy of this rise [J].
     """
 
     tolerance: float
@@ -52,29 +52,29 @@ class BaseTolerance:
 def base_tolerances(
     found: Equilibria, pose: StablePose | None = None, tolerances: Sequence[float] = TOLERANCES
 ) -> tuple[BaseTolerance, ...]:
-    """Return what would change if the points of the surface that are close to the ground touched it.
+    """Return the stability of a body if points close to the ground are contact points.
 
-    How a real body touches the ground is often the largest uncertainty about it. The points within each tolerance are
-    taken down onto the ground, and the hull, its support polygon and its passes are computed anew.
+    The contact points of a real body are often its largest uncertainty. For each tolerance, the points below it are
+    moved to the ground, and the hull, its support polygon and its passes are recomputed.
 
     Parameters
     ----------
     found : Equilibria
-        Of the body.
+        Equilibria of the body.
     pose : StablePose, optional
-        In which it stands; by default the one into which it settles with -z downward.
+        Pose of the body; the default is the pose that it reaches from -z downward.
     tolerances : sequence of float
-        Heights up to which points touch [m].
+        Largest heights of contact points above the ground [m].
 
     Returns
     -------
     tuple of BaseTolerance
-        One for each tolerance.
+        One result per tolerance.
 
     Raises
     ------
     InvalidValueError
-        If a tolerance is negative or as large as the height of the centre.
+        If a tolerance is negative, or not below the height of the centre of mass.
 
     Examples
     --------
@@ -91,18 +91,22 @@ def base_tolerances(
     return tuple(_row(found, start, tolerance) for tolerance in heights)
 
 
-def _row(found: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance:
-    most = checks.within("tolerance", tolerance, 0.0, pose.height, unit="m", open_high=True)
-    corners, surface = (points @ pose.rotation.T for points in (found.hull.vertices, found.surface))
-    touching = surface[surface[:, 2] + pose.height <= max(most, found.flatness)]
+def _row(equilibria_of_body: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance:
+    limit = checks.within("tolerance", tolerance, 0.0, pose.height, unit="m", open_high=True)
+    corners, surface = (
+        points @ pose.rotation.T for points in (equilibria_of_body.hull.vertices, equilibria_of_body.surface)
+    )
+    touching = surface[surface[:, 2] + pose.height <= max(limit, equilibria_of_body.flatness)]
     turned = np.concatenate([corners, touching])
-    turned[turned[:, 2] + pose.height <= max(most, found.flatness), 2] = -pose.height
+    turned[turned[:, 2] + pose.height <= max(limit, equilibria_of_body.flatness), 2] = -pose.height
     down = np.array([0.0, 0.0, -1.0])
-    flat = equilibria(turned, np.zeros(3), found.mass, min_barrier=found.min_barrier, standing=down).settling(down)
+    flat = equilibria(
+        turned, np.zeros(3), equilibria_of_body.mass, min_barrier=equilibria_of_body.min_barrier, standing=down
+    ).settling(down)
     nearest = int(np.argmin(flat.edge_distances))
     chord = np.roll(flat.support, -1, axis=0)[nearest] - flat.support[nearest]
     distance = float(flat.edge_distances[nearest])
     return BaseTolerance(
-        most, len(touching), flat.support, distance, math.atan2(-float(chord[0]), float(chord[1])),
-        g * distance / flat.height, flat.barrier, found.mass * g * flat.barrier,
+        limit, len(touching), flat.support, distance, math.atan2(-float(chord[0]), float(chord[1])),
+        g * distance / flat.height, flat.barrier, equilibria_of_body.mass * g * flat.barrier,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What a body may rest or be balanced on: stable poses, saddles, summits, and the passes between poses."""
+"""Equilibria of a body: stable poses, saddles, summits, and the passes between poses."""
 
 import math
 from dataclasses import dataclass, field
@@ -16,20 +16,20 @@ Kind = Literal["stable", "saddle", "summit"]
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A way up in which the centre of mass is straight above what the body touches.
+    """An attitude with the centre of mass vertically above the contact.
 
     Parameters
     ----------
     kind : {"stable", "saddle", "summit"}
-        On a facet of the hull, on an edge, on a vertex.
+        Equilibrium on a facet, an edge, or a vertex of the hull.
     down : ndarray, shape (3,)
-        The direction that is then downward, in the body's own frame; a unit vector [-].
+        Downward unit vector in the body's frame [-].
     height : float
-        Height of the centre of mass over the ground [m].
+        Height of the centre of mass above the ground [m].
     energy : float
-        What it costs to raise the centre from the lowest stable pose, m g times the difference in height [J].
+        Potential energy relative to the lowest stable pose: m g x height difference [J].
     points : ndarray, shape (n, 3)
-        Corners of what touches the ground, in the body's coordinates [m].
+        Corners of the contact, in the body's coordinates [m].
     """
 
     kind: Kind
@@ -41,26 +41,26 @@ class Equilibrium:
 
 @dataclass(frozen=True, eq=False)
 class StablePose(Equilibrium):
-    """A facet of the hull that a body stands on by itself.
+    """A stable pose of a body on a facet of its hull.
 
     Parameters
     ----------
     kind : {"stable"}
-        As of every equilibrium.
+        Type of equilibrium.
     down : ndarray, shape (3,)
-        The direction that is downward, in the body's own frame; a unit vector [-].
+        Downward unit vector in the body's frame [-].
     height : float
-        Height of the centre of mass over the ground [m].
+        Height of the centre of mass above the ground [m].
     energy : float
-        What it costs to raise the centre from the lowest stable pose [J].
+        Potential energy relative to the lowest stable pose [J].
     points : ndarray, shape (n, 3)
         Corners of the facet, in the body's coordinates [m].
     number : int
-        Its place among the stable poses, the lowest first.
+        Index of the pose, sorted by the height of the centre of mass.
     centre : ndarray, shape (3,)
         Centre of mass in the body's coordinates [m].
     barrier : float
-        Rise of the centre on the lowest way into another stable pose [m]; infinite if there is no other.
+        Energy barrier: rise of the centre of mass on the lowest path to another stable pose [m]; infinite without one.
     """
 
     number: int
@@ -69,66 +69,68 @@ class StablePose(Equilibrium):
 
     @property
     def rotation(self) -> FloatArray:
-        """The shortest rotation that sets the body down in this pose, shape (3, 3) [-]; azimuths are those after it."""
+        """Smallest rotation into this pose, shape (3, 3) [-]; azimuths refer to the rotated body."""
         return set_down(self.down)
 
     @property
     def support(self) -> FloatArray:
-        """Corners of the support polygon from the plumb line, as set down, counter-clockwise, shape (n, 2) [m]."""
+        """Corners of the support polygon relative to the centre of mass, counter-clockwise, shape (n, 2) [m]."""
         flat: FloatArray = ((self.points - self.centre) @ self.rotation.T)[:, :2]
         return flat
 
     @property
     def edge_distances(self) -> FloatArray:
-        """How far each edge of `support` is from the plumb line, shape (n,) [m]; edge i runs from corner i on."""
-        here = self.support
-        along = np.roll(here, -1, axis=0) - here
-        distances: FloatArray = (along[:, 1] * here[:, 0] - along[:, 0] * here[:, 1]) / np.linalg.norm(along, axis=1)
+        """Distances of the edges of `support` from the projection of the centre of mass, shape (n,) [m]."""
+        corners = self.support
+        along = np.roll(corners, -1, axis=0) - corners
+        distances: FloatArray = (along[:, 1] * corners[:, 0] - along[:, 0] * corners[:, 1]) / np.linalg.norm(
+            along, axis=1
+        )
         return distances
 
     def uplift_acceleration(self, azimuth: ArrayLike) -> FloatArray:
-        """Return the least steady acceleration of the ground that lifts the body towards an azimuth.
+        """Return the smallest constant ground acceleration with uplift towards an azimuth.
 
         Parameters
         ----------
         azimuth : array_like
-            Direction towards which the body tilts, counter-clockwise from x of the body as set down [rad].
+            Direction of the tilt, counter-clockwise from x of the body in this pose [rad].
 
         Returns
         -------
         ndarray
-            Acceleration, against the azimuth [m/s2].
+            Ground acceleration in the opposite direction [m/s2].
         """
         angle = azimuths(azimuth)
-        here, far = self.support, self.edge_distances
-        along = np.roll(here, -1, axis=0) - here
+        corners, distances = self.support, self.edge_distances
+        along = np.roll(corners, -1, axis=0) - corners
         outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1, keepdims=True)
         slope = np.cos(angle)[..., None] * outward[:, 0] + np.sin(angle)[..., None] * outward[:, 1]
-        reach = np.where(slope > 0.0, far / np.where(slope > 0.0, slope, 1.0), np.inf).min(axis=-1)
-        lifted: FloatArray = g * reach / self.height  # Eq. 249
-        return lifted
+        lever = np.where(slope > 0.0, distances / np.where(slope > 0.0, slope, 1.0), np.inf).min(axis=-1)
+        acceleration: FloatArray = g * lever / self.height  # Eq. 249
+        return acceleration
 
 
 @dataclass(frozen=True)
 class Pass:
-    """The lowest way from one stable pose into another.
+    """The lowest path from one stable pose to another.
 
     Parameters
     ----------
     start, end : int
-        Numbers of the poses.
+        Indices of the poses.
     height : float
-        Height of the centre on its highest saddle [m].
+        Height of the centre of mass at the highest saddle [m].
     rise : float
-        The same over the pose at the start [m].
+        Height difference between the saddle and the first pose [m].
     energy : float
-        What the rise costs [J].
+        Energy of the rise [J].
     tilt : float
-        Angle between the pose at the start and the saddle [rad].
+        Angle between the first pose and the saddle [rad].
     azimuth : float
-        Towards which the body tilts, in the pose at the start as set down [rad].
+        Direction of the tilt in the first pose [rad].
     down : ndarray, shape (3,)
-        The direction that is downward on the saddle, in the body's own frame [-].
+        Downward unit vector at the saddle, in the body's frame [-].
     """
 
     start: int
@@ -143,18 +145,18 @@ class Pass:
 
 @dataclass(frozen=True)
 class Ring:
-    """A circle of equilibria of a body of revolution: it rolls from each into the next.
+    """A circle of equilibria of a body of revolution, which can roll along the circle.
 
     Parameters
     ----------
     kind : {"stable", "summit"}
-        Whether the centre is lower or higher there than at other tilts.
+        "stable" for the smallest and "summit" for the largest height of the centre of mass over the tilt.
     tilt : float
-        Angle between the body's axis and the vertical [rad].
+        Angle between the axis of the body and the vertical [rad].
     height : float
-        Height of the centre of mass over the ground [m].
+        Height of the centre of mass above the ground [m].
     energy : float
-        What it costs to raise the centre there from the lowest pose [J].
+        Potential energy relative to the lowest pose [J].
     """
 
     kind: Literal["stable", "summit"]
@@ -164,21 +166,21 @@ class Ring:
 
 
 def set_down(down: FloatArray) -> FloatArray:
-    """Return the shortest rotation that turns a unit vector downward, to -z."""
+    """Return the smallest rotation of a unit vector to -z."""
     x, y, z = down.tolist()
     level = x * x + y * y
     if z > 0.0 and not level > 0.0:
         return np.diag([1.0, -1.0, -1.0])
-    # of the cosine -z and the axis down x (-z) = (-y, x, 0); 1 / (1 - z) without a difference of nearly equal numbers
-    share = (1.0 + z) / level if z > 0.0 else 1.0 / (1.0 - z)
+    # cosine -z and axis down x (-z) = (-y, x, 0); 1 / (1 - z) without cancellation
+    factor = (1.0 + z) / level if z > 0.0 else 1.0 / (1.0 - z)
     turn: FloatArray = np.array(
-        [[1.0 - x * x * share, -x * y * share, x], [-x * y * share, 1.0 - y * y * share, y], [-x, -y, -z]]
+        [[1.0 - x * x * factor, -x * y * factor, x], [-x * y * factor, 1.0 - y * y * factor, y], [-x, -y, -z]]
     )
     return turn
 
 
 def azimuths(values: ArrayLike) -> FloatArray:
-    """Return azimuths, after a check [rad]."""
+    """Return checked azimuths [rad]."""
     angles = checks.real_array("azimuth", values, "rad")
     if not np.isfinite(angles).all():
         raise InvalidValueError(parameter="azimuth", allowed="finite numbers [rad]", value=values)
@@ -186,12 +188,12 @@ def azimuths(values: ArrayLike) -> FloatArray:
 
 
 def tilt_towards(pose: StablePose, down: FloatArray) -> tuple[float, float]:
-    """Return tilt and azimuth of a direction down, seen from a pose [rad]."""
+    """Return tilt and azimuth of a downward direction relative to a pose [rad]."""
     x, y, z = (pose.rotation @ down).tolist()
     return math.atan2(math.hypot(x, y), -z), math.atan2(y, x)
 
 
 def tilted(pose: StablePose, azimuth: float) -> FloatArray:
-    """Return the horizontal direction of an azimuth, in the body's frame."""
+    """Return the horizontal unit vector of an azimuth in the body's frame [-]."""
     turned: FloatArray = pose.rotation.T @ np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
     return turned

@@ -1,6 +1,6 @@
-"""Reading bodies from files and writing them: TOML body files, WKT, GeoJSON, DXF, and meshes of bodies in space.
+"""Reading and writing of bodies: TOML body files, WKT, GeoJSON, DXF, and meshes of 3D bodies.
 
-What these modules need (pydantic, shapely, ezdxf, trimesh) is imported when a body is read, not before.
+These modules import pydantic, shapely, ezdxf and trimesh only to read a body.
 """
 
 from rocking.bodies.formats.body_file import body_from_toml, body_to_toml

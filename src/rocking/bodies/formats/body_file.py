@@ -1,4 +1,4 @@
-"""The TOML body file, read and written: one table says what the body is, and `units` is never left out."""
+"""Reading and writing of the TOML body file, which contains one table of the body and always `units`."""
 
 import math
 import tomllib
@@ -27,20 +27,20 @@ from rocking.messages import Index
 if TYPE_CHECKING:
     from rocking.bodies.formats import schema
 
-LARGEST_TOML = 16 * 2**20  # larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF
+LARGEST_TOML = 16 * 2**20  # largest size of a TOML file; WKT, GeoJSON and DXF files may be larger [byte]
 
 
 def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
-    r"""Return the body that the text of a body file describes.
+    r"""Return the body from the text of a body file.
 
     Parameters
     ----------
     text : str
         TOML.
     name : str
-        Name that errors show.
+        Name of the text in error messages.
     folder : str or Path, optional
-        Folder of the GeoJSON and DXF files that the text names; without it, text cannot name files.
+        Folder of the GeoJSON and DXF files that the text names. By default, the text must not name files.
 
     Returns
     -------
@@ -50,12 +50,11 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
     Raises
     ------
     BodyFileError
-        If the text is not TOML, a key is unknown or missing, or a value is not of the kind or in the range
-        that its key needs.
+        If the text is not TOML, a key is unknown or missing, or a value has a wrong type or is outside its range.
     GeometryError
         If the shapes do not describe a body.
     InvalidValueError
-        If a size or a density is beyond what a body can have.
+        If a size or a density is outside the range for bodies.
     MissingExtraError
         If the text names a DXF file and ezdxf is not installed.
 
@@ -69,11 +68,11 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 
 
 def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body:
-    """Return the body that the tables of a body file describe."""
+    """Return the body from the tables of a body file."""
     from rocking.bodies.formats.schema import BodyFile
 
     if "solid" in tables:
-        raise BodyFileError("describes a body in space, [solid]; a plane body is needed here")
+        raise BodyFileError("This is a 3D body, [solid]; a 2D body is needed.")
     document = validated(BodyFile, tables)
     scale = length_unit(document.units)
     if document.block:
@@ -88,17 +87,19 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
 def parsed_toml(text: Any) -> dict[str, Any]:
     """Return the tables of a TOML text."""
     if not isinstance(text, str):
-        raise BodyFileError("a body file must be text, got {type}", type=type(text).__name__)
+        raise BodyFileError("A body file must be text, got {type}.", type=type(text).__name__)
     if len(text) > LARGEST_TOML:
         raise BodyFileError(
-            "is longer than {limit:g} MiB", limit=LARGEST_TOML / 2**20, hint="put large outlines in WKT, GeoJSON or DXF"
+            "The text is longer than {limit:g} MiB",
+            limit=LARGEST_TOML / 2**20,
+            hint="use WKT, GeoJSON or DXF for large outlines",
         )
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:  # its words name line and column
-        raise BodyFileError("is not TOML: {reason}", reason=str(error)) from error
+    except tomllib.TOMLDecodeError as error:  # its text contains line and column
+        raise BodyFileError("Invalid TOML: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
-        raise BodyFileError("is not TOML that can be read: {reason}", reason=str(error).partition(";")[0]) from error
+        raise BodyFileError("Unreadable TOML: {reason}", reason=str(error).partition(";")[0]) from error
 
 
 def _block(table: "schema.BlockTable", scale: float) -> Body:
@@ -110,7 +111,7 @@ def _block(table: "schema.BlockTable", scale: float) -> Body:
 def _shape(document: "schema.BodyFile", scale: float) -> Section:
     from rocking.bodies.formats import schema
 
-    kind = next(each for each in _OUTLINES if getattr(document, each))  # the schema lets exactly one table through
+    kind = next(name for name in _OUTLINES if getattr(document, name))  # the schema allows exactly one table
     table: schema.ShapeTable = getattr(document, kind)
     sizes = table.model_dump(exclude=set(schema.ShapeTable.model_fields))
     with located(kind):
@@ -123,7 +124,7 @@ _OUTLINES: dict[str, Callable[..., FloatArray]] = {
     "ellipse": shapes.ellipse,
     "regular_polygon": shapes.regular_polygon,
 }
-"""Shapes of which the keys of their tables are the arguments: lengths, and `sides`."""
+"""Functions for outlines; their arguments are the keys of the tables: lengths, and `sides`."""
 
 
 def _options(table: "schema.ShapeTable", scale: float) -> dict[str, Any]:
@@ -157,44 +158,44 @@ def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
 def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> Section:
     scale = length_unit(units)
     regions: list[Region] = []
-    for i, part in enumerate(table.region):
+    for i, region_table in enumerate(table.region):
         with located(f"section.region[{i}]"):
-            regions += _regions(part, units, folder)
+            regions += _regions(region_table, units, folder)
         check_count(sum(len(ring) for region in regions for ring in region.rings))
     with located("section"):
         depth = 1.0 if table.depth is None else table.depth * scale
-        known, feet = _known(table, scale), _pair(table.feet, scale)
-        return Section(regions, feet, depth=depth, ground=table.ground * scale, **known)
+        options, feet = _known(table, scale), _pair(table.feet, scale)
+        return Section(regions, feet, depth=depth, ground=table.ground * scale, **options)
 
 
 def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> list[Region]:
     density = DEFAULT_DENSITY if table.density is None else table.density
-    own = table.units or units
+    units_of_region = table.units or units
     if table.wkt is not None:
-        return regions_from_wkt(table.wkt, density, units=own, name="wkt")
+        return regions_from_wkt(table.wkt, density, units=units_of_region, name="wkt")
     if table.geojson is not None:
         path = beside(folder, table.geojson)
         with located(path.name, "file"):
             text = read_text(path)
-        return regions_from_geojson(text, density, units=own, name=path.name)
+        return regions_from_geojson(text, density, units=units_of_region, name=path.name)
     if table.dxf is not None:
-        return regions_from_dxf(beside(folder, table.dxf), density, units=own, layers=table.layers)
+        return regions_from_dxf(beside(folder, table.dxf), density, units=units_of_region, layers=table.layers)
     scale = length_unit(units)
     outline, *holes = (np.array(ring) * scale for ring in (table.outline or [], *(table.holes or ())))
     return [Region(outline, density, holes)]
 
 
 def beside(folder: Path | None, name: str) -> Path:
-    """Return the path of a file that a body file names: below its own folder, wherever the text came from."""
+    """Return the path of a file that a body file names; refuse files outside its folder."""
     if folder is None:
-        raise BodyFileError("names the file {file!r}, but text without a folder cannot name files", file=name)
+        raise BodyFileError("The file {file!r} is not allowed in a text without a folder.", file=name)
     try:
         root = folder.resolve()
         path = (root / name).resolve()
     except (OSError, ValueError, RuntimeError) as error:
-        raise BodyFileError("the file name {file!r} cannot be used", file=name) from error
+        raise BodyFileError("Invalid file name {file!r}.", file=name) from error
     if not path.is_relative_to(root):
-        raise BodyFileError("the file {file!r} must lie in the folder of the body file or below it", file=name)
+        raise BodyFileError("The file {file!r} must be in the folder of the body file or below.", file=name)
     return path
 
 
@@ -202,16 +203,15 @@ def _pair(values: list[float] | None, scale: float) -> tuple[float, float] | Non
     return None if values is None else (values[0] * scale, values[1] * scale)
 
 
-_Places = dict[float, float]
+_Coordinates = dict[float, float]
 
 
 @singledispatch
 def body_to_toml(body: Body) -> str:
-    """Return the text of a body file that describes a body.
+    """Return a body as the text of a body file.
 
-    Reading it gives the same numbers to the last bit. Only a `Section` that was mirrored or scaled may come back
-    with its last bits changed; and one that was scaled down so far from its origin that its coordinates cannot
-    hold it is written about its own origin, which the text says.
+    The text contains the same numbers to the last bit. Only a mirrored or scaled `Section` can differ in the last bits.
+    A small `Section` far from its origin is written about its own origin, with a comment.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def body_to_toml(body: Body) -> str:
     Raises
     ------
     InvalidValueError
-        If this kind of body cannot be written.
+        If the file format has no table for this type of body.
 
     Examples
     --------
@@ -240,7 +240,7 @@ def body_to_toml(body: Body) -> str:
     density = 2400.0
     <BLANKLINE>
     """
-    raise InvalidValueError("a {type} body cannot be written as a body file", type=type(body).__name__)
+    raise InvalidValueError("A {type} body has no body file.", type=type(body).__name__)
 
 
 @body_to_toml.register
@@ -273,55 +273,57 @@ def _(body: Section) -> str:
 
 
 def _known_of(body: Block | Section, x: float, y: float) -> list[str]:
-    """Return the lines of what is known of a body, the centre seen from an origin at (-x, -y) [m]."""
-    known = body.known
+    """Return the lines of the known values of a body, the centre relative to the origin (-x, -y) [m]."""
+    values = body.known
     lines = []
-    if known is not None and known.centre is not None:
-        place = (next(_preimages(c, shift), c + shift) for c, shift in zip(known.centre, (x, y), strict=True))
-        lines.append(f"centre = {_row(list(place))}")
-    if known is not None and known.moment_of_inertia is not None:
-        lines.append(f"moment_of_inertia = {_number(known.moment_of_inertia)}")
+    if values is not None and values.centre is not None:
+        centre = (next(_preimages(c, shift), c + shift) for c, shift in zip(values.centre, (x, y), strict=True))
+        lines.append(f"centre = {_row(list(centre))}")
+    if values is not None and values.moment_of_inertia is not None:
+        lines.append(f"moment_of_inertia = {_number(values.moment_of_inertia)}")
     return lines
 
 
-def _coordinates(body: Section) -> tuple[list[str], _Places, _Places]:
-    """Return remarks, and the user's coordinate of every local one."""
+def _coordinates(body: Section) -> tuple[list[str], _Coordinates, _Coordinates]:
+    """Return comments, and the user's coordinates by local x and by local y [m]."""
     rings = [ring for region in body.regions for ring in region.rings]
     x = np.unique(np.concatenate([*(ring[:, 0] for ring in rings), body.local_feet]))
     y = np.unique(np.concatenate([ring[:, 1] for ring in rings]))
     low, _, high, _ = body.local_box
-    there_x, there_y = _placed(x, body.origin_x), _placed(y, body.ground)
-    _keep_middle(there_x, low, high, body.origin_x)
-    held = all(
-        b - shift == a for there, shift in ((there_x, body.origin_x), (there_y, body.ground)) for a, b in there.items()
+    user_x, user_y = _placed(x, body.origin_x), _placed(y, body.ground)
+    _keep_middle(user_x, low, high, body.origin_x)
+    is_exact = all(
+        b - shift == a
+        for user_values, shift in ((user_x, body.origin_x), (user_y, body.ground))
+        for a, b in user_values.items()
     )
-    coarse = max(math.ulp(body.origin_x), math.ulp(body.ground)) > 1e-12 * (high - low)
-    if held or not coarse:
-        return [], there_x, there_y
+    is_coarse = max(math.ulp(body.origin_x), math.ulp(body.ground)) > 1e-12 * (high - low)
+    if is_exact or not is_coarse:
+        return [], user_x, user_y
     remark = f"# about its own origin, x = {body.origin_x!r} m, y = {body.ground!r} m"
     return [remark], _placed(x, 0.0), _placed(y, 0.0)
 
 
-def _placed(values: FloatArray, shift: float) -> _Places:
-    """Return for each local value the nearest number that the reader will turn into it by subtracting `shift`."""
+def _placed(values: FloatArray, shift: float) -> _Coordinates:
+    """Return, by local value, the nearest number u with u - shift == value in floating point."""
     return {value: next(_preimages(value, shift), value + shift) for value in values.tolist()}
 
 
 def _preimages(value: float, shift: float) -> Iterator[float]:
     """Yield numbers u near value + shift with u - shift == value in floating point."""
-    guess = value + shift
-    fine = math.ulp(value)
-    near = [guess, math.nextafter(guess, math.inf), math.nextafter(guess, -math.inf)]
-    near += [guess + k * fine for k in (0.25, -0.25, 0.5, -0.5)]
-    return (u for u in near if u - shift == value)
+    nearest = value + shift
+    ulp = math.ulp(value)
+    candidates = [nearest, math.nextafter(nearest, math.inf), math.nextafter(nearest, -math.inf)]
+    candidates += [nearest + k * ulp for k in (0.25, -0.25, 0.5, -0.5)]
+    return (u for u in candidates if u - shift == value)
 
 
-def _keep_middle(places: _Places, low: float, high: float, origin: float) -> None:
-    """Choose the ends so that the middle of the box, the local origin, comes out the same to the last bit."""
+def _keep_middle(coordinates: _Coordinates, low: float, high: float, origin: float) -> None:
+    """Choose the ends of the box with a middle equal to the local origin to the last bit."""
     for a in _preimages(low, origin):
         for b in _preimages(high, origin):
             if 0.5 * (a + b) == origin:
-                places[low], places[high] = a, b
+                coordinates[low], coordinates[high] = a, b
                 return
 
 

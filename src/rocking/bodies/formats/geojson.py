@@ -1,7 +1,6 @@
 """GeoJSON (RFC 7946) as a drawing: polygons in a plane, y up, with a density as a property.
 
-Coordinate reference systems are not interpreted: RFC 7946 means longitude and latitude in degrees, but a body is
-drawn in lengths. Positions are taken as (x, y) in `units`, and a ``crs`` member is ignored.
+The coordinates are lengths (x, y) in `units`, not longitude and latitude. A ``crs`` member is ignored.
 """
 
 import json
@@ -18,8 +17,8 @@ from rocking.bodies.section import Section
 from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError, located
 
-DEEPEST = 16  # collections nested deeper are refused
-_Found = tuple[str, list[Any], float]
+DEEPEST = 16  # largest depth of nested collections
+_LocatedPolygon = tuple[str, list[Any], float]
 
 
 def section_from_geojson(
@@ -30,18 +29,18 @@ def section_from_geojson(
     name: str = "GeoJSON",
     **placement: Unpack[Placement],
 ) -> Section:
-    """Return the section that GeoJSON describes; coordinate reference systems are not interpreted.
+    """Return the section from GeoJSON, without coordinate reference systems.
 
     Parameters
     ----------
     source : str or dict
         Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, as text or parsed; y up.
     density : float
-        Density of what has no property ``density`` of its own [kg/m3].
+        Density of features without a property ``density`` [kg/m3].
     units : {"m", "cm", "mm", "ft", "in"}
         Unit of the coordinates; never degrees.
     name : str
-        Name that errors show.
+        Name of the text in error messages.
     **placement
         ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; always in m.
 
@@ -53,11 +52,11 @@ def section_from_geojson(
     Raises
     ------
     BodyFileError
-        If it is not GeoJSON, or is not made of plane polygons.
+        If the text is not GeoJSON, or contains other geometries than 2D polygons.
     GeometryError
         If the polygons do not describe a body.
     InvalidValueError
-        If a density or the unit is refused.
+        If a density or the unit is invalid.
 
     Examples
     --------
@@ -77,20 +76,20 @@ def regions_from_geojson(
     units: str = "m",
     name: str = "GeoJSON",
 ) -> list[Region]:
-    """Return the polygons that GeoJSON describes, in its order; coordinate reference systems are not interpreted."""
+    """Return the polygons of GeoJSON in their order, without coordinate reference systems."""
     with located(name, "file"):
         scale = checks.length_unit(units)
-        given = _parsed(source) if isinstance(source, str) else source
+        document = _parsed(source) if isinstance(source, str) else source
         regions, vertices = [], 0
-        for where, coordinates, value in _polygons(given, "", density, 0):
-            with located(where):
+        for location, coordinates, value in _polygons(document, "", density, 0):
+            with located(location):
                 rings = [_ring(ring, f"coordinates[{i}]") for i, ring in enumerate(coordinates)]
                 vertices += sum(map(len, rings))
                 check_count(vertices)
                 outline, *holes = (ring * scale for ring in rings)
                 regions.append(Region(outline, value, holes))
         if not regions:
-            raise BodyFileError("holds no polygon")
+            raise BodyFileError("The text contains no polygon.")
         return regions
 
 
@@ -98,64 +97,66 @@ def _parsed(text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
-        raise BodyFileError("is not JSON: {reason}", reason=str(error)) from error
+        raise BodyFileError("Invalid JSON: {reason}", reason=str(error)) from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
-        raise BodyFileError("is not JSON that can be read: {reason}", reason=str(error).partition(";")[0]) from error
+        raise BodyFileError("Unreadable JSON: {reason}", reason=str(error).partition(";")[0]) from error
 
 
-def _refuse_constant(word: str) -> NoReturn:
-    raise BodyFileError("holds {constant}", constant=word, hint="every number must be finite")
+def _refuse_constant(constant: str) -> NoReturn:
+    raise BodyFileError("The value {constant} is not allowed", constant=constant, hint="use finite numbers")
 
 
-def _polygons(thing: Any, where: str, density: Any, depth: int) -> Iterator[_Found]:
-    """Walk down to the polygons, with the place for errors and the density that applies."""
+def _polygons(member: Any, location: str, density: Any, depth: int) -> Iterator[_LocatedPolygon]:
+    """Yield location, rings and density of all polygons in a member."""
     if depth > DEEPEST:
-        raise BodyFileError("is nested more than {limit} collections deep", limit=DEEPEST)
-    kind = _member(thing, "type", where)
+        raise BodyFileError("The collections are nested more than {limit} deep.", limit=DEEPEST)
+    kind = _member(member, "type", location)
     if kind == "FeatureCollection":
-        yield from _each(thing, "features", where, density, depth)
+        yield from _polygons_of_list(member, "features", location, density, depth)
     elif kind == "GeometryCollection":
-        yield from _each(thing, "geometries", where, density, depth)
+        yield from _polygons_of_list(member, "geometries", location, density, depth)
     elif kind == "Feature":
-        own = _own_density(thing.get("properties"), where, density)
-        yield from _polygons(_member(thing, "geometry", where), _join(where, "geometry"), own, depth + 1)
+        own_density = _own_density(member.get("properties"), location, density)
+        yield from _polygons(_member(member, "geometry", location), _join(location, "geometry"), own_density, depth + 1)
     elif kind == "Polygon":
-        yield where or kind, _list(thing, "coordinates", where), density
+        yield location or kind, _list(member, "coordinates", location), density
     elif kind == "MultiPolygon":
-        for i, rings in enumerate(_list(thing, "coordinates", where)):
-            place = _join(where, f"coordinates[{i}]")
+        for i, rings in enumerate(_list(member, "coordinates", location)):
+            location_of_rings = _join(location, f"coordinates[{i}]")
             if not isinstance(rings, (list, tuple)) or not rings:
                 raise BodyFileError(
-                    "{member} must be a list of rings, got {content}", member=place, content=_short(rings)
+                    "{member} must be a list of rings, got {content}", member=location_of_rings, content=_short(rings)
                 )
-            yield place, list(rings), density
+            yield location_of_rings, list(rings), density
     else:
         raise BodyFileError(
             "{member} must be Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, got {content}",
-            member=_join(where, "type"), content=_short(kind),
+            member=_join(location, "type"), content=_short(kind),
         )  # fmt: skip
 
 
-def _each(thing: Any, key: str, where: str, density: Any, depth: int) -> Iterator[_Found]:
-    for i, part in enumerate(_list(thing, key, where)):
-        yield from _polygons(part, _join(where, f"{key}[{i}]"), density, depth + 1)
+def _polygons_of_list(parent: Any, key: str, location: str, density: Any, depth: int) -> Iterator[_LocatedPolygon]:
+    for i, member in enumerate(_list(parent, key, location)):
+        yield from _polygons(member, _join(location, f"{key}[{i}]"), density, depth + 1)
 
 
-def _own_density(properties: Any, where: str, default: Any) -> Any:
+def _own_density(properties: Any, location: str, default: Any) -> Any:
     if properties is None:
         return default
     if not isinstance(properties, Mapping):
         raise BodyFileError(
-            "{member} must be an object, got {content}", member=_join(where, "properties"), content=_short(properties)
+            "{member} must be an object, got {content}",
+            member=_join(location, "properties"),
+            content=_short(properties),
         )
     own = properties.get("density")
-    return default if own is None else checks.density(_join(where, "properties.density"), own)
+    return default if own is None else checks.density(_join(location, "properties.density"), own)
 
 
 def _ring(positions: Any, name: str) -> FloatArray:
     if not isinstance(positions, (list, tuple)) or len(positions) < 4:
         raise BodyFileError(
-            "{member} must be a ring of at least 4 positions, the last one equal to the first", member=name
+            "{member} must be a ring of at least 4 positions with equal first and last positions", member=name
         )
     points = [_position(p, f"{name}[{i}]") for i, p in enumerate(positions)]
     if points[0] != points[-1]:
@@ -173,29 +174,34 @@ def _position(position: Any, name: str) -> tuple[float, float]:
     return checks.number(f"{name}[0]", position[0]), checks.number(f"{name}[1]", position[1])
 
 
-def _member(thing: Any, key: str, where: str) -> Any:
-    if not isinstance(thing, Mapping):
+def _member(parent: Any, key: str, location: str) -> Any:
+    if not isinstance(parent, Mapping):
         raise BodyFileError(
-            "{member} must be a GeoJSON object, got {content}", member=where or "the document", content=_short(thing)
+            "{member} must be a GeoJSON object, got {content}",
+            member=location or "the document",
+            content=_short(parent),
         )
-    if key not in thing:
+    if key not in parent:
         raise BodyFileError(
-            "{member} has no member {key!r}", member=where or "the document", key=key, hint="is it GeoJSON?"
+            "{member} has no member {key!r}",
+            member=location or "the document",
+            key=key,
+            hint="check that the text is GeoJSON",
         )
-    return thing[key]
+    return parent[key]
 
 
-def _list(thing: Any, key: str, where: str) -> list[Any]:
-    value = _member(thing, key, where)
+def _list(parent: Any, key: str, location: str) -> list[Any]:
+    value = _member(parent, key, location)
     if not isinstance(value, (list, tuple)) or not value:
         raise BodyFileError(
-            "{member} must be a list that is not empty, got {content}", member=_join(where, key), content=_short(value)
+            "{member} must be a nonempty list, got {content}", member=_join(location, key), content=_short(value)
         )
     return list(value)
 
 
-def _join(where: str, key: str) -> str:
-    return f"{where}.{key}" if where else key
+def _join(location: str, key: str) -> str:
+    return f"{location}.{key}" if location else key
 
 
 def _short(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""Read a body from a file: the suffix says which format, and the units are never guessed."""
+"""Reading of bodies from files; the extension selects the format, and units are explicit."""
 
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
@@ -29,7 +29,7 @@ T = TypeVar("T")
 
 
 class MeshOptions(TypedDict, total=False):
-    """How a mesh is read and stands."""
+    """Options for reading a mesh and for its pose."""
 
     up: str | ArrayLike | None
     repair: Repair
@@ -40,7 +40,7 @@ class MeshOptions(TypedDict, total=False):
 
 
 class KnownOptions(TypedDict, total=False):
-    """What is known beside the shape: as `Section` takes it of drawings, and `Solid` of meshes."""
+    """Known values, as in `Section` for drawings, and as in `Solid` for meshes."""
 
     mass: float | None
     centre: Any
@@ -52,12 +52,12 @@ KNOWN = tuple(KnownOptions.__annotations__)
 
 
 class Options(Placement, MeshOptions, KnownOptions, total=False):
-    """What `read_body` takes beside unit and density."""
+    """Further options of `read_body`."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for: a file, a unit, a density [kg/m3], and how the body is read and stands."""
+    """Arguments of `read_body`: file, unit, density [kg/m3] and options."""
 
     path: Path
     units: str | None
@@ -65,63 +65,71 @@ class Request:
     options: Options
 
     @property
-    def some_density(self) -> float:
-        """The density, by default that of plain concrete [kg/m3]."""
+    def density_or_default(self) -> float:
+        """Density, by default that of plain concrete [kg/m3]."""
         return DEFAULT_DENSITY if self.density is None else self.density
 
-    def given(self, names: Iterable[str]) -> str:
-        """Return which of some options were given, in words."""
-        asked: dict[str, Any] = {"density": self.density, **self.options}
-        return ", ".join(name for name in names if asked.get(name) is not None)
+    def stated(self, names: Iterable[str]) -> str:
+        """Return the stated options among the names, as a text."""
+        stated: dict[str, Any] = {"density": self.density, **self.options}
+        return ", ".join(name for name in names if stated.get(name) is not None)
 
 
 def read_body(
     path: str | Path, *, units: str | None = None, density: float | None = None, **options: Unpack[Options]
 ) -> Body | Solid:
-    r"""Return the body that a file describes, plane or in space.
+    r"""Return the 2D or 3D body from a file.
 
     Parameters
     ----------
     path : str or Path
-        Of plane bodies a TOML body file, WKT (.wkt), GeoJSON (.geojson, .json) or DXF drawing (.dxf); of solids TOML
-        with a table [solid], a surface mesh (.stl, .obj, .ply, .glb), or a cloud of points (.ply, .xyz).
+        2D bodies: TOML body file, WKT (.wkt), GeoJSON (.geojson, .json) or DXF drawing (.dxf). 3D bodies: TOML with a
+        table [solid], surface mesh (.stl, .obj, .ply, .glb), or point cloud (.ply, .xyz).
     units : {"m", "cm", "mm", "ft", "in"}, optional
-        Unit of the coordinates: needed for WKT, GeoJSON, STL, OBJ and PLY, and for a drawing that does not state its
-        unit; GLB is in m by its specification. A unit that contradicts the file is refused.
+        Unit of the coordinates, required for WKT, GeoJSON, STL, OBJ and PLY, and for a drawing without a unit. GLB is
+        in m by its specification. The unit must not contradict the file.
     density : float, optional
-        Density of what has none of its own, TOML apart [kg/m3]; plain concrete if not given.
+        Density of bodies and parts without a density, not for TOML [kg/m3]; the default is that of plain concrete.
     **options
-        Of drawings ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; a drawing stands on its lowest
-        point if ``ground`` is not given. Of meshes ``up``, the axis that points up, "z", "y" or a direction (x, y, z)
-        in the file ("z" if not given, but for GLB "y", by its specification); ``repair``, what may be mended:
-        "none", "safe" (if not given: what changes at most 1 % of the volume and moves the centre by at most 0.5 % of
-        the size, open bottoms and small holes closed, folds smoothed, dust left out) or "all"; ``surface``, "faces", or
-        a skin over its points alone, "wrap" (if not given: of files that hold points alone), or their "hull";
-        ``wall``, how thick it is where it is hollow [m]; ``inner_parts``, how closed parts inside another one that
-        are wound like it are read: "solid", "cavity" or "refuse" (if not given: refused where the two readings differ
-        by more than 1 % of the volume); and ``base_tolerance`` [m]: vertices this close to the lowest
-        one touch the ground. A mesh that does not stand as it is in the file is let down from there until it rests. Of
-        both ``mass`` [kg] and ``centre`` [m] where they are known, of drawings ``moment_of_inertia`` [kg m2], as for
-        `Section`, and of meshes ``inertia`` [kg m2], as for `Solid`.
+        Known values: ``mass`` [kg] and ``centre`` [m], for drawings ``moment_of_inertia`` [kg m2] as in `Section`, for
+        meshes ``inertia`` [kg m2] as in `Solid`. The other options of drawings are ``feet``, ``depth`` and ``ground``
+        [m], as in `Section`; the default ground is the lowest point. The other options of meshes are in the notes.
 
     Returns
     -------
     Body or Solid
-        Block, Section or MassPoints; or a `Solid`, with its `name` and a sentence in `repairs` for each change of a
-        mesh and each doubt about it.
+        Block, Section, MassPoints, or a `Solid` with its `name`. `repairs` of a solid contains one sentence for each
+        change of the mesh and for each doubt about the mesh.
 
     Raises
     ------
     BodyFileError
-        If the file cannot be read as a body.
+        If the file does not contain a readable body.
     GeometryError
-        If its shapes do not describe a body, or a mesh cannot be closed safely: the message says where it is open.
+        If the shapes do not form a body, or a safe repair of a mesh is impossible. The message locates the opening.
     InvalidValueError
-        If one of its numbers, or the unit, is outside its range.
+        If a number or the unit is outside its range.
     MissingExtraError
-        If it is a drawing or a mesh and ezdxf or trimesh is not installed.
+        If ezdxf (for drawings) or trimesh (for meshes) is not installed.
     TypeError
-        If there is no such keyword.
+        If a keyword is unknown.
+
+    Notes
+    -----
+    Options of meshes:
+
+    - ``up``: upward axis "z" or "y", or upward direction (x, y, z), in the file. The default is "z", for GLB "y".
+    - ``repair``: allowed repairs "none", "safe" (default) or "all". Safe repairs change at most 1 % of the volume and
+      move the centre by at most 0.5 % of the size. They close open bottoms and small holes, smooth folds, and remove
+      small loose pieces.
+    - ``surface``: "faces" of the mesh, "wrap" (a skin around the points), or convex "hull" of the points. The default
+      is "faces", for files with points only "wrap".
+    - ``wall``: wall thickness of a hollow body [m].
+    - ``inner_parts``: closed parts inside another part with the same orientation are "solid" or "cavity". The default
+      "refuse" is an error if the two choices differ by more than 1 % of the volume.
+    - ``base_tolerance``: largest height of contact points above the lowest vertex [m].
+
+    A mesh that is not stable in the pose of the file is lowered from there to a stable pose.
 
     Examples
     --------
@@ -134,21 +142,21 @@ def read_body(
     ...     read_body(crate, units="mm", density=800.0).mass, round(read_body(drum).mass, 6)
     (1600.0, 3141.592654)
     """
-    found: Body | Solid = _read(path, units, density, options, FORMATS)
-    return found
+    body: Body | Solid = _read(path, units, density, options, FORMATS)
+    return body
 
 
 def read_plane_body(path: str | Path, *, units: str | None = None, density: float | None = None) -> Body:
-    """Return the plane body that a file describes; a body in space is refused before it is read.
+    """Return the 2D body from a file; refuse a 3D body before reading it.
 
     Parameters
     ----------
     path : str or Path
         TOML body file, WKT, GeoJSON or DXF drawing.
     units : {"m", "cm", "mm", "ft", "in"}, optional
-        As of `read_body`.
+        As in `read_body`.
     density : float, optional
-        As of `read_body` [kg/m3].
+        As in `read_body` [kg/m3].
 
     Returns
     -------
@@ -158,20 +166,22 @@ def read_plane_body(path: str | Path, *, units: str | None = None, density: floa
     Raises
     ------
     BodyFileError
-        If the file cannot be read as a plane body.
+        If the file does not contain a readable 2D body.
     """
-    found: Body = _read(path, units, density, {}, PLANE)
-    return found
+    body: Body = _read(path, units, density, {}, PLANE)
+    return body
 
 
 def _read(path: Any, units: str | None, density: float | None, options: Options, formats: Mapping[str, Any]) -> Any:
     try:
         path = Path(path)
     except TypeError as error:
-        raise BodyFileError("a body file is given by its path, got {value}", parameter="path", value=path) from error
+        raise BodyFileError(
+            "path must be the path of a body file, got {value}", parameter="path", value=path
+        ) from error
     reader = formats.get(path.suffix.lower())
     if reader is None:
-        raise BodyFileError("the name must end in {extensions}", extensions=", ".join(formats)).at(path.name)
+        raise BodyFileError("Unsupported file. Use {extensions}.", extensions=", ".join(formats)).at(path.name)
     if unknown := options.keys() - Options.__annotations__.keys():
         raise TypeError(f"read_body() has no {', '.join(sorted(unknown))}")
     with readable(path):
@@ -179,17 +189,17 @@ def _read(path: Any, units: str | None, density: float | None, options: Options,
 
 
 def describes_solid(path: str | Path) -> bool:
-    """Return whether a file is one of a body in space: by its ending a mesh, or TOML with a table [solid].
+    """Return True for the file of a 3D body: a mesh by its extension, or TOML with a table [solid].
 
     Parameters
     ----------
     path : str or Path
-        The file; one that cannot be read as TOML is none.
+        File; the result for unreadable TOML is False.
 
     Returns
     -------
     bool
-        Whether `read_body` would return a `Solid`.
+        True if `read_body` returns a `Solid` for this file.
 
     Examples
     --------
@@ -217,13 +227,15 @@ def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     path = request.path
     with located(path.name, "file"):
         text = read_text(path, LARGEST_TOML)
-        if given := request.given(("density", *Options.__annotations__)):
-            raise BodyFileError("a TOML body file states {options} itself", options=given, hint="change it there")
+        if refused := request.stated(("density", *Options.__annotations__)):
+            raise BodyFileError("{options} is not allowed with a TOML body file", options=refused, hint="edit the file")
     body = read(text, path.name, path.parent)
     stated = tomllib.loads(text)["units"]
     if request.units not in (None, stated):
         raise BodyFileError(
-            'states units = "{stated}", but units = "{units}" was asked for', stated=stated, units=request.units
+            'The file has units = "{stated}", but units = "{units}" is requested. Remove units.',
+            stated=stated,
+            units=request.units,
         ).at(path.name)
     return body
 
@@ -232,40 +244,36 @@ def _text(request: Request, read: Callable[..., list[Region]]) -> Section:
     name = request.path.name
     with located(name, "file"):
         if request.units is None:
-            raise BodyFileError("does not state its unit", hint=unit_to_state())
+            raise BodyFileError("The file states no unit", hint=unit_to_state())
         text = read_text(request.path)
-    return _standing(read(text, request.some_density, units=request.units, name=name), request)
+    return _standing(read(text, request.density_or_default, units=request.units, name=name), request)
 
 
 def _standing(regions: list[Region], request: Request) -> Section:
     lowest = min(float(region.outline[:, 1].min()) for region in regions)
     with located(request.path.name, "file"):
-        if given := request.given((*MeshOptions.__annotations__, "inertia")):
-            raise BodyFileError("is a drawing and takes no {options}: these are for meshes", options=given)
+        if refused := request.stated((*MeshOptions.__annotations__, "inertia")):
+            raise BodyFileError("A drawing does not accept {options}, which are for meshes.", options=refused)
         placement: Any = {"ground": lowest, **request.options}
-        taken = {*Placement.__annotations__, *KNOWN} - {"inertia"}
-        return Section(regions, **{key: value for key, value in placement.items() if key in taken})
+        allowed = {*Placement.__annotations__, *KNOWN} - {"inertia"}
+        return Section(regions, **{key: value for key, value in placement.items() if key in allowed})
 
 
 def _mesh(request: Request) -> Solid:
     path, kind = request.path, request.path.suffix[1:].lower()
     options: dict[str, Any] = {key: value for key, value in request.options.items() if value is not None}
     units, by_specification = request.units, kind == "glb"
-    if given := request.given((*Placement.__annotations__, "moment_of_inertia")):
-        raise BodyFileError("is a mesh, which stands on its lowest point and takes no {options}", options=given).at(
-            path.name
-        )
-    said = (("in m", units is None), ("with y up", "up" not in options)) if by_specification else ()
-    taken = [words for words, silent in said if silent]
+    if refused := request.stated((*Placement.__annotations__, "moment_of_inertia")):
+        raise BodyFileError("A mesh does not accept {options}, which are for drawings.", options=refused).at(path.name)
+    assumptions = (("in m", units is None), ("with y up", "up" not in options)) if by_specification else ()
+    assumed = [assumption for assumption, is_assumed in assumptions if is_assumed]
     density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)
     if units is None and not by_specification:
-        raise BodyFileError("{format} files do not state their unit", format=kind.upper(), hint=unit_to_state()).at(
-            path.name
-        )
+        raise BodyFileError("{format} files state no unit", format=kind.upper(), hint=unit_to_state()).at(path.name)
     options.setdefault("up", "y" if by_specification else "z")
     solid = solid_from_mesh(path, density, units=units or "m", **options)
-    if taken:
-        solid.repairs = (f"read {' and '.join(taken)}, as the specification of GLB says", *solid.repairs)
+    if assumed:
+        solid.repairs = (f"read {' and '.join(assumed)}, by the specification of GLB", *solid.repairs)
     return solid
 
 
@@ -273,13 +281,13 @@ PLANE: dict[str, Callable[[Request], Body]] = {
     ".toml": partial(_stated, read=body_from_toml),
     ".wkt": partial(_text, read=regions_from_wkt),
     **dict.fromkeys((".geojson", ".json"), partial(_text, read=regions_from_geojson)),
-    ".dxf": lambda asked: _standing(regions_from_dxf(asked.path, asked.some_density, units=asked.units), asked),
+    ".dxf": lambda r: _standing(regions_from_dxf(r.path, r.density_or_default, units=r.units), r),
 }
-"""Suffix and reader of plane bodies: a new format is one line here, or in `FORMATS` for a body in space."""
+"""Readers of 2D bodies by extension; a new format is one line here, or in `FORMATS` for 3D bodies."""
 
 FORMATS: dict[str, Callable[[Request], Body | Solid]] = {
     **PLANE,
     ".toml": _toml,
     **dict.fromkeys([f".{kind}" for kind in MESH_FORMATS], _mesh),
 }
-"""Suffix and reader of every body."""
+"""Readers of all bodies by extension."""

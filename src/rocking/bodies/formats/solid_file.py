@@ -1,4 +1,4 @@
-"""A body in space from the text of a TOML file: parts of simple shapes and of meshes, each in its place."""
+"""A 3D body from the text of a TOML file, with parts of simple shapes and of meshes."""
 
 import math
 from collections.abc import Callable
@@ -27,35 +27,34 @@ _FARTHEST = 1e8
 
 
 def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Solid:
-    r"""Return the body in space that the text of a file describes.
+    r"""Return the 3D body from the text of a file.
 
-    A part has one shape (box, cylinder, cone, frustum, sphere, ellipsoid, extrusion, revolution, mesh), a density
-    [kg/m3], turns about axes through the origin in the order that is written, and then its place `at`. The body stands
-    on its lowest point if the file states no ground.
+    A part has one shape (box, cylinder, cone, frustum, sphere, ellipsoid, extrusion, revolution, mesh) and a density
+    [kg/m3]. It is rotated about axes through the origin in the given order, and then moved to `at`. The default ground
+    is the lowest point.
 
     Parameters
     ----------
     text : str
         TOML.
     name : str
-        Name that errors show.
+        Name of the text in error messages.
     folder : str or Path, optional
-        Folder of the meshes that the text names; without it, text cannot name files.
+        Folder of the meshes that the text names. By default, the text must not name files.
 
     Returns
     -------
     Solid
-        The body, with its `name`, and in `repairs` what was done to its meshes.
+        Body with its `name`, and with the `repairs` of its meshes.
 
     Raises
     ------
     BodyFileError
-        If the text is not TOML, a key is unknown or missing, or a value is not of the kind or in the range
-        that its key needs.
+        If the text is not TOML, a key is unknown or missing, or a value has a wrong type or is outside its range.
     GeometryError
-        If the parts do not make a body that stands, or a mesh does not enclose a volume.
+        If the parts do not form a stable body, or a mesh does not enclose a volume.
     InvalidValueError
-        If a size or a density is beyond what a body can have.
+        If a size or a density is outside the range for bodies.
     MissingExtraError
         If the text names a mesh and trimesh is not installed.
 
@@ -107,26 +106,28 @@ def _part(table: "schema.PartTable", units: str, folder: Path | None, repairs: l
     return part if table.at is None else _moved(part, [scale * x for x in table.at])
 
 
-def _moved(part: Part, place: list[float]) -> Part:
+def _moved(part: Part, position: list[float]) -> Part:
     size = float(np.ptp(part.box(), axis=0).max())
-    if max(map(abs, place)) > _FARTHEST * size:
+    if max(map(abs, position)) > _FARTHEST * size:
         raise BodyFileError(
-            "{parameter} must be within {limit:g} times the size of its part, {size:.4g} m, got {largest:.4g} m: so "
-            "far away the shape is lost in rounding", parameter="at", value=place, limit=_FARTHEST, size=size,
-            largest=max(place, key=abs),
+            "{parameter} must be within {limit:g} x the size of its part, {size:.4g} m, got {largest:.4g} m. Larger "
+            "distances cause rounding errors.", parameter="at", value=position, limit=_FARTHEST, size=size,
+            largest=max(position, key=abs),
         )  # fmt: skip
-    return part.moved(*place)
+    return part.moved(*position)
 
 
 def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: float, repairs: list[str]) -> Part:
     path = beside(folder, table.file)
-    own = table.units or units
-    reach, wall = (None if x is None else x * length_unit(own) for x in (table.weld_tolerance, table.wall))
+    mesh_units = table.units or units
+    weld_tolerance, wall = (
+        None if x is None else x * length_unit(mesh_units) for x in (table.weld_tolerance, table.wall)
+    )
     mesh = mesh_from_file(
-        path, units=own, up=table.up, weld_tolerance=reach, repair=table.repair, surface=table.surface, wall=wall,
-        inner_parts=table.inner_parts,
+        path, units=mesh_units, up=table.up, weld_tolerance=weld_tolerance, repair=table.repair,
+        surface=table.surface, wall=wall, inner_parts=table.inner_parts,
     )  # fmt: skip
-    repairs += [Message("{file}: {repair}", {"file": path.name, "repair": words}) for words in mesh.repairs]
+    repairs += [Message("{file}: {repair}", {"file": path.name, "repair": repair}) for repair in mesh.repairs]
     return mesh.part(density)
 
 
@@ -155,4 +156,4 @@ _SIMPLE: dict[str, Callable[..., Shape]] = {
     "sphere": _sphere,
     "ellipsoid": ellipsoid,
 }
-"""Shapes whose sizes are all lengths: the keys of their tables are the arguments."""
+"""Functions for shapes; their arguments are the keys of the tables, all lengths."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from shapely import Polygon
     from shapely.geometry.base import BaseGeometry
 
-DEEPEST = 16  # collections nested deeper are refused, before GEOS would run out of stack
+DEEPEST = 16  # largest depth of nested collections, which protects the stack of GEOS
 
 
 def section_from_wkt(
@@ -27,18 +27,18 @@ def section_from_wkt(
     name: str = "WKT",
     **placement: Unpack[Placement],
 ) -> Section:
-    """Return the section that well-known text describes.
+    """Return the section from well-known text.
 
     Parameters
     ----------
     text : str
         POLYGON with holes, MULTIPOLYGON, or GEOMETRYCOLLECTION of those; y up.
     density : float or sequence of float
-        One density for all polygons, or one for each in order [kg/m3].
+        Density of all polygons, or densities of the polygons in order [kg/m3].
     units : {"m", "cm", "mm", "ft", "in"}
         Unit of the coordinates.
     name : str
-        Name that errors show.
+        Name of the text in error messages.
     **placement
         ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; always in m.
 
@@ -50,11 +50,11 @@ def section_from_wkt(
     Raises
     ------
     BodyFileError
-        If the text is not WKT, or is not made of plane polygons.
+        If the text is not WKT, or contains other geometries than 2D polygons.
     GeometryError
         If the polygons do not describe a body.
     InvalidValueError
-        If a density or the unit is refused.
+        If a density or the unit is invalid.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def regions_from_wkt(
     units: str = "m",
     name: str = "WKT",
 ) -> list[Region]:
-    """Return the polygons that well-known text describes, in its order."""
+    """Return the polygons of well-known text in their order."""
     with located(name, "file"):
         scale = length_unit(units)
         polygons = _polygons(_geometry(text))
@@ -89,43 +89,43 @@ def _geometry(text: Any) -> "BaseGeometry":
     import shapely
 
     if not isinstance(text, str) or not text.strip():
-        raise BodyFileError("has no text; it must be a POLYGON, MULTIPOLYGON or GEOMETRYCOLLECTION")
+        raise BodyFileError("The text is empty. Use a POLYGON, MULTIPOLYGON or GEOMETRYCOLLECTION.")
     if "\0" in text:
-        raise BodyFileError("is not WKT: it holds a NUL character")
+        raise BodyFileError("Invalid WKT: the text contains a NUL character.")
     if _depth(text) > DEEPEST:
-        raise BodyFileError("is nested more than {limit} brackets deep", limit=DEEPEST)
+        raise BodyFileError("The brackets are nested more than {limit} deep.", limit=DEEPEST)
     try:
-        with np.errstate(all="ignore"):  # the coordinates are checked afterwards, by name
+        with np.errstate(all="ignore"):  # the coordinates are checked later
             geometry: BaseGeometry = shapely.from_wkt(text.strip())
     except (shapely.errors.ShapelyError, NotImplementedError, UnicodeError) as error:
-        raise BodyFileError("is not WKT: {reason}", reason=_one_line(error)) from error
+        raise BodyFileError("Invalid WKT: {reason}", reason=_one_line(error)) from error
     if geometry.has_z or getattr(geometry, "has_m", False):
-        raise BodyFileError("has z or m coordinates; a section is plane, give x and y only")
+        raise BodyFileError("z and m coordinates are not allowed. Use x and y only.")
     check_count(int(shapely.get_num_coordinates(geometry)))
     return geometry
 
 
 def _polygons(geometry: "BaseGeometry") -> "list[Polygon]":
     if geometry.geom_type in {"MultiPolygon", "GeometryCollection"}:
-        found = [polygon for part in geometry.geoms for polygon in _polygons(part)]  # type: ignore[attr-defined]
-        if not found:
-            raise BodyFileError("the {geometry} is empty", geometry=geometry.geom_type.upper())
-        return found
+        polygons = [polygon for member in geometry.geoms for polygon in _polygons(member)]  # type: ignore[attr-defined]
+        if not polygons:
+            raise BodyFileError("The {geometry} is empty.", geometry=geometry.geom_type.upper())
+        return polygons
     if geometry.geom_type != "Polygon":
-        raise BodyFileError(
-            "a {geometry} encloses no area", geometry=geometry.geom_type.upper(), hint="a body is made of POLYGONs"
-        )
+        raise BodyFileError("A {geometry} encloses no area", geometry=geometry.geom_type.upper(), hint="use POLYGONs")
     if geometry.is_empty:
-        raise BodyFileError("the POLYGON is empty")
+        raise BodyFileError("The POLYGON is empty.")
     return [geometry]  # type: ignore[list-item]
 
 
 def _densities(density: Any, count: int) -> list[Any]:
     if isinstance(density, str) or not isinstance(density, (Sequence, np.ndarray)):
-        return [density] * count  # whatever it is, Region judges it
+        return [density] * count  # Region checks the value
     if len(density) != count:
         raise BodyFileError(
-            "has {count} polygon(s), but {densities} densities were given", count=count, densities=len(density)
+            "The number of densities must be 1 or the number of polygons, {count}, got {densities}.",
+            count=count,
+            densities=len(density),
         )
     return list(density)
 
@@ -139,5 +139,5 @@ def _depth(text: str) -> int:
 
 
 def _one_line(error: Exception) -> str:
-    words = " ".join(str(error).split()).split("Exception: ", 1)[-1]
-    return words if len(words) <= 120 else words[:117] + "..."
+    text = " ".join(str(error).split()).split("Exception: ", 1)[-1]
+    return text if len(text) <= 120 else text[:117] + "..."

@@ -1,4 +1,4 @@
-"""What all formats share: limits, reading a file, saying which file an error is about, and words for errors."""
+"""Common limits, file access and error texts of all formats."""
 
 import difflib
 import math
@@ -50,33 +50,33 @@ _UNITS = {
 }
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return the hint about an unknown word: the nearest known one and all that are allowed.
+def suggestion(word: str, names: Iterable[str]) -> str:
+    """Return the hint for an unknown name: the nearest allowed name, and all allowed names.
 
     >>> suggestion("heigth", ["height", "width"])
     'did you mean height? Allowed: height, width'
     """
-    known = list(known)
-    near = difflib.get_close_matches(word[:60], known, n=1)
-    allowed = ", ".join(known[:30])
+    names = list(names)
+    near = difflib.get_close_matches(word[:60], names, n=1)
+    allowed = ", ".join(names[:30])
     return f"did you mean {near[0]}? Allowed: {allowed}" if near else f"allowed: {allowed}"
 
 
 def from_pydantic(problems: "Sequence[ErrorDetails]", units: Any = None, kind: type[E] = InvalidValueError) -> E:  # type: ignore[assignment]
-    """Return the first error of a validation by pydantic as one of ours, with the number of the others."""
-    # units: unit of the lengths among the values
-    path, own = _path(problems[0]["loc"]), problems[0].get("ctx", {}).get("error")
-    if isinstance(own, RockingError):
-        made = own.copied(kind)
-        made.places = (*([Place(path, "key")] if path else []), *own.places)
+    """Return the first error of a pydantic validation as a `RockingError`, with the number of further errors."""
+    # units: unit of the lengths
+    path, cause = _path(problems[0]["loc"]), problems[0].get("ctx", {}).get("error")
+    if isinstance(cause, RockingError):
+        refusal = cause.copied(kind)
+        refusal.places = (*([Place(path, "key")] if path else []), *cause.places)
     else:
-        made = kind(**_stated(problems[0], path, units))
-    made.more = len(problems) - 1
-    return made
+        refusal = kind(**_stated(problems[0], path, units))
+    refusal.more = len(problems) - 1
+    return refusal
 
 
 def _stated(problem: "ErrorDetails", path: str, units: Any) -> dict[str, Any]:
-    """Return what `RockingError` takes, of an error of pydantic."""
+    """Return the keywords of `RockingError` for an error of pydantic."""
     kind, value, context, unit = problem["type"], problem["input"], problem.get("ctx", {}), _unit(problem["loc"], units)
     stated = {"parameter": path, "value": value}
     if kind in _TEXTS:
@@ -84,9 +84,9 @@ def _stated(problem: "ErrorDetails", path: str, units: Any) -> dict[str, Any]:
         return {**stated, **context, "text": _TEXTS[kind], "hint": hint}
     if kind in _KINDS:
         number = "number" in _KINDS[kind]
-        words = f"{_KINDS[kind]} [{unit}]" if unit and number else _KINDS[kind]
+        allowed_type = f"{_KINDS[kind]} [{unit}]" if unit and number else _KINDS[kind]
         hint = number_hint(value) if number and "whole" not in _KINDS[kind] and isinstance(value, str) else ""
-        return {**stated, "allowed": words, "hint": hint}
+        return {**stated, "allowed": allowed_type, "hint": hint}
     if kind in _BOUNDS:
         bound = float(context[_BOUNDS[kind]])
         low, high = (bound, math.inf) if kind in {"greater_than", "greater_than_equal"} else (-math.inf, bound)
@@ -99,39 +99,39 @@ def _stated(problem: "ErrorDetails", path: str, units: Any) -> dict[str, Any]:
     return {**stated, "text": "{parameter} is refused ({reason}), got {value}", "reason": problem["msg"]}
 
 
-UNITS_FIRST = f'add units = "m" or another of {", ".join(LENGTH_UNITS)}; units are never guessed'
+UNITS_FIRST = f'add units = "m", or one of {", ".join(LENGTH_UNITS)}'
 
 
 def unit_to_state() -> Message:
-    """Return the hint that a unit of length has to be stated."""
-    return Message("give {option}, one of {units}", {"option": Option("body.units"), "units": ", ".join(LENGTH_UNITS)})
+    """Return the hint for a missing length unit."""
+    return Message("add {option}, one of {units}", {"option": Option("body.units"), "units": ", ".join(LENGTH_UNITS)})
 
 
-def validated(kind: type[T], given: dict[str, Any]) -> T:
-    """Return the tables of a file as a model of pydantic, or refuse them in one sentence."""
+def validated(kind: type[T], tables: dict[str, Any]) -> T:
+    """Return the tables of a file as a pydantic model, or raise an error with one sentence."""
     from pydantic import ValidationError
 
     try:
-        return kind.model_validate(given)
+        return kind.model_validate(tables)
     except ValidationError as error:
-        raise from_pydantic(error.errors(include_url=False), given.get("units"), BodyFileError) from error
+        raise from_pydantic(error.errors(include_url=False), tables.get("units"), BodyFileError) from error
 
 
 def _path(loc: tuple[int | str, ...]) -> str:
-    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in loc).lstrip(".")
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in loc).lstrip(".")
 
 
 def _unit(loc: tuple[int | str, ...], units: Any) -> str:
-    unit = next((_UNITS[part] for part in loc if isinstance(part, str) and part in _UNITS), units)
+    unit = next((_UNITS[key] for key in loc if isinstance(key, str) and key in _UNITS), units)
     return unit if isinstance(unit, str) and unit in {*LENGTH_UNITS, *_UNITS.values()} else ""
 
 
-LARGEST_FILE = 64 * 2**20  # larger files are refused [byte]
-MOST_VERTICES = 1_000_000  # bodies with more vertices are refused [-]
+LARGEST_FILE = 64 * 2**20  # largest size of a body file [byte]
+MOST_VERTICES = 1_000_000  # largest number of vertices of a body [-]
 
 
 class Placement(TypedDict, total=False):
-    """How a drawn section stands: what `Section` takes beside its regions."""
+    """Feet, depth and ground of a section from a drawing, as in `Section`."""
 
     feet: tuple[float, float] | None
     depth: float
@@ -140,12 +140,12 @@ class Placement(TypedDict, total=False):
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Make a refusal of whatever else a body file provokes; where it came from stays chained.
+    """Convert any other exception during the reading of a body file into a BodyFileError, with its cause.
 
     >>> with readable(Path("drum.ply")):
     ...     raise IndexError("list index out of range")
     Traceback (most recent call last):
-    rocking.errors.BodyFileError: drum.ply: cannot be read (IndexError: list index out of range); damaged?
+    rocking.errors.BodyFileError: drum.ply: The file is unreadable (IndexError: list index out of range); repair it
     """
     try:
         yield
@@ -153,23 +153,26 @@ def readable(path: Path) -> Iterator[None]:
         raise
     except Exception as error:
         raise BodyFileError(
-            "cannot be read ({type}: {reason:.120})", type=type(error).__name__, reason=str(error), hint="damaged?"
+            "The file is unreadable ({type}: {reason:.120})",
+            type=type(error).__name__,
+            reason=str(error),
+            hint="repair it",
         ).at(path.name) from error
 
 
 def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
-    """Return the path of a regular file of acceptable size."""
+    """Return the path after a check of the file and its size."""
     try:
-        found, size = path.is_file(), path.stat().st_size
+        is_file, size = path.is_file(), path.stat().st_size
     except FileNotFoundError as error:
-        raise BodyFileError("there is no such file") from error
+        raise BodyFileError("The file does not exist.") from error
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
-        raise BodyFileError("cannot be opened ({reason})", reason=_why(error)) from error
-    if not found:
-        raise BodyFileError("is not a file")
+        raise BodyFileError("The file cannot be opened ({reason}).", reason=_reason(error)) from error
+    if not is_file:
+        raise BodyFileError("This is not a file.")
     if size > limit:
         raise BodyFileError(
-            "has {size:.1f} MiB; body files may have up to {limit:g} MiB", size=size / 2**20, limit=limit / 2**20
+            "A body file has at most {limit:g} MiB, got {size:.1f} MiB.", size=size / 2**20, limit=limit / 2**20
         )
     return path
 
@@ -179,19 +182,19 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     try:
         return checked_file(path, limit).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BodyFileError("is not UTF-8 text (byte {byte})", byte=error.start) from error
+        raise BodyFileError("The file is not UTF-8 text (byte {byte}).", byte=error.start) from error
     except OSError as error:
-        raise BodyFileError("cannot be opened ({reason})", reason=_why(error)) from error
+        raise BodyFileError("The file cannot be opened ({reason}).", reason=_reason(error)) from error
 
 
 def check_count(vertices: int) -> None:
-    """Refuse a body of more vertices than the limit."""
+    """Raise an error for too many vertices."""
     if vertices > MOST_VERTICES:
         raise BodyFileError(
-            "has {count} vertices; a body may have up to {limit}", count=vertices, limit=MOST_VERTICES,
+            "The body has {count} vertices; at most {limit} are allowed", count=vertices, limit=MOST_VERTICES,
             hint="simplify the outline",
         )  # fmt: skip
 
 
-def _why(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     return str(getattr(error, "strerror", None) or error)

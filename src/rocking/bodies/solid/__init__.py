@@ -1,4 +1,4 @@
-"""Bodies in space: parts of any shape and density on a base."""
+"""3D bodies: parts of any shape and density on a base."""
 
 from rocking.bodies.moments import SolidMoments as SolidMoments
 from rocking.bodies.solid.base import Base as Base

@@ -1,4 +1,4 @@
-"""What parts of a body may not contradict, and moments that somebody measured in place of those of the parts."""
+"""Checks of the moments of parts, and known moments in place of those of the parts."""
 
 import math
 from collections.abc import Sequence
@@ -20,34 +20,40 @@ _SLACK = 1e-6
 _DIRECTIONS = 64
 
 ASSUMED = Message(
-    "inertia assumed: along each axis the share of the most that its box allows about the known centre of mass that "
-    "the body of its parts has"
+    "inertia assumed: along each axis the same fraction of the largest possible value in the bounding box as for the "
+    "parts"
 )
 
 
-def known_moments(parts: Sequence[Part], own: SolidMoments, centre: FloatArray | None, inertia: Any) -> SolidMoments:
-    """Return the moments of parts with what is known in place of their own."""
+def known_moments(
+    parts: Sequence[Part], part_moments: SolidMoments, centre: FloatArray | None, inertia: Any
+) -> SolidMoments:
+    """Return the moments of parts with known values in place of their own."""
     # centre: in the frame of the parts [m]; inertia: tensor about the centre of mass, or principal moments along x, y
-    # and z [kg m2]. An inertia that is not known comes from second moments scaled along each axis as the greatest that
-    # masses between the ends of the body can have, ``m (c - low) (high - c)``.
-    place = own.centre if centre is None else centre
+    # and z [kg m2]. For an unknown inertia, the second moments are scaled along each axis like their largest possible
+    # value ``m (c - low) (high - c)``, with the ends low and high of the body.
+    centre_of_mass = part_moments.centre if centre is None else centre
     boxes = np.array([part.box() for part in parts])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    if not ((low < place) & (place < high)).all():
-        raise _misplaced(place - low, high - low)
+    if not ((low < centre_of_mass) & (centre_of_mass < high)).all():
+        raise _misplaced(centre_of_mass - low, high - low)
     if inertia is None:
-        share = np.sqrt((place - low) * (high - place) / ((own.centre - low) * (high - own.centre)))
-        found = SolidMoments(own.mass, place, own.second * np.outer(share, share))
+        fraction = np.sqrt(
+            (centre_of_mass - low)
+            * (high - centre_of_mass)
+            / ((part_moments.centre - low) * (high - part_moments.centre))
+        )
+        moments = SolidMoments(part_moments.mass, centre_of_mass, part_moments.second * np.outer(fraction, fraction))
     else:
-        found = SolidMoments(own.mass, place, _second(inertia))
-    share = _reached(parts, found, low, high - low, given=inertia is not None)
-    if share < 1.0 and inertia is None:  # what is assumed is no more than the body can have
-        return SolidMoments(own.mass, place, found.second * share)
-    return found
+        moments = SolidMoments(part_moments.mass, centre_of_mass, _second(inertia))
+    fraction = _reached(parts, moments, low, high - low, is_stated=inertia is not None)
+    if fraction < 1.0 and inertia is None:  # an assumed inertia must be possible for the body
+        return SolidMoments(part_moments.mass, centre_of_mass, moments.second * fraction)
+    return moments
 
 
 def _second(inertia: Any) -> FloatArray:
-    """Return the second moments that an inertia means, ``tr(I)/2 1 - I`` [kg m2]."""
+    """Return the second moments of an inertia, ``tr(I)/2 1 - I`` [kg m2]."""
     tensor = checks.real_array("inertia", inertia, "kg m2")
     tensor = np.diag(tensor) if tensor.shape == (3,) else tensor
     if (
@@ -56,25 +62,27 @@ def _second(inertia: Any) -> FloatArray:
         or np.abs(tensor - tensor.T).max() > _SLACK * abs(np.trace(tensor))
     ):
         raise GeometryError(
-            "inertia must be a symmetric tensor of 3 x 3 finite numbers [kg m2] about the centre of mass, or the "
-            "moments about x, y and z where these are principal axes"
+            "inertia must be a symmetric tensor of 3 x 3 finite numbers about the centre of mass [kg m2], or the "
+            "moments about x, y and z if these are principal axes"
         )
     second = 0.5 * float(np.trace(tensor)) * np.eye(3) - 0.5 * (tensor + tensor.T)
     spread = np.linalg.eigvalsh(second)
     if spread[2] <= 0.0 or spread[0] < -_SLACK * spread[2]:
         raise GeometryError(
-            "{parameter} breaks the triangle inequality: of the principal moments {moments} kg m2 none may exceed the "
-            "sum of the other two", parameter="inertia", moments=str(np.linalg.eigvalsh(tensor)),
-            hint="are products of inertia of the other sign?",
+            "{parameter} violates the triangle inequality: each of the principal moments {moments} kg m2 must be at "
+            "most the sum of the other two", parameter="inertia", moments=str(np.linalg.eigvalsh(tensor)),
+            hint="check the sign of the products of inertia",
         )  # fmt: skip
     return second
 
 
-def _reached(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, size: FloatArray, *, given: bool) -> float:
-    """Return which share of the second moments masses within the hull can have; refuse a centre outside of it."""
-    # In every direction they are at most ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
-    # variance", 2000); 64 directions are tried. given: refuse less than all of them.
-    share = 1.0
+def _reached(
+    parts: Sequence[Part], moments: SolidMoments, lowest: FloatArray, size: FloatArray, *, is_stated: bool
+) -> float:
+    """Return the possible fraction of the second moments for masses within the hull; refuse a centre outside."""
+    # The limit in every direction is ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
+    # variance", 2000). The check has 64 directions. is_stated: refuse a fraction below 1.
+    fraction = 1.0
     for direction in _directions():
         frame = _frame(direction)
         ends = np.array(
@@ -84,42 +92,45 @@ def _reached(parts: Sequence[Part], found: SolidMoments, lowest: FloatArray, siz
             ]
         )
         low, high = float(ends[:, 0].min()), float(ends[:, 1].max())
-        at = float(direction @ found.centre)
-        if not low < at < high:
-            raise _misplaced(found.centre - lowest, size)
-        spread, most = float(direction @ found.second @ direction), found.mass * (at - low) * (high - at)
-        if given and spread > most * (1.0 + _SLACK):
+        position = float(direction @ moments.centre)
+        if not low < position < high:
+            raise _misplaced(moments.centre - lowest, size)
+        moment, limit = (
+            float(direction @ moments.second @ direction),
+            moments.mass * (position - low) * (high - position),
+        )
+        if is_stated and moment > limit * (1.0 + _SLACK):
             raise GeometryError(
-                "{parameter} is more than any mass within the body can have: along {axis} the second moment must be "
-                "at most {limit:.6g} kg m2, got {moment:.6g}", parameter="inertia", axis=_at(direction), limit=most,
-                moment=spread,
-                hint="it is about the centre of mass: was it taken about another point, or in other units?",
+                "{parameter} is impossible for masses within the body: along {axis} the second moment must be at most "
+                "{limit:.6g} kg m2, got {moment:.6g}", parameter="inertia", axis=_at(direction), limit=limit,
+                moment=moment,
+                hint="check the unit, and that the inertia is about the centre of mass",
             )  # fmt: skip
-        share = min(share, most / spread if spread > 0.0 else 1.0)
-    return share
+        fraction = min(fraction, limit / moment if moment > 0.0 else 1.0)
+    return fraction
 
 
 def _directions() -> list[FloatArray]:
-    """Return the axes and directions spread evenly over half a sphere [-]."""
-    number = np.arange(_DIRECTIONS - 3) + 0.5
-    z, turn = number / len(number), math.pi * (1.0 + math.sqrt(5.0)) * number
-    flat = np.sqrt(1.0 - z * z)
-    return [*np.eye(3), *np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)]
+    """Return the axes and directions with a uniform distribution over half a sphere [-]."""
+    index = np.arange(_DIRECTIONS - 3) + 0.5
+    z, turn = index / len(index), math.pi * (1.0 + math.sqrt(5.0)) * index
+    radius = np.sqrt(1.0 - z * z)
+    return [*np.eye(3), *np.stack([radius * np.cos(turn), radius * np.sin(turn), z], axis=1)]
 
 
 def _frame(direction: FloatArray) -> FloatArray:
-    """Return a rotation that takes a direction with z >= 0 to z."""
+    """Return a rotation from a direction with z >= 0 to z."""
     axis = np.array([direction[1], -direction[0], 0.0])
     if not axis.any():
         return np.eye(3)
     return rotation_about(axis, math.acos(min(1.0, float(direction[2]))))
 
 
-def _misplaced(place: FloatArray, size: FloatArray) -> GeometryError:
+def _misplaced(position: FloatArray, size: FloatArray) -> GeometryError:
     return GeometryError(
         "the centre of mass must lie within the convex hull of the body, in its box of {size} m, got {centre} m from "
-        "the lowest corner of that", size=_at(size), centre=_at(place),
-        hint="was it measured from another origin, or in another unit?",
+        "the lowest corner of the box", size=_at(size), centre=_at(position),
+        hint="check the origin and the unit",
     )  # fmt: skip
 
 
@@ -132,19 +143,19 @@ def checked_centre(centre: Any, origin: FloatArray) -> FloatArray:
     return vector("centre", centre) - origin
 
 
-def similar(known: SolidMoments, matrix: FloatArray, size: float, density: float) -> SolidMoments:
-    """Return moments under a rotation or a mirror, all lengths times size and all densities times density [-]."""
+def similar(moments: SolidMoments, matrix: FloatArray, size: float, density: float) -> SolidMoments:
+    """Return the moments after a rotation or a reflection, with scale factors of lengths and densities [-]."""
     weight = density * size**3
-    second = times(times(matrix, known.second), matrix.T) * (weight * size**2)
-    return SolidMoments(known.mass * weight, applied(matrix, known.centre) * size, second)
+    second = times(times(matrix, moments.second), matrix.T) * (weight * size**2)
+    return SolidMoments(moments.mass * weight, applied(matrix, moments.centre) * size, second)
 
 
-GRID = 20  # points along each side of the box that two parts share; smaller overlaps than its cells may pass
+GRID = 20  # points along each side of the common box of two parts; smaller overlaps are not detected
 _SHARED = 1e-9
 
 
 def check_disjoint(parts: Sequence[Part]) -> None:
-    """Refuse parts that overlap; shared faces are welcome."""
+    """Refuse overlapping parts; common faces are allowed."""
     # two parts overlap if any of 20 x 20 x 20 points in the common box of both lies inside both
     boxes = np.array([part.box() for part in parts])
     for i in range(len(parts)):
@@ -155,8 +166,8 @@ def check_disjoint(parts: Sequence[Part]) -> None:
 
 
 def _check_pair(parts: Sequence[Part], pair: tuple[int, int], low: FloatArray, high: FloatArray) -> None:
-    share = (np.arange(GRID) + 0.5) / GRID
-    grid = np.stack(np.meshgrid(share, share, share, indexing="ij"), axis=-1).reshape(-1, 3)
+    positions = (np.arange(GRID) + 0.5) / GRID
+    grid = np.stack(np.meshgrid(positions, positions, positions, indexing="ij"), axis=-1).reshape(-1, 3)
     points = low + (high - low) * grid
     common = points[parts[pair[0]].contains(points)]
     count = int(parts[pair[1]].contains(common).sum()) if len(common) else 0
@@ -165,47 +176,50 @@ def _check_pair(parts: Sequence[Part], pair: tuple[int, int], low: FloatArray, h
         raise GeometryError(
             "parts {first} and {second} overlap over about {volume:.3g} m3", first=pair[0], second=pair[1],
             volume=volume,
-            hint="a solid is the sum of parts that do not share any volume: cut one where the other lies",
+            hint="use parts without common volume: cut one of them",
         )  # fmt: skip
 
 
 _PART_SLACK = 1e-6
 
-_CAUSE = "does its surface pass through itself, or look inward in part?"
+_CAUSE = "check the surface for self-intersections and inverted faces"
 
 
 def check_possible(parts: Sequence[Part]) -> None:
-    """Refuse parts whose moments are not those of any mass inside their box and hull."""
-    # The volume is above zero; the centre lies in the box, and for a mesh in the convex hull; the second moments J are
-    # nowhere negative, which is the triangle inequality of the inertia ``tr(J) 1 - J``; and along each axis they are at
-    # most ``m (c - low) (high - c)``, the greatest that masses between low and high with the centre c can have (R.
-    # Bhatia, C. Davis, "A better bound on the variance", 2000).
+    """Refuse parts with moments that are impossible for masses inside their box and hull."""
+    # Conditions: The volume is > 0. The centre lies in the box, and for a mesh in the convex hull. The second moments J
+    # are not negative (triangle inequality of the inertia ``tr(J) 1 - J``). Along each axis they are at most
+    # ``m (c - low) (high - c)``, the limit for masses between low and high with the centre c (R. Bhatia, C. Davis, "A
+    # better bound on the variance", 2000).
     for number, part in enumerate(parts):
-        words = _impossible(part.moments(), part.box()) or _out_of_hull(part)
-        if words:
-            raise GeometryError("part {number} {fault}", number=number, fault=words, hint=_CAUSE)
+        fault = _impossible(part.moments(), part.box()) or _out_of_hull(part)
+        if fault:
+            raise GeometryError(
+                "part {number} {fault}", number=number, fault=fault,
+                hint="check the surface for self-intersections and inverted faces",
+            )  # fmt: skip
 
 
-def _impossible(found: SolidMoments, box: FloatArray) -> str:
+def _impossible(moments: SolidMoments, box: FloatArray) -> str:
     low, high = box
     slack = _PART_SLACK * float((high - low).max())
-    if not (np.isfinite(found.mass) and np.isfinite(found.centre).all() and np.isfinite(found.second).all()):
+    if not (np.isfinite(moments.mass) and np.isfinite(moments.centre).all() and np.isfinite(moments.second).all()):
         return "has moments that are not finite"
-    if found.mass <= 0.0:
-        return f"has the mass {found.mass:g} kg, which must be above zero"
-    if (found.centre < low - slack).any() or (found.centre > high + slack).any():
-        return f"has its centre at {_at(found.centre)} m, outside its box {_at(low)} to {_at(high)} m"
-    spread = np.asarray(np.linalg.eigvalsh(found.second), dtype=np.float64)
-    if spread[0] < -_PART_SLACK * abs(spread[2]) or spread[2] <= 0.0:
+    if moments.mass <= 0.0:
+        return f"must have a mass > 0 kg, got {moments.mass:g}"
+    if (moments.centre < low - slack).any() or (moments.centre > high + slack).any():
+        return f"has its centre at {_at(moments.centre)} m, outside its box {_at(low)} to {_at(high)} m"
+    principal = np.asarray(np.linalg.eigvalsh(moments.second), dtype=np.float64)
+    if principal[0] < -_PART_SLACK * abs(principal[2]) or principal[2] <= 0.0:
         return (
-            f"has principal second moments {_at(spread)} kg m2, which must not be negative: its inertia breaks the "
-            "triangle inequality"
+            f"has negative principal second moments {_at(principal)} kg m2: its inertia violates the triangle "
+            "inequality"
         )
-    most = found.mass * ((found.centre - low) * (high - found.centre) + slack * (high - low + slack))
-    if (np.diag(found.second) > most).any():
+    limit = moments.mass * ((moments.centre - low) * (high - moments.centre) + slack * (high - low + slack))
+    if (np.diag(moments.second) > limit).any():
         return (
-            f"has second moments {_at(np.diag(found.second))} kg m2 along x, y, z, more than any mass in its box can "
-            f"have, {_at(most)} kg m2"
+            f"has second moments {_at(np.diag(moments.second))} kg m2 along x, y, z, above the limit for masses in its "
+            f"box, {_at(limit)} kg m2"
         )
     return ""
 
@@ -219,9 +233,9 @@ def _out_of_hull(part: Part) -> str:
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     try:
         planes = part.shape.hull.equations
-    except QhullError:  # too flat for a hull: the box has spoken
+    except QhullError:  # too flat for a hull; the box is checked
         return ""
-    beyond = float((planes[:, :3] @ (centre - middle) + planes[:, 3]).max())
-    if beyond > _PART_SLACK * float(np.ptp(vertices, axis=0).max()):
-        return f"has its centre {beyond:.3g} m outside its convex hull"
+    distance = float((planes[:, :3] @ (centre - middle) + planes[:, 3]).max())
+    if distance > _PART_SLACK * float(np.ptp(vertices, axis=0).max()):
+        return f"has its centre {distance:.3g} m outside its convex hull"
     return ""

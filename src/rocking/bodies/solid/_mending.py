@@ -1,4 +1,4 @@
-"""What scanners leave on a surface: dust beside it, fins on it, and noise that folds it through itself."""
+"""Repairs of scanned surfaces: loose pieces, fins, and self-intersections from noise."""
 
 import numpy as np
 
@@ -12,15 +12,15 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 from rocking.messages import Message
 
-THIN = 0.05  # thickness of a sheet over its width [-]
-DUST, SPECK = 1e-3, 1e-6  # boxes of pieces left out over the largest one's: open pieces, closed ones [-]
-FIN = 0.05  # fins are up to so much of the surface [-]
+THIN = 0.05  # largest thickness / width of a sheet [-]
+DUST, SPECK = 1e-3, 1e-6  # largest box of an ignored open piece, closed piece / largest box [-]
+FIN = 0.05  # largest area of fins / area of the surface [-]
 
 _ROUNDS, _RELAX, _MOST_SWEPT = 12, 0.5, 0.5
 
 
 def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
-    """Return the faces without those of small loose pieces."""
+    """Return the faces without small loose pieces."""
     labels = connected(len(points), faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel())[faces[:, 0]]
     _, labels = np.unique(labels, return_inverse=True)
     count = int(labels.max()) + 1
@@ -37,26 +37,25 @@ def without_dust(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     dust = room < np.where(is_open, DUST, SPECK) * room.max()
     sheets = [k for k in np.flatnonzero(is_open & ~dust & (room < room.max())) if _is_sheet(points[faces[labels == k]])]
     if sheets:
-        changes.say(
+        changes.add_repair(
             Message(
-                "left out {sheets} open sheet(s) beside the body, such as the table that it was scanned on, {faces} "
-                "faces",
+                "removed {sheets} separate open sheet(s), such as the support of a scan, {faces} faces",
                 {"sheets": len(sheets), "faces": int(np.isin(labels, sheets).sum())},
             )
         )
     if dust.any():
-        whole = float(room[dust].sum())
-        where = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / whole if whole else None
+        total_room = float(room[dust].sum())
+        location = (0.5 * (low + high) * room[:, None])[dust].sum(axis=0) / total_room if total_room else None
         facts = {"pieces": int(dust.sum()), "faces": int(dust[labels].sum())}
-        loose = Message("left out {pieces} loose piece(s) that hold next to nothing, {faces} faces", facts)
-        changes.say(loose, whole, where)
+        loose = Message("removed {pieces} small loose piece(s), {faces} faces", facts)
+        changes.add_repair(loose, total_room, location)
     dust[sheets] = True
     kept: IntArray = faces[~dust[labels]]
     return kept
 
 
 def _is_sheet(triangles: FloatArray) -> bool:
-    """Whether corners lie near one plane."""
+    """Return True if the corners lie near one plane."""
     corners = triangles.reshape(-1, 3)
     arms = corners - corners.mean(axis=0)
     along = np.ptp(arms @ np.linalg.eigh(arms.T @ arms)[1], axis=0)
@@ -64,7 +63,7 @@ def _is_sheet(triangles: FloatArray) -> bool:
 
 
 def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntArray:
-    """Return the faces without sheets that stand out from edges of the rest and end in the open."""
+    """Return the faces without fins: sheets from an edge of the surface with a free end."""
     numbers = edge_numbers(faces)
     counts = np.bincount(numbers)[numbers]
     if (counts <= 2).all():
@@ -77,53 +76,53 @@ def without_fins(points: FloatArray, faces: IntArray, changes: Changes) -> IntAr
     fin &= areas < FIN * areas.sum()
     if fin.any():
         facts = {"faces": int(fin[labels].sum())}
-        changes.say(Message("left out {faces} faces that stood out from the surface like fins", facts))
+        changes.add_repair(Message("removed {faces} faces of fins", facts))
     kept: IntArray = faces[~fin[labels]]
     return kept
 
 
 def uncrossed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return the surface without places where it passes through itself, smoothed there a little more each round."""
-    found = pierced(points[faces])
-    first, before, near = found, points, np.zeros(len(points), dtype=bool)
+    """Return the surface without self-intersections, after repeated local smoothing."""
+    piercing = pierced(points[faces])
+    first, before, smoothed = piercing, points, np.zeros(len(points), dtype=bool)
     for _ in range(_ROUNDS if changes.allowed != "none" else 0):
-        if not found.pairs:
+        if not piercing.pairs:
             break
         core = np.zeros(len(points), dtype=bool)
-        core[faces[found.faces]] = True
-        near[faces[core[faces].any(axis=1)]] = True
-        points = _smoothed(points, faces, near)
-        found = pierced(points[faces])
+        core[faces[piercing.faces]] = True
+        smoothed[faces[core[faces].any(axis=1)]] = True
+        points = _smoothed(points, faces, smoothed)
+        piercing = pierced(points[faces])
     moved = np.linalg.norm(points - before, axis=1)
     swept = np.linalg.norm(area_vectors(before[faces]), axis=1) * moved[faces].mean(axis=1)
-    most = MOST_VOLUME if changes.allowed == "safe" else _MOST_SWEPT
-    if found.pairs or swept.sum() > most * abs(polyhedron_moments(before[faces]).mass):
+    limit = MOST_VOLUME if changes.allowed == "safe" else _MOST_SWEPT
+    if piercing.pairs or swept.sum() > limit * abs(polyhedron_moments(before[faces]).mass):
         raise GeometryError(
-            "the surface passes through itself, most plainly near {point}; {pairs} pair(s) of faces cross, more than "
-            "smoothing parts: what it encloses is not defined", point=changes.place(first.place), pairs=first.pairs,
+            "The surface intersects itself, mainly near {point}. {pairs} pair(s) of faces cross, and smoothing does "
+            "not separate them", point=changes.describe(first.location), pairs=first.pairs,
             hint=Message(
-                "{wrap} or {hull} takes a skin over its points instead; best is to repair it in the program that made "
-                "it, for instance by a boolean union", SKINS,
+                "repair the mesh in its own program, for instance by a boolean union, or use {wrap} or {hull} for a "
+                "skin around its points", SKINS,
             ),
         )  # fmt: skip
     if first.pairs:
-        changes.say(
+        changes.add_repair(
             Message(
-                "smoothed {vertices} vertices where {pairs} pair(s) of faces crossed, by up to {distance:.2g} mm",
-                {"vertices": int(near.sum()), "pairs": int(first.pairs), "distance": float(1000.0 * moved.max())},
+                "smoothed {vertices} vertices at {pairs} pair(s) of crossing faces, by up to {distance:.2g} mm",
+                {"vertices": int(smoothed.sum()), "pairs": int(first.pairs), "distance": float(1000.0 * moved.max())},
             ),
             float(swept.sum()),
             (before[faces].mean(axis=1) * swept[:, None]).sum(axis=0) / swept.sum(),
         )
-    if not check_crossings(points[faces], changes.place, found):
-        changes.note(Message("too many faces lie side by side to try whether all of them keep clear of each other"))
+    if not check_crossings(points[faces], changes.describe, piercing):
+        changes.add_note(Message("too many adjacent faces for a complete check of self-intersections"))
     return points, faces
 
 
-def _smoothed(points: FloatArray, faces: IntArray, which: BoolArray) -> FloatArray:
-    """Points, some of them moved half way to the mean of their neighbours."""
-    edges = directed_edges(faces[which[faces].any(axis=1)])
+def _smoothed(points: FloatArray, faces: IntArray, is_moved: BoolArray) -> FloatArray:
+    """Return the points; the selected ones are moved half way to the mean of their neighbours."""
+    edges = directed_edges(faces[is_moved[faces].any(axis=1)])
     count = np.bincount(edges[:, 0], minlength=len(points))
     sums = [np.bincount(edges[:, 0], weights=points[edges[:, 1], i], minlength=len(points)) for i in range(3)]
     mean = np.stack(sums, axis=1) / np.maximum(count, 1)[:, None]
-    return np.where(which[:, None], points + _RELAX * (mean - points), points)
+    return np.where(is_moved[:, None], points + _RELAX * (mean - points), points)

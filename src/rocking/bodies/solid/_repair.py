@@ -1,7 +1,7 @@
-"""From the triangles of a file to a closed surface: weld, clean, orient, close, mend, and say what was done.
+"""From the triangles of a file to a closed surface: weld, clean, orient, close and repair, with a list of repairs.
 
-The order matters. A surface that is not welded has no neighbours, so that turning faces or closing holes on it does
-harm; nothing is integrated before the surface is closed, and shells are told apart before they are united.
+The order matters. Faces have neighbours only after welding, which is necessary for orientation and the closing of
+holes. Volumes need a closed surface, and the union of shells needs separate shells.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid._changes import HELP, SKINS, Changes, InnerParts, Repair, in_words
+from rocking.bodies.solid._changes import HELP, SKINS, Changes, InnerParts, Repair, coordinates_text
 from rocking.bodies.solid._mending import uncrossed, without_dust, without_fins
 from rocking.bodies.solid._shells import connected, decimated, hollowed, oriented_shells, turned_consistently
 from rocking.bodies.solid._skin import Surface, skin
@@ -25,13 +25,13 @@ from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 from rocking.messages import Message, Option
 
-LOW = 0.1  # a rim is that of a bottom if half of it lies so low, over the height of the body [-]
+LOW = 0.1  # largest median height of the rim of a bottom / height of the body [-]
 
-_LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE, _LEANS = 0.7, 0.01, 3, 1e-6, 0.5, 0.05
+_LEVEL, _NOTCH, _LISTED, _SLIT, _LOOSE, _INCLINED = 0.7, 0.01, 3, 1e-6, 0.5, 0.05
 
 
 def boundary_loops(faces: IntArray) -> list[IntArray]:
-    """Return the rings of edges that have a face on one side only; rings that share a vertex are two."""
+    """Return the rings of edges with a face on one side only; rings with a common vertex are separate."""
     following: dict[int, list[int]] = {}
     for end, start in alone(faces).tolist():
         following.setdefault(start, []).append(end)
@@ -48,32 +48,32 @@ def boundary_loops(faces: IntArray) -> list[IntArray]:
                 position[vertex] = len(path)
                 path.append(vertex)
                 continue
-            at = position[vertex]
-            loops.append(np.array(path[at:]))
-            for gone in path[at + 1 :]:
-                del position[gone]
-            del path[at + 1 :]
+            loop_start = position[vertex]
+            loops.append(np.array(path[loop_start:]))
+            for removed in path[loop_start + 1 :]:
+                del position[removed]
+            del path[loop_start + 1 :]
         if len(path) > 1:
             raise GeometryError(
-                "the open edges of the surface form no rings, as more than two faces meet there", hint=HELP
+                "The open edges of the surface form no rings, because more than two faces meet there", hint=HELP
             )
     return loops
 
 
 def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return the surface without holes: an open bottom becomes level, other holes are closed between their edges."""
+    """Return the surface without holes: a horizontal face closes an open bottom, patches close other holes."""
     loops = boundary_loops(faces)
     if not loops:
         return points, faces
     if changes.allowed == "none":
         hint = Message("{safe} closes an open bottom and small holes", {"safe": Option("body.repair", "safe")})
         raise GeometryError(_not_closed(loops, points, changes), hint=hint)
-    if (share := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
+    if (open_fraction := sum(map(len, loops)) / (3 * len(faces))) > _LOOSE:
         raise GeometryError(
-            "{loops}; {share} of its edges are open: its faces hardly hang together",
-            loops=_not_closed(loops, points, changes), share=percent(share), hint=HELP,
+            "{loops}; {share} of its edges are open: too few faces are connected",
+            loops=_not_closed(loops, points, changes), share=percent(open_fraction), hint=HELP,
         )  # fmt: skip
-    added, slits, patches, bound, where = [faces], 0, [], 0.0, np.zeros(3)
+    added, slits, patches, bound, moment = [faces], 0, [], 0.0, np.zeros(3)
     for ring in loops:
         if _is_bottom(points, faces, ring):
             points, level = _levelled(points, ring, changes)
@@ -86,30 +86,30 @@ def closed(points: FloatArray, faces: IntArray, changes: Changes) -> tuple[Float
         if area <= _SLIT * width**2:
             slits += 1
             continue
-        # as much as a dome of half the width over the hole would hold
-        bound, where = bound + area * width / 3.0, where + area * width / 3.0 * points[ring].mean(axis=0)
+        # volume of a dome of half the width over the hole
+        bound, moment = bound + area * width / 3.0, moment + area * width / 3.0 * points[ring].mean(axis=0)
         patches.append(ring)
         changes.mended.append(points[ring[patch]])
     if slits:
-        changes.say(
+        changes.add_repair(
             Message(
-                "closed {slits} slit(s) without area, where vertices lay within the edges of other faces",
+                "closed {slits} slit(s) without area at vertices on edges of other faces",
                 {"slits": slits},
             )
         )
     if patches:
         closed_holes = Message("closed {holes}", {"holes": _listed(patches, points, changes)})
-        changes.say(closed_holes, bound, where / bound)
+        changes.add_repair(closed_holes, bound, moment / bound)
     return points, np.concatenate(added)
 
 
 def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
-    """Return how many holes a surface has, with the size and the place of the largest."""
+    """Return the number of holes, with size and location of the largest, as a text."""
     order = sorted(loops, key=lambda ring: -_width(points[ring]))
     holes = tuple(
         Message(
             "{width:.3g} m wide ({edges} edges) at {place}",
-            {"width": _width(points[ring]), "edges": len(ring), "place": changes.place(points[ring].mean(axis=0))},
+            {"width": _width(points[ring]), "edges": len(ring), "place": changes.describe(points[ring].mean(axis=0))},
         )
         for ring in order[:_LISTED]
     )
@@ -120,41 +120,41 @@ def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
 
 
 def _not_closed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
-    return Message("the surface is not closed, it has {holes}", {"holes": _listed(loops, points, changes)})
+    return Message("The surface is not closed: {holes}", {"holes": _listed(loops, points, changes)})
 
 
 def _is_bottom(points: FloatArray, faces: IntArray, ring: IntArray) -> bool:
-    """Whether a ring is about level, half of it lies low, and a face across it looks down out of the body."""
+    """Return True for the rim of a bottom: about horizontal, median height low, and outward normal downwards."""
     low, high, normal = points[:, 2].min(), points[:, 2].max(), _normal(points[ring])
     is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal)
     if not is_level or np.median(points[ring, 2]) - low > LOW * (high - low):
         return False
     a, b, c = np.moveaxis(points[faces] - points[ring].mean(axis=0), 1, 0)
-    outward = np.sign(np.einsum("ij,ij->", a, np.cross(b, c)))  # of the volume, above zero where faces look outward
+    outward = np.sign(np.einsum("ij,ij->", a, np.cross(b, c)))  # sign of the volume, > 0 for outward faces
     return bool(normal[2] * outward < 0.0)
 
 
 def _notched(height: FloatArray, ring: IntArray) -> tuple[IntArray, IntArray]:
-    """Return a rim without the tops of its notches, and the faces that fill them."""
-    most = np.median(height[ring]) + _NOTCH * np.ptp(height)
-    rest, ears = ring.tolist(), []
-    while len(rest) > 3 and height[top := max(rest, key=height.item)] > most:
-        at = rest.index(top)
-        ears.append((rest[at - 1], top, rest[(at + 1) % len(rest)]))
-        del rest[at]
-    return np.array(rest), np.array(ears, dtype=np.int64).reshape(-1, 3)
+    """Return a rim without the tops of its notches, and the faces of the notches."""
+    limit = np.median(height[ring]) + _NOTCH * np.ptp(height)
+    rim, ears = ring.tolist(), []
+    while len(rim) > 3 and height[top := max(rim, key=height.item)] > limit:
+        index = rim.index(top)
+        ears.append((rim[index - 1], top, rim[(index + 1) % len(rim)]))
+        del rim[index]
+    return np.array(rim), np.array(ears, dtype=np.int64).reshape(-1, 3)
 
 
 def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return points with those of a rim let down to the lowest one, and the faces down there and beneath."""
-    # down is across the plane of the rim, so that a body that leans stands upright once it is set on its bottom
+    """Return points with a rim lowered to the lowest point, and the faces of skirt and bottom."""
+    # the direction is normal to the plane of the rim, so the body is upright on its bottom
     ring, _ = _notched(points[:, 2], ring)
     normal = np.linalg.svd(points[ring] - points[ring].mean(axis=0), full_matrices=False)[2][2]
     upright = set_down(-normal * (1.0 if normal[2] > 0.0 else -1.0))
-    leans = math.degrees(math.acos(min(1.0, abs(float(normal[2])))))
-    stood = points @ upright.T
-    ring, ears = _notched(stood[:, 2], ring)
-    low, rim = float(stood[:, 2].min()), stood[ring]
+    inclination = math.degrees(math.acos(min(1.0, abs(float(normal[2])))))
+    upright_points = points @ upright.T
+    ring, ears = _notched(upright_points[:, 2], ring)
+    low, rim = float(upright_points[:, 2].min()), upright_points[ring]
     lowered = rim * [1.0, 1.0, 0.0] + [0.0, 0.0, low]
     is_low = rim[:, 2] - low <= 1e-9 * float(np.ptp(points, axis=0).max())
     below = np.where(is_low, ring, len(points) + np.cumsum(~is_low) - 1)
@@ -168,9 +168,11 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
         "closed the open bottom, {width:.3g} m wide ({edges} edges), by a flat face at its lowest point",
         {"width": _width(rim), "edges": len(ring)},
     )
-    inclined = Message("{repair}, {angle:.2g} degrees from level as its rim is", {"repair": bottom, "angle": leans})
-    changes.say(
-        inclined if leans > _LEANS else bottom,
+    inclined = Message(
+        "{repair}, inclined by {angle:.2g} degrees like its rim", {"repair": bottom, "angle": inclination}
+    )
+    changes.add_repair(
+        inclined if inclination > _INCLINED else bottom,
         volume,
         (lowered @ upright).mean(axis=0),
     )
@@ -178,14 +180,14 @@ def _levelled(points: FloatArray, ring: IntArray, changes: Changes) -> tuple[Flo
 
 
 def _normal(ring: FloatArray) -> FloatArray:
-    """Vector area of a ring [m2]."""
+    """Return the vector area of a ring [m2]."""
     arms = ring - ring.mean(axis=0)
     normal: FloatArray = 0.5 * np.cross(arms, np.roll(arms, -1, axis=0)).sum(axis=0)
     return normal
 
 
 def _patch(ring: FloatArray, normal: FloatArray) -> IntArray:
-    """Triangles between the corners of a ring, as it looks along its normal."""
+    """Return triangles between the corners of a ring, as seen along its normal."""
     from manifold3d import triangulate
 
     area, width = float(np.linalg.norm(normal)), _width(ring)
@@ -206,19 +208,19 @@ def _width(ring: FloatArray) -> float:
     return float(np.linalg.norm(np.ptp(ring, axis=0)))
 
 
-WELD = 1e-6  # vertices closer than this share of the size are merged if exact merging leaves the surface open [-]
+WELD = 1e-6  # distance of merged vertices / size, if merging of equal vertices leaves the surface open [-]
 
 
 @dataclass(frozen=True, eq=False)
 class Repaired:
-    """A closed surface and what was done to get it."""
+    """A closed surface with its repairs."""
 
-    shape: Polyhedron  # the volume, the middle of its box at the origin
-    middle: FloatArray  # where that middle lies in the given coordinates [m]; shape (3,)
-    repairs: tuple[str, ...]  # one sentence for each change; empty if the surface was fine
+    shape: Polyhedron  # the volume, with the middle of its box at the origin
+    middle: FloatArray  # middle of the box in the coordinates of the input [m]; shape (3,)
+    repairs: tuple[str, ...]  # one sentence per change; empty without changes
 
     def part(self, density: float = DEFAULT_DENSITY) -> Part:
-        """Return the volume in its place, in one material [kg/m3]."""
+        """Return the volume at its original position with one density [kg/m3]."""
         return Part(self.shape, density, translation=self.middle)
 
 
@@ -231,15 +233,15 @@ def repaired(
     surface: Surface = "faces",
     wall: float | None = None,
     inner_parts: InnerParts = "refuse",
-    place: Callable[[FloatArray], str] = in_words,
+    describe: Callable[[FloatArray], str] = coordinates_text,
 ) -> Repaired:
-    """Return the closed surface that triangles describe, or points alone, with a sentence for every change."""
+    """Return the closed surface of triangles or of points, with one sentence per change."""
     surface = checks.one_of("surface", surface, get_args(Surface))
     vertices, faces = checked_triangles(vertices, faces, int(surface == "faces"))
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
-    changes = Changes(repair, inner_parts, lambda where: place(where + middle))
+    changes = Changes(repair, inner_parts, lambda point: describe(point + middle))
     if surface == "faces":
         points, faces = _closed_surface(points, faces, weld_tolerance, size, changes)
     else:
@@ -268,9 +270,9 @@ def _closed_surface(
     faces = turned_consistently(faces, changes) if len(faces) > count else faces
     if count := len(open_edges(faces)):
         raise GeometryError(
-            "no side of the surface is the outside: {count} edges cannot be matched however the faces are turned; do "
-            "more than two faces meet along them, or is the surface one-sided?", count=count,
-            hint=Message("{wrap} stretches a skin over its points instead", SKINS),
+            "The surface has no consistent orientation: {count} edges have no matching neighbour. Check for edges with "
+            "more than two faces, and for a one-sided surface", count=count,
+            hint=Message("{wrap} uses a skin around the points", SKINS),
         )  # fmt: skip
     return points, faces
 
@@ -286,29 +288,27 @@ def _welded(
     from scipy.spatial import cKDTree
 
     same, inverse = _same(points)
-    merged, joined = len(points) - len(same), inverse[faces]
-    reach = checks.within("weld_tolerance", tolerance, 0.0, 0.01 * size, unit="m") if tolerance is not None else 0.0
-    if tolerance is None and len(alone(joined)):
-        reach = WELD * size
-    if reach > 0.0:
-        near = connected(len(same), *cKDTree(same).query_pairs(reach, output_type="ndarray").T)
-        count = int(near.max()) + 1
+    merged, welded_faces = len(points) - len(same), inverse[faces]
+    distance = checks.within("weld_tolerance", tolerance, 0.0, 0.01 * size, unit="m") if tolerance is not None else 0.0
+    if tolerance is None and len(alone(welded_faces)):
+        distance = WELD * size
+    if distance > 0.0:
+        labels = connected(len(same), *cKDTree(same).query_pairs(distance, output_type="ndarray").T)
+        count = int(labels.max()) + 1
         merged += len(same) - count
-        first = np.unique(near, return_index=True)[1]
-        same, joined = same[first], near[joined]
+        first = np.unique(labels, return_index=True)[1]
+        same, welded_faces = same[first], labels[welded_faces]
     if merged:
-        facts = {"merged": merged, "total": len(points), "distance": reach}
-        near_each_other = Message(
-            "merged {merged} of {total} vertices that lay within {distance:.3g} m of each other", facts
-        )
-        in_one_place = Message("merged {merged} of {total} vertices that lay in the same place", facts)
-        changes.note(near_each_other if reach > 0.0 else in_one_place)
-    return same, joined
+        facts = {"merged": merged, "total": len(points), "distance": distance}
+        near_each_other = Message("merged {merged} of {total} vertices at distances up to {distance:.3g} m", facts)
+        in_one_place = Message("merged {merged} of {total} vertices with equal coordinates", facts)
+        changes.add_note(near_each_other if distance > 0.0 else in_one_place)
+    return same, welded_faces
 
 
 def _same(points: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return the different points, and which of them each is."""
-    # a number for each: 64 bits mixed of three coordinates; the comparison finds the rare two that share one
+    """Return the different points, and the index of every point among them."""
+    # a 64-bit hash of the three coordinates per point; the comparison detects the rare collisions
     bits = np.ascontiguousarray(points + 0.0).view(np.uint64)
     mixed = bits[:, 0] * np.uint64(0x9E3779B97F4A7C15) + bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F)
     mixed = (mixed ^ (mixed >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
@@ -324,26 +324,24 @@ def _same(points: FloatArray) -> tuple[FloatArray, IntArray]:
 
 def _cleaned(faces: IntArray, changes: Changes) -> IntArray:
     a, b, c = faces.T
-    whole = (a != b) & (b != c) & (c != a)
-    if not whole.all():
-        facts = {"number": int((~whole).sum())}
-        changes.say(Message("removed {number} faces that had shrunk to an edge or a point", facts))
-    faces = faces[whole]
+    is_triangle = (a != b) & (b != c) & (c != a)
+    if not is_triangle.all():
+        facts = {"number": int((~is_triangle).sum())}
+        changes.add_repair(Message("removed {number} degenerate faces", facts))
+    faces = faces[is_triangle]
     low, middle, high = np.sort(faces, axis=1).T
     edge = numbered(np.stack([low, middle], axis=1))
     _, first, inverse = np.unique(numbered(np.stack([edge, high], axis=1)), return_index=True, return_inverse=True)
     if len(first) == len(faces):
         return faces
-    # the same corners twice: faces of one sense are one face, faces of opposite sense have nothing between them
+    # faces with equal corners: those of the same orientation are one face, those of opposite orientation cancel
     net = np.bincount(inverse, weights=_parity(faces), minlength=len(first))
     sense = _parity(faces[first])
     keep = net != 0.0
     result: IntArray = np.where((net * sense < 0.0)[:, None], faces[first][:, ::-1], faces[first])[keep]
     if len(result) < 4:
-        raise GeometryError(
-            "the faces lie on top of each other and nothing is left between them: the surface is a sheet"
-        )
-    changes.say(Message("removed {number} faces that lay on top of others", {"number": len(faces) - len(result)}))
+        raise GeometryError("The faces coincide and enclose no volume: the surface is a sheet")
+    changes.add_repair(Message("removed {number} duplicate faces", {"number": len(faces) - len(result)}))
     return result
 
 
@@ -353,10 +351,10 @@ def _parity(faces: IntArray) -> FloatArray:
 
 
 def _check_hull(shape: Polyhedron) -> None:
-    whole = float(shape.hull.volume)
+    hull_volume = float(shape.hull.volume)
     volume = shape.moments().mass
-    if volume > whole * (1.0 + 1e-9):
+    if volume > hull_volume * (1.0 + 1e-9):
         raise GeometryError(
-            "the surface encloses {volume:.6g} m3, more than its hull ({hull:.6g} m3): it passes through itself",
-            volume=volume, hull=whole,
+            "The surface encloses {volume:.6g} m3, more than its hull ({hull:.6g} m3): the surface intersects itself",
+            volume=volume, hull=hull_volume,
         )  # fmt: skip

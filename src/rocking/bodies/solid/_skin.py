@@ -1,4 +1,4 @@
-"""A closed surface over points alone: their convex hull, or a skin that follows hollows down to the width of a ball."""
+"""A closed surface around points: their convex hull, or a skin that follows hollows wider than a ball."""
 
 from typing import Literal
 
@@ -13,9 +13,9 @@ from rocking.messages import Message
 
 Surface = Literal["faces", "wrap", "hull"]
 
-"""The faces of a mesh; a skin over its points; the convex hull of its points."""
+"""Faces of a mesh, skin around its points, or convex hull of its points."""
 
-MOST_POINTS = 30_000  # denser clouds are thinned, their convex hull apart [-]
+MOST_POINTS = 30_000  # largest number of points inside the convex hull; denser clouds are thinned [-]
 
 _STABLE, _GROWTH, _COVERED, _BOTTOM, _EMPTY, _SECTORS = 0.01, 1.5, 0.95, 0.02, 0.2, 24
 _JIGGLE, _CRUMB = 1e-7, 1e-2
@@ -23,11 +23,13 @@ _OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
 
 def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatArray, IntArray]:
-    """Return a closed, oriented surface over points."""
+    """Return a closed, oriented surface around points."""
     points = points if surface == "hull" else _with_bottom(points, changes)
     hull = _hull(points)
     if surface == "hull":
-        changes.note(Message("took the convex hull of its {number} points, hollows filled", {"number": len(points)}))
+        changes.add_note(
+            Message("used the convex hull of {number} points; hollows are filled", {"number": len(points)})
+        )
         return points, hull
     kept = _thinned(points, np.unique(hull))
     count, points = len(points), points[kept]
@@ -36,11 +38,10 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
     coarse = 2.0 * abs(volume - _wrapped(points[half])[1]) + wider - volume
     depth, area = _depth(points, faces)
     number = Message("{number} of {total}", {"number": len(kept), "total": count}) if len(kept) < count else len(kept)
-    changes.note(
+    changes.add_note(
         Message(
-            "stretched a skin over {number} points, which balls of {diameter:.3g} mm cannot pass; the points lie "
-            "{depth:.2g} mm beneath it on average, and a wider ball and twice as many points may change its volume by "
-            "{share}",
+            "used a skin around {number} points with a ball diameter of {diameter:.3g} mm; mean depth of the points "
+            "below the skin {depth:.2g} mm, possible volume change with a larger ball and twice as many points {share}",
             {
                 "number": number,
                 "diameter": 2000.0 * radius,
@@ -54,7 +55,7 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
 
 
 def _depth(points: FloatArray, faces: IntArray) -> tuple[float, float]:
-    """Mean depth of points beneath a skin over them, along the normals of its nearest corners, and its area."""
+    """Return the mean depth of points below a skin, along the normals of its nearest corners [m], and its area [m2]."""
     from scipy.spatial import cKDTree
 
     vectors = area_vectors(points[faces])
@@ -67,7 +68,7 @@ def _depth(points: FloatArray, faces: IntArray) -> tuple[float, float]:
 
 
 def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
-    """Points, with a level grid of them at the lowest one where they lie round an empty bottom."""
+    """Return the points, with a horizontal grid at the lowest point in an empty bottom."""
     from scipy.spatial import Delaunay, QhullError, cKDTree
 
     low, height = points[:, 2].min(), np.ptp(points[:, 2])
@@ -75,7 +76,7 @@ def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
     plan, step = rim[:, :2], 1.5 * _spacing(points)
     try:
         within = Delaunay(plan)
-    except (QhullError, ValueError):  # they stand on a line or a point
+    except (QhullError, ValueError):  # the rim is a line or a point
         return points
     sides = [np.arange(start, end, step) for start, end in zip(plan.min(axis=0), plan.max(axis=0), strict=True)]
     grid = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
@@ -89,9 +90,9 @@ def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
     lowest = np.full(_SECTORS, np.inf)
     np.minimum.at(lowest, sector, rim[:, 2] - low)
     depth = float(lowest[np.isfinite(lowest)].mean())
-    changes.say(
+    changes.add_repair(
         Message(
-            "closed the open bottom, {width:.3g} m wide, by a level face at its lowest point",
+            "closed the open bottom, {width:.3g} m wide, by a horizontal face at its lowest point",
             {"width": float(np.linalg.norm(np.ptp(plan, axis=0)))},
         ),
         depth * len(grid) * step**2,
@@ -101,30 +102,28 @@ def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
 
 
 def _spacing(points: FloatArray) -> float:
-    """Distance to the next point that 95 in a hundred keep."""
+    """Return the 95 % quantile of the distance to the nearest point [m]."""
     from scipy.spatial import cKDTree
 
     return float(np.quantile(np.asarray(cKDTree(points).query(points, 2)[0])[:, 1], 0.95))
 
 
 def _hull(points: FloatArray) -> IntArray:
-    """Faces of the convex hull, outward."""
+    """Return the outward faces of the convex hull."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
-        found = ConvexHull(points)
+        convex_hull = ConvexHull(points)
     except QhullError as error:
-        raise GeometryError(
-            "the points lie in one plane, on one line or in one place: no body is among them"
-        ) from error
-    faces = found.simplices.astype(np.int64)
+        raise GeometryError("The points are coplanar, collinear or equal, and enclose no volume.") from error
+    faces = convex_hull.simplices.astype(np.int64)
     a, b, c = np.moveaxis(points[faces], 1, 0)
-    inward = (np.cross(b - a, c - a) * found.equations[:, :3]).sum(axis=1) < 0.0
+    inward = (np.cross(b - a, c - a) * convex_hull.equations[:, :3]).sum(axis=1) < 0.0
     return np.where(inward[:, None], faces[:, ::-1], faces)
 
 
 def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
-    """Numbers of one point a cell of a grid, and of all that must stay."""
+    """Return the indices of one point per grid cell, and of all points to keep."""
     kept, cell = np.unique(points, axis=0, return_index=True)[1], 1e-3 * float(np.ptp(points, axis=0).max())
     while len(kept) > MOST_POINTS:
         kept = np.unique(np.floor(points / cell), axis=0, return_index=True)[1]
@@ -133,19 +132,19 @@ def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
 
 
 def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
-    """Faces and volume of a skin, the volume with a wider ball, and the ball's radius."""
-    # The skin is what is left of the hull when balls have come in from outside. The tetrahedra between the points
-    # (Delaunay) are entered through faces that a ball passes, whose own circle is wider than it (J.-D. Boissonnat,
-    # "Geometric structures for three-dimensional shape representation", 1984). The ball is the smallest with which the
-    # skin holds all but a few points and a half wider one changes the volume by less than 1 %.
+    """Return faces and volume of a skin, the volume with a larger ball, and the radius of the ball."""
+    # The skin is the hull without the cells that a ball reaches from outside. The ball enters a Delaunay tetrahedron
+    # through a face with a circumcircle larger than the ball (J.-D. Boissonnat, "Geometric structures for
+    # three-dimensional shape representation", 1984). The radius is the smallest with nearly all points in the skin, and
+    # with a volume change below 1 % for a radius larger by half.
     from scipy.spatial import Delaunay
 
     size = float(np.ptp(points, axis=0).max())
-    # off one plane and one sphere, so that no cell is flat and every face has an outside
+    # a small random shift avoids coplanar and cospherical points
     points = points + _JIGGLE * size * np.random.default_rng(0).uniform(-1.0, 1.0, points.shape)
     cells = Delaunay(points)
     corners, across = cells.simplices.astype(np.int64), cells.neighbors.astype(np.int64)
-    sides = corners[:, _OPPOSITE]  # four faces of each
+    sides = corners[:, _OPPOSITE]  # four faces of each cell
     gate = _circle(points[sides])
     first = points[corners[:, 0]]
     volumes = np.abs(np.linalg.det(points[corners[:, 1:]] - first[:, None])) / 6.0
@@ -158,12 +157,12 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
             break
         radius, before = _GROWTH * radius, wider
     before = _without_crumbs(before, across, volumes)
-    held = float(volumes[before].sum())
-    return _boundary(points, corners, sides, across, before), held, float(volumes[wider].sum()), radius
+    volume = float(volumes[before].sum())
+    return _boundary(points, corners, sides, across, before), volume, float(volumes[wider].sum()), radius
 
 
 def _circle(triangles: FloatArray) -> FloatArray:
-    """Radii of the circles through corners of triangles."""
+    """Return the circumradii of triangles."""
     a, b, c = np.moveaxis(triangles, -2, 0)
     product = np.linalg.norm(b - a, axis=-1) * np.linalg.norm(c - b, axis=-1) * np.linalg.norm(a - c, axis=-1)
     twice = np.linalg.norm(np.cross(b - a, c - a), axis=-1)
@@ -172,16 +171,16 @@ def _circle(triangles: FloatArray) -> FloatArray:
 
 
 def _inside(across: IntArray, gate: FloatArray, radius: float) -> BoolArray:
-    """Which cells a ball from outside does not reach."""
+    """Return True for cells that a ball from outside does not reach."""
     cell, side = np.nonzero(gate > radius)
-    to = across[cell, side]
-    labels = connected(len(across) + 1, cell, np.where(to < 0, len(across), to))
+    next_cell = across[cell, side]
+    labels = connected(len(across) + 1, cell, np.where(next_cell < 0, len(across), next_cell))
     inside: BoolArray = labels[:-1] != labels[-1]
     return inside
 
 
 def _without_crumbs(inside: BoolArray, across: IntArray, volumes: FloatArray) -> BoolArray:
-    """Cells inside without small groups that no face joins to the rest."""
+    """Return True for cells inside, without small separate groups."""
     cell, side = np.nonzero(inside[:, None] & (across >= 0) & inside[across])
     labels = connected(len(across), cell, across[cell, side])
     room = np.bincount(labels, weights=np.where(inside, volumes, 0.0))
@@ -190,7 +189,7 @@ def _without_crumbs(inside: BoolArray, across: IntArray, volumes: FloatArray) ->
 
 
 def _boundary(points: FloatArray, corners: IntArray, sides: IntArray, across: IntArray, inside: BoolArray) -> IntArray:
-    """Faces between the cells inside and the rest, outward."""
+    """Return the outward faces between cells inside and outside."""
     other = np.where(across < 0, False, inside[across])
     cell, side = np.nonzero(inside[:, None] & ~other)
     faces = sides[cell, side]

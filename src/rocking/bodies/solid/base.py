@@ -1,4 +1,4 @@
-"""What a solid stands on: corners and edges that it may rock about, or a circle."""
+"""Base of a solid: a polygon with corners and edges, or a circle."""
 
 import math
 from abc import ABC, abstractmethod
@@ -17,27 +17,27 @@ from rocking.portable import applied, dot, norm, times
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Corner:
-    """A point on the ground that a body turns about."""
+    """A pivot point of a body on the ground."""
 
-    point: FloatArray  # its place [m]; shape (3,)
+    point: FloatArray  # position [m]; shape (3,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edge:
-    """A line on the ground that a body turns about; its angular velocity is along it where it turns outward."""
+    """A rotation axis on the ground; the direction is that of the angular velocity of an outward rotation."""
 
-    point: FloatArray  # a point on it [m]; shape (3,)
-    direction: FloatArray  # unit vector along it, counter-clockwise around the base seen from above [-]; shape (3,)
+    point: FloatArray  # a point on the edge [m]; shape (3,)
+    direction: FloatArray  # unit vector, counter-clockwise around the base seen from above [-]; shape (3,)
 
 
 class Base(ABC):
-    """Where a solid stands."""
+    """Base of a solid on the ground."""
 
     height: float  # of the ground [m]
 
     @abstractmethod
     def margin(self, point: FloatArray) -> float:
-        """Return how far inside the base a point (x, y) of the ground lies, negative outside [m]."""
+        """Return the distance of a point (x, y) from the border of the base, negative outside [m]."""
 
     @property
     @abstractmethod
@@ -46,20 +46,20 @@ class Base(ABC):
 
     @abstractmethod
     def edge(self, which: float) -> Edge:
-        """Return edge number `which` of a polygon; the tangent of a circle in that direction from the centre [rad]."""
+        """Return the edge with index `which` of a polygon, or the tangent of a circle at the azimuth `which` [rad]."""
 
     @abstractmethod
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "Base":
-        """Return the base under a similarity of the plane: (2, 2) matrix [-], then (3,) shift [m]."""
+        """Return the base after a similarity transformation: (2, 2) matrix [-], then (3,) shift [m]."""
 
     @abstractmethod
     def answer(self) -> dict[str, Any]:
-        """Return what is shown of the base."""
+        """Return type and geometry of the base as plain values."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoundBase(Base):
-    """A circle that a solid stands on."""
+    """A circular base."""
 
     centre: FloatArray  # (x, y) [m]
     radius: float  # [m]
@@ -95,7 +95,7 @@ _INSIDE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class SupportPolygon(Base):
-    """The convex hull of the points that a solid stands on."""
+    """The convex hull of the contact points of a solid."""
 
     vertices: FloatArray  # corners of the hull, counter-clockwise seen from above [m]; shape (n, 2)
     height: float = 0.0  # of the ground [m]
@@ -111,7 +111,7 @@ class SupportPolygon(Base):
 
     @property
     def edges(self) -> list[Edge]:
-        """Edges; number i runs from corner i to the next."""
+        """Edges; edge i runs from corner i to the next corner."""
         return [self.edge(i) for i in range(len(self.vertices))]
 
     def edge(self, which: float) -> Edge:
@@ -126,14 +126,12 @@ class SupportPolygon(Base):
         return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
 
     def opposite(self, which: int) -> Edge:
-        """Return the edge on the far side that is parallel to another; without one the body lands on a corner."""
+        """Return the opposite edge parallel to the given one; raise an error if the body lands on a corner."""
         along = self.edge(which).direction
         for edge in self.edges:
             if dot(edge.direction, along) < -1.0 + 1e-12:
                 return edge
-        raise GeometryError(
-            "no edge of the base is parallel to edge {edge}: the body lands on a corner there", edge=which
-        )
+        raise GeometryError("No edge of the base is parallel to edge {edge}; the body lands on a corner.", edge=which)
 
     def margin(self, point: FloatArray) -> float:
         along = np.roll(self.vertices, -1, axis=0) - self.vertices
@@ -150,7 +148,7 @@ class SupportPolygon(Base):
 
 
 def hull(points: ArrayLike) -> SupportPolygon:
-    """Return the convex hull of points (x, y) on the ground z = 0 [m], without points on its straight edges.
+    """Return the convex hull of points (x, y) on the ground z = 0 [m], without points on straight edges.
 
     >>> len(hull([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.0), (0.5, 0.5)]).vertices)
     4
@@ -164,8 +162,8 @@ def hull(points: ArrayLike) -> SupportPolygon:
     chain = _chain(ordered, slack)[:-1] + _chain(ordered[::-1], slack)[:-1]
     if len(ordered) < 3 or len(chain) < 3:
         raise GeometryError(
-            "the body stands on {count} point(s) of one line; it needs a base with an area: pass base= with the "
-            "points it stands on, or raise base_tolerance", count=len(ordered),
+            "The base has {count} point(s) on one line; a base with an area is needed. Use base= with contact points, "
+            "or increase base_tolerance.", count=len(ordered),
         )  # fmt: skip
     return SupportPolygon(np.array(chain))
 

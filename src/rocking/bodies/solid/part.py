@@ -1,4 +1,4 @@
-"""One shape of one material in its place: what a solid is made of."""
+"""Parts of a solid: one shape of one material with its position."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
     axis : array_like, shape (3,)
         Direction of the axis, of any length [-].
     angle : float
-        Angle, counter-clockwise seen against the axis [rad].
+        Angle, counter-clockwise against the axis direction [rad].
 
     Returns
     -------
@@ -34,7 +34,7 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
     Raises
     ------
     GeometryError
-        If the axis has no direction.
+        If the axis is the zero vector.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
     direction = vector("axis", axis, "-")
     size = norm(np.asarray(direction))
     if size == 0.0:
-        raise GeometryError("axis must have a direction, got (0, 0, 0)")
+        raise GeometryError("axis must be a nonzero vector, got (0, 0, 0)")
     turn = checks.number("angle", angle, "rad")
     cross = np.cross(direction / size, np.eye(3)).T
     result: FloatArray = np.eye(3) + np.sin(turn) * cross + (1.0 - np.cos(turn)) * times(cross, cross)
@@ -52,27 +52,25 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
 
 
 def rotation_matrix(value: ArrayLike | None) -> FloatArray:
-    """Return `value` as a rotation matrix."""
+    """Return a checked rotation matrix [-]; None gives the identity."""
     if value is None:
         return np.eye(3)
     matrix = checks.real_array("rotation", value)
     if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
         raise GeometryError("rotation must be a finite 3 x 3 matrix")
     if np.abs(matrix @ matrix.T - np.eye(3)).max() > _ORTHOGONAL or np.linalg.det(matrix) < 0.0:
-        raise GeometryError(
-            "rotation must be a rotation matrix: orthogonal, without a mirror; rotation_about makes one"
-        )
+        raise GeometryError("rotation must be orthogonal without reflection. Use rotation_about(axis, angle).")
     return matrix.copy()
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Part:
-    """One shape of one material, rotated, then translated.
+    """One shape of one material with a rotation and a translation.
 
     Parameters
     ----------
     shape : Shape
-        The volume, in a frame of its own.
+        Volume in its own frame.
     density : float
         Density [kg/m3].
     rotation : array_like, shape (3, 3), optional
@@ -83,7 +81,7 @@ class Part:
     Raises
     ------
     GeometryError
-        If this is no shape, no rotation, or no displacement.
+        If the shape, the rotation or the translation is invalid.
     InvalidValueError
         If the density is not a finite number above zero.
 
@@ -107,10 +105,10 @@ class Part:
         rotation: ArrayLike | None = None,
         translation: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        given: object = shape
-        if not isinstance(given, Shape):
+        candidate: object = shape
+        if not isinstance(candidate, Shape):
             raise GeometryError(
-                "a Part needs a {parameter} (box, cylinder, extrusion, mesh ...), got {value}", parameter="shape",
+                "A Part needs a {parameter} (box, cylinder, extrusion, mesh ...), got {value}.", parameter="shape",
                 value=shape,
             )  # fmt: skip
         object.__setattr__(self, "shape", shape)
@@ -119,7 +117,7 @@ class Part:
         object.__setattr__(self, "translation", vector("translation", translation))
 
     def moved(self, dx: float, dy: float, dz: float) -> "Part":
-        """Return the part moved.
+        """Return the moved part.
 
         Parameters
         ----------
@@ -129,77 +127,77 @@ class Part:
         Returns
         -------
         Part
-            The same shape elsewhere.
+            Moved part.
         """
         return self._with(self.shape, self.rotation, self.translation + vector("displacement", (dx, dy, dz)))
 
     def turned(self, axis: ArrayLike, angle: float) -> "Part":
-        """Return the part turned about an axis through the origin.
+        """Return the part rotated about an axis through the origin.
 
         Parameters
         ----------
         axis : array_like, shape (3,)
-            Direction [-].
+            Direction of the axis [-].
         angle : float
-            Angle, counter-clockwise seen against the axis [rad].
+            Angle, counter-clockwise against the axis direction [rad].
 
         Returns
         -------
         Part
-            The same shape, turned with its place.
+            Rotated part.
         """
         turn = rotation_about(axis, angle)
         return self._with(self.shape, times(turn, self.rotation), applied(turn, self.translation))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Part":
-        """Return the part with all lengths times `size`, about the origin, and its density times `density`.
+        """Return the part scaled about the origin.
 
         Parameters
         ----------
         size, density : float
-            Factors [-].
+            Scale factors of all lengths and of the density [-].
 
         Returns
         -------
         Part
-            The scaled part.
+            Scaled part.
         """
         value = type(self.density)(self.density * checks.positive("density", density))
         return self._with(self.shape.scaled(size), self.rotation, self.translation * size, value)
 
     def mirrored(self) -> "Part":
-        """Return the part seen in the mirror x -> -x.
+        """Return the part mirrored, x -> -x.
 
         Returns
         -------
         Part
-            The mirror image.
+            Mirrored part.
         """
         mirror = np.array([-1.0, 1.0, 1.0])
         return self._with(self.shape.mirrored(), mirror[:, None] * self.rotation * mirror, mirror * self.translation)
 
     def moments(self) -> SolidMoments:
-        """Return mass, centre and second moments in place.
+        """Return mass, centre and second moments at the position of the part.
 
         Returns
         -------
         SolidMoments
-            Exact up to rounding.
+            Moments, exact up to rounding.
         """
         return self.shape.moments().times(self.density).placed(self.rotation, self.translation)
 
     def surfaces(self) -> list[Surface]:
-        """Return the surface in place.
+        """Return the surface at the position of the part.
 
         Returns
         -------
         list of Surface
-            Its pieces.
+            Pieces of the surface.
         """
         return self.shape.surfaces(self.rotation, self.translation)
 
     def box(self) -> FloatArray:
-        """Return the bounding box in place.
+        """Return the bounding box at the position of the part.
 
         Returns
         -------
@@ -210,7 +208,7 @@ class Part:
         return box
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside.
+        """Return True for points inside the part.
 
         Parameters
         ----------
@@ -220,7 +218,7 @@ class Part:
         Returns
         -------
         ndarray of bool, shape (n,)
-            True inside.
+            True for points inside.
         """
         return self.shape.contains(times(points - self.translation, self.rotation))
 
@@ -231,10 +229,10 @@ class Part:
 
 
 def footprint(part: Part, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
-    """Return the corners, and centre and radius of the round faces, with which a part stands on a level ground [m]."""
+    """Return contact corners (x, y), and centre and radius of round contact faces, on a horizontal ground [m]."""
     corners, round_faces = part.shape.footprint()
     points = placed_points(corners, part.rotation, part.translation)
-    upright = abs(abs(float(part.rotation[2, 2])) - 1.0) <= 1e-12
+    is_upright = abs(abs(float(part.rotation[2, 2])) - 1.0) <= 1e-12
     discs = [(placed_points(centre, part.rotation, part.translation), radius) for centre, radius in round_faces]
-    standing = [(c[:2], r) for c, r in discs if upright and abs(float(c[2]) - ground) <= tolerance]
-    return points[np.abs(points[:, 2] - ground) <= tolerance, :2], standing
+    contact_discs = [(c[:2], r) for c, r in discs if is_upright and abs(float(c[2]) - ground) <= tolerance]
+    return points[np.abs(points[:, 2] - ground) <= tolerance, :2], contact_discs

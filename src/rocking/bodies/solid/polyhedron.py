@@ -1,4 +1,4 @@
-"""A closed surface of triangles, and what encloses a volume with it."""
+"""The volume inside a closed surface of triangles."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -19,9 +19,8 @@ from rocking.portable import times
 class Polyhedron(Shape):
     """The volume inside a closed surface of triangles.
 
-    Faces name the corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look
-    inward. A `simple` surface is known not to pass through itself, and is not tried for it; `mended` are the triangles
-    by which holes of a scan were closed.
+    Faces contain the vertex indices of each triangle, counter-clockwise seen from outside; cavities have inward faces.
+    A `simple` surface has no self-intersections and is not checked. `mended` contains the triangles in former holes.
 
     >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
     >>> round(Polyhedron(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]).moments().mass, 12)
@@ -34,8 +33,8 @@ class Polyhedron(Shape):
         self.vertices, self.faces = checked_triangles(vertices, faces)
         if count := len(open_edges(self.faces)):
             raise GeometryError(
-                "the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way",
-                count=count, hint="are there holes, flipped faces, or vertices that were not merged?",
+                "The surface must be closed and oriented: {count} edges have no neighbour in the opposite direction",
+                count=count, hint="check for holes, reversed faces, and vertices that are not merged",
             )  # fmt: skip
         self.mended: FloatArray = np.concatenate([np.empty((0, 3, 3)), *mended])
         if not simple:
@@ -55,7 +54,7 @@ class Polyhedron(Shape):
 
     @cached_property
     def hull(self) -> Any:
-        """Convex hull, as scipy has it."""
+        """Convex hull about the middle of the box, as a scipy ConvexHull."""
         from scipy.spatial import ConvexHull
 
         return ConvexHull(self.vertices - self._middle)
@@ -98,7 +97,7 @@ class Polyhedron(Shape):
         return Polyhedron(self.vertices * mirror, self.faces[:, ::-1], simple=True, mended=[self.mended * mirror])
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return tetrahedra between the faces and the centre, if the whole surface is seen from there."""
+        """Return volumes [m3] and centres [m] of tetrahedra to the centre, or None if faces are hidden from it."""
         apex = self._moments.centre
         corners = self.corners - apex
         cones = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1) / 6.0
@@ -107,9 +106,9 @@ class Polyhedron(Shape):
         pieces = TriangleSurface(corners).triangles(divisions)
         cones = (pieces[:, 0] * np.cross(pieces[:, 1], pieces[:, 2])).sum(axis=1) / 6.0
         ends = np.linspace(0.0, 1.0, divisions + 1)
-        shares, fourths = np.diff(ends**3), 0.75 * np.diff(ends**4) / np.diff(ends**3)
-        volumes = np.outer(cones, shares).ravel()
-        centres = (pieces.mean(axis=1)[:, None] * fourths[:, None]).reshape(-1, 3)
+        layer_fractions, centre_fractions = np.diff(ends**3), 0.75 * np.diff(ends**4) / np.diff(ends**3)
+        volumes = np.outer(cones, layer_fractions).ravel()
+        centres = (pieces.mean(axis=1)[:, None] * centre_fractions[:, None]).reshape(-1, 3)
         return volumes, centres + apex
 
     def _check_volume(self) -> None:
@@ -117,21 +116,21 @@ class Polyhedron(Shape):
         checks.length("largest dimension of the polyhedron", float(box.max()))
         if abs(volume) <= 1e-9 * float(box.max()) * float(np.sort(box)[-2:].prod()):
             raise GeometryError(
-                "the surface encloses no volume (box {width:g} x {depth:g} x {height:g} m)", width=float(box[0]),
-                depth=float(box[1]), height=float(box[2]), hint="is it a sheet, or does half of it look the other way?",
+                "The surface encloses no volume (box {width:g} x {depth:g} x {height:g} m)", width=float(box[0]),
+                depth=float(box[1]), height=float(box[2]), hint="check for a sheet, and for reversed faces",
             )  # fmt: skip
         if volume < 0.0:
-            raise GeometryError("the surface is inside out (negative volume); turn the faces round")
+            raise GeometryError("The surface is inverted (negative volume). Reverse the faces.")
 
 
 def directed_edges(faces: IntArray) -> IntArray:
-    """Return the edges of faces in the sense that each runs along them: all first ones, all second, all third."""
+    """Return the directed edges of faces, shape (3 m, 2): all first edges, then all second, then all third."""
     edges: IntArray = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return edges
 
 
 def numbered(pairs: IntArray) -> IntArray:
-    """Return a number for each pair of whole numbers, the same for the same pair, from 0."""
+    """Return the index of each pair among the different pairs of integers."""
     base = int(pairs.max(initial=0)) + 1
     keys = pairs[:, 0] * base + pairs[:, 1]
     numbers: IntArray = np.unique(keys, return_inverse=True)[1]
@@ -139,31 +138,31 @@ def numbered(pairs: IntArray) -> IntArray:
 
 
 def edge_numbers(faces: IntArray) -> IntArray:
-    """Return a number for each of `directed_edges`, the same whichever way it is run along."""
+    """Return the index of the undirected edge of each of `directed_edges`."""
     return numbered(np.sort(directed_edges(faces), axis=1))
 
 
 def alone(faces: IntArray) -> IntArray:
-    """Return the directed edges that one face has for itself."""
+    """Return the directed edges with exactly one face."""
     numbers = edge_numbers(faces)
-    only: IntArray = directed_edges(faces)[np.bincount(numbers)[numbers] == 1]
-    return only
+    single_edges: IntArray = directed_edges(faces)[np.bincount(numbers)[numbers] == 1]
+    return single_edges
 
 
 def open_edges(faces: IntArray) -> IntArray:
-    """Return the directed edges that no face runs along the other way."""
+    """Return the directed edges without a face in the opposite direction."""
     edges = directed_edges(faces).astype(np.int64)
     base = int(edges.max(initial=0)) + 1
     forward, back = edges[:, 0] * base + edges[:, 1], edges[:, 1] * base + edges[:, 0]
     keys, inverse = np.unique(np.concatenate([forward, back]), return_inverse=True)
-    there = np.bincount(inverse[: len(edges)], minlength=len(keys))
+    forward_count = np.bincount(inverse[: len(edges)], minlength=len(keys))
     reverse = np.bincount(inverse[len(edges) :], minlength=len(keys))
-    left = np.repeat(keys, np.maximum(there - reverse, 0))
-    return np.stack([left // base, left % base], axis=1)
+    unmatched = np.repeat(keys, np.maximum(forward_count - reverse, 0))
+    return np.stack([unmatched // base, unmatched % base], axis=1)
 
 
 def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) -> tuple[FloatArray, IntArray]:
-    """Return points [m] and the triangles between them; fewest: so many of these there must be."""
+    """Return checked points [m] and triangles; fewest: smallest number of triangles."""
     points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 4:
         raise GeometryError(
@@ -174,22 +173,22 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
         bad = int(np.argmin(finite))
         raise GeometryError(
             "vertex {vertex} must be finite, got {point}", vertex=bad, point=tuple(points[bad].tolist()),
-            hint="is the file damaged?",
+            hint="check the file",
         )  # fmt: skip
     if np.abs(points).max() > checks.LARGEST:
         raise GeometryError(
-            "coordinates must be within {limit:g} m of the origin", limit=checks.LARGEST, hint="wrong unit?"
+            "coordinates must be within {limit:g} m of the origin", limit=checks.LARGEST, hint="check the unit"
         )
     if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or len(numbers) < fewest:
         raise GeometryError(
-            ("faces must be at least {fewest} triangles, each of three vertex numbers, got {type} of shape {shape}"),
+            ("faces must be at least {fewest} triangles of three vertex indices, got {type} of shape {shape}"),
             fewest=fewest,
             type=numbers.dtype,
             shape=numbers.shape,
         )
     if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(points)):
         raise GeometryError(
-            "faces must name vertices 0 to {last}, got {low} to {high}", last=len(points) - 1, low=int(numbers.min()),
-            high=int(numbers.max()), hint="do the numbers start at 1, or belong to another list of vertices?",
+            "faces must contain vertex indices from 0 to {last}, got {low} to {high}", last=len(points) - 1,
+            low=int(numbers.min()), high=int(numbers.max()), hint="check that the indices start at 0",
         )  # fmt: skip
     return points.copy(), numbers.astype(np.int64)

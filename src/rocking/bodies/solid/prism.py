@@ -1,4 +1,4 @@
-"""Boxes and extrusions: polyhedra that know how they were made."""
+"""Boxes and extrusions: polyhedra with exact moments."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,7 @@ from rocking.errors import GeometryError
 
 
 class Prism(Polyhedron):
-    """A polygon with holes in the plane (x, y) [m], extruded along z from 0 to its length [m]; density does not count.
+    """A region extruded along z from 0 to its length [m]; the density of the region is ignored.
 
     >>> round(Prism(Region([(0, 0), (1, 0), (0, 1)]), 2.0).moments().mass, 12)
     1.0
@@ -21,7 +21,7 @@ class Prism(Polyhedron):
 
     def __init__(self, region: Region, length: float) -> None:
         if not isinstance(region, Region):
-            raise GeometryError("a Prism needs a Region(outline, density, holes)")
+            raise GeometryError("A Prism needs a Region(outline, density, holes).")
         self.region = region
         self.length = checks.length("length", length)
         flat, self._caps, sides = _net(region)
@@ -36,7 +36,7 @@ class Prism(Polyhedron):
         )
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments; the height's own share in closed form, ``L^2/12``."""
+        """Return volume, centre and second moments; the contribution of the height is exact, ``L^2/12``."""
         plane = combined_plane(ring_moments(ring) for ring in self.region.rings)
         second = super().moments().second * np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
         second[[0, 1, 2], [0, 1, 2]] = np.array([plane.xx, plane.yy, plane.mass * self.length**2 / 12.0])
@@ -52,7 +52,7 @@ class Prism(Polyhedron):
         return Prism(self.region.mapped(lambda ring: ring * np.array([-1.0, 1.0])), self.length)
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return wedges: triangles of the polygon times layers of the length."""
+        """Return volumes [m3] and centres [m] of wedges: triangles of the polygon times layers of the length."""
         pieces = TriangleSurface(self.vertices[self._caps]).triangles(divisions)
         areas, step = area_vectors(pieces)[:, 2], self.length / divisions
         heights = step * (np.arange(divisions) + 0.5)
@@ -62,7 +62,7 @@ class Prism(Polyhedron):
 
 
 class Box(Polyhedron):
-    """A box, centred on the z axis, its base on z = 0, with its full sizes along x, y and z [m]."""
+    """A box on z = 0, centred on the z axis, with full sizes along x, y and z [m]."""
 
     def __init__(self, width: float, depth: float, height: float) -> None:
         names = ("width", "depth", "height")
@@ -79,18 +79,18 @@ class Box(Polyhedron):
         return Box(*(self.size * checks.positive("size", size)).tolist())
 
     def mirrored(self) -> "Box":
-        """Return the mirror image, which is the box itself."""
+        """Return an equal box."""
         return Box(*self.size.tolist())
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return a regular grid of small boxes."""
+        """Return volumes [m3] and centres [m] of a regular grid of small boxes."""
         middles = (np.arange(divisions) + 0.5) / divisions
         grid = np.stack(np.meshgrid(middles - 0.5, middles - 0.5, middles, indexing="ij"), axis=-1).reshape(-1, 3)
         return np.full(divisions**3, float(self.size.prod()) / divisions**3), grid * self.size
 
 
 def box(width: float, depth: float, height: float) -> Box:
-    """Return a box, centred on the z axis, its base on z = 0.
+    """Return a box on z = 0, centred on the z axis.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def box(width: float, depth: float, height: float) -> Box:
 
 
 def extrusion(outline: ArrayLike, length: float, holes: tuple[ArrayLike, ...] = ()) -> Prism:
-    """Return a plan outline extruded upward from z = 0.
+    """Return a vertical extrusion of a plan outline from z = 0.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def extrusion(outline: ArrayLike, length: float, holes: tuple[ArrayLike, ...] = 
     length : float
         Height [m].
     holes : tuple of array_like
-        Rings cut out [m].
+        Outlines of holes [m].
 
     Returns
     -------
@@ -144,7 +144,7 @@ _BOX_FACES = np.array(
 
 
 def _net(region: Region) -> tuple[FloatArray, IntArray, IntArray]:
-    """Vertices, counter-clockwise triangles and directed boundary edges of a region."""
+    """Return vertices, counter-clockwise triangles and directed boundary edges of a region."""
     flat, index = np.unique(np.concatenate(region.rings), axis=0, return_inverse=True)
     number = {tuple(point): i for i, point in enumerate(flat.tolist())}
     triangles = triangulated(region.outline, region.holes).tolist()

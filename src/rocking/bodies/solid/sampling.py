@@ -1,8 +1,8 @@
-"""Integrals over a volume from samples of its surface, graded towards a point or a line.
+"""Integrals over a volume from samples of its surface, refined towards a point or a line.
 
-For a function f that is homogeneous of degree k about a point B, ``div(f s) = (k + 3) f`` with s = S - B, so that
-``Int_V f dV = 1/(k + 3) Int_surface f (s . dA)``: an integrand like x y / |s|^2, which no quadrature over the volume
-likes, becomes a smooth one on every face that does not hold B, and vanishes on every one that does.
+For a function f that is homogeneous of degree k about a point B, ``div(f s) = (k + 3) f`` with s = S - B. Therefore
+``Int_V f dV = 1/(k + 3) Int_surface f (s . dA)``. A singular integrand such as x y / |s|^2 is smooth on every face
+without B, and zero on every face through B.
 """
 
 import math
@@ -22,9 +22,9 @@ _MOST_SAMPLES = 400_000
 
 
 def gauss_order(ratio: float) -> int:
-    """Return the points a direction that a cell needs, from its size over its distance to the singular set."""
+    """Return the number of Gauss points per direction of a cell from the ratio size / distance to the singular set."""
     # the integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is
-    # ``z + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n
+    # ``rho = z + sqrt(1 + z^2)``, and the error of a rule with n points is rho^(-2n)
     z = 2.0 / ratio
     return math.ceil(_DIGITS * math.log(10.0) / (2.0 * math.log(z + math.hypot(1.0, z))))
 
@@ -33,8 +33,8 @@ def samples(
     surfaces: Iterable[Surface], distance: Distance, negligible: float, bound: Distance | None = None
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield Gauss points [m] of a closed surface in batches, with weighted outward normals [m2] (shape (n, 3))."""
-    # Cells are split until each is smaller than its distance to the singular set, on which the frame has its origin.
-    # bound: what the integrand cannot exceed at points; by default 1 [-].
+    # Cells are split until each is smaller than its distance to the singular set, which contains the origin.
+    # bound: upper bound of the integrand at points, default 1 [-].
     for surface in surfaces:
         cells = surface.cells()
         for level in range(_MOST_LEVELS + 1):
@@ -53,8 +53,8 @@ def _measured(
     points, areas = surface.outline(cells)
     middle = points[:, 0]
     radius = 1.02 * np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
-    room = np.maximum(distance(middle) - radius, 0.0)
-    ratio = np.divide(2.0 * radius, room, out=np.full(len(cells), np.inf), where=room > 0.0)
+    distance_to_set = np.maximum(distance(middle) - radius, 0.0)
+    ratio = np.divide(2.0 * radius, distance_to_set, out=np.full(len(cells), np.inf), where=distance_to_set > 0.0)
     cone = np.abs((points * areas).sum(axis=2)).max(axis=1)
     if bound is not None:
         cone = cone * bound(points.reshape(-1, 3)).reshape(points.shape[:2]).max(axis=1)

@@ -1,4 +1,4 @@
-"""A rigid body in space: parts of any shape and density on a base."""
+"""A rigid 3D body: parts of any shape and density on a base."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,56 +30,56 @@ from rocking.portable import times
 BASE_TOLERANCE = 1e-9
 _UPRIGHT, _WHOLE = 1e-12, 0.999
 _OWN_BASE = Message(
-    "the body stands on a base of its own, smaller than the facet of its hull: what lifts it and how far its centre "
-    "must rise are those of the whole facet here, more than its own base asks"
+    "the base of the body is smaller than the facet of its hull: uplift and energy barriers here are those of the "
+    "complete facet, and overestimate those of the base"
 )
-"""Corners this close to the ground, relative to the body's size, stand on it by default."""
+"""Message about a base smaller than its facet."""
 
 
 class Solid:
-    """A rigid body in space, standing on level ground.
+    """A rigid 3D body on horizontal ground.
 
     Parameters
     ----------
     parts : Part, Shape, or sequence of them
-        What it is made of; parts may touch but not overlap, and move as one even where they do not touch. A bare
-        shape has the density of plain concrete, 2400 kg/m3.
+        Parts of one rigid body; they may touch but not overlap. A shape without density has that of plain concrete,
+        2400 kg/m3.
     base : array_like, shape (n, 2), or Base, optional
-        Points (x, y) that it stands on [m]; by default its corners on the ground, or its round face there.
+        Points (x, y) of the base [m]; the default is the corners on the ground, or the round face there.
     ground : float
-        Height of the ground [m]: the lowest point must lie on it.
+        Height of the ground, equal to that of the lowest point [m].
     base_tolerance : float, optional
-        Corners this close to the ground stand on it [m]; by default 1e-9 of the body's size.
+        Largest height of base corners above the ground [m]; the default is 1e-9 x body size.
     mass : float, optional
-        Mass, if known, in place of densities [kg].
+        Known mass, in place of densities [kg].
     centre : (float, float, float), optional
-        Centre of mass (x, y, z), if known; by default that of the parts [m].
+        Known centre of mass (x, y, z) [m]; the default is that of the parts.
     inertia : array_like, shape (3, 3) or (3,), optional
-        Inertia about the centre of mass, axes along x, y and z, if known: the tensor, or three moments where these are
-        principal axes [kg m2].
+        Known inertia about the centre of mass, with axes along x, y and z [kg m2]: the tensor, or three moments for
+        principal axes.
 
     Attributes
     ----------
     name : str
-        What its file calls it, or the name of the file; empty without one.
+        Name in the file, or name of the file; empty without a file.
     repairs : tuple of str
-        One sentence for each change of a mesh that it was read from, and each doubt about it.
+        One sentence for each change of the mesh in the file, and for each doubt about the mesh.
     turn : ndarray, shape (3, 3)
-        Rotation from the axes of the mesh that it was read from to its own; none if it was not [-].
+        Rotation from the axes of the mesh in the file to those of the body [-]; the identity without a mesh.
 
     Raises
     ------
     GeometryError
-        If parts overlap or have moments that no body has, the body does not stand on the ground, has no base with
-        an area, its centre is not above the base, or no mass within it has the centre or the inertia that were given.
+        If parts overlap or have impossible moments, the body does not touch the ground, the base has no area, the
+        centre of mass is not above the base, or the known centre or inertia is impossible for the body.
     InvalidValueError
         If a number is not finite, or mass and densities are both given.
 
     Notes
     -----
-    An inertia that is not given is that of the parts, scaled along each axis as the greatest second moment that masses
-    within the box can have about the known centre; `assumed` says so. The model ``ked-3d`` needs the distribution of
-    mass, refuses a body of which only moments are known, and names those that do not.
+    The default inertia for a known centre is that of the parts, scaled along each axis like the largest possible second
+    moment in the bounding box. `assumed` contains this assumption. The model ``ked-3d`` needs the mass distribution and
+    does not accept a body with known moments only.
 
     Examples
     --------
@@ -115,11 +115,11 @@ class Solid:
         if abs(low[2] - self._ground) > max(tolerance, 8.0 * np.spacing(abs(self._ground))):
             lowest = float(low[2])
             raise GeometryError(
-                "the body floats above the ground: its lowest point is z = {lowest:.9g} m, the ground {ground:.9g} m; "
-                "pass ground={lowest:.9g} or move the parts"
+                "The lowest point of the body, z = {lowest:.9g} m, is above the ground at {ground:.9g} m. Use "
+                "ground={lowest:.9g} or move the parts."
                 if lowest > self._ground
-                else "the body reaches below the ground: its lowest point is z = {lowest:.9g} m, the ground "
-                "{ground:.9g} m; pass ground={lowest:.9g} or move the parts",
+                else "The lowest point of the body, z = {lowest:.9g} m, is below the ground at {ground:.9g} m. Use "
+                "ground={lowest:.9g} or move the parts.",
                 lowest=lowest,
                 ground=self._ground,
             )
@@ -133,9 +133,9 @@ class Solid:
         self.known: SolidMoments | None = None
         self._assumed: tuple[str, ...] = ()
         if centre is not None or inertia is not None:
-            place = None if centre is None else checked_centre(centre, self.origin)
-            own = combined(part.moments() for part in self.local_parts)
-            self.known = known_moments(self.local_parts, own, place, inertia)
+            known_centre = None if centre is None else checked_centre(centre, self.origin)
+            part_moments = combined(part.moments() for part in self.local_parts)
+            self.known = known_moments(self.local_parts, part_moments, known_centre, inertia)
             self._assumed = () if inertia is not None else (ASSUMED,)
         self.local_base = self._placed_base(base, tolerance)
         self._check_support()
@@ -147,18 +147,18 @@ class Solid:
 
     @classmethod
     def from_section(cls, section: Section | Block) -> "Solid":
-        """Return the plane body as a body in space: its polygons extruded over its depth, along y.
+        """Return a 2D body as a 3D body: its polygons extruded over its depth, along y.
 
         Parameters
         ----------
         section : Section or Block
-            The plane body; its y becomes z, its depth lies half before and half behind the plane y = 0.
+            2D body; its y becomes z, and its depth is symmetric about the plane y = 0.
 
         Returns
         -------
         Solid
-            A prism for each region, standing on the section's feet. Of a plane body whose centre of mass or moment of
-            inertia is known, it has these, and its mass is spread evenly over the depth.
+            One prism per region, on the feet of the section. A known centre of mass or moment of inertia stays, with a
+            uniform mass over the depth.
 
         Examples
         --------
@@ -167,9 +167,12 @@ class Solid:
         4.0
         """
         section = section.to_section() if isinstance(section, Block) else section
-        stand = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-        place = (section.origin_x, 0.5 * section.depth, section.ground)
-        parts = [Part(Prism(r, section.depth), r.density, rotation=stand, translation=place) for r in section.regions]
+        rotation = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+        translation = (section.origin_x, 0.5 * section.depth, section.ground)
+        parts = [
+            Part(Prism(r, section.depth), r.density, rotation=rotation, translation=translation)
+            for r in section.regions
+        ]
         half = 0.5 * section.depth
         feet = [(x, y) for x in section.feet for y in (-half, half)]
         if section.known is None:
@@ -178,7 +181,7 @@ class Solid:
         along, across, up = moments.xx, moments.mass * section.depth**2 / 12.0, moments.yy
         inertia = (across + up, along + up, along + across)
         solid = cls(parts, base=feet, ground=section.ground, centre=(x, 0.0, z), inertia=inertia)
-        solid._assumed = (*section.known.assumed[:-1], Message("mass spread evenly over the depth"))
+        solid._assumed = (*section.known.assumed[:-1], Message("mass uniform over the depth"))
         return solid
 
     @property
@@ -193,7 +196,7 @@ class Solid:
 
     @cached_property
     def local_moments(self) -> SolidMoments:
-        """Mass, centre and central second moments about `origin`: known, or of the parts."""
+        """Mass, centre and central second moments relative to `origin`, known or of the parts."""
         return self.known or combined(part.moments() for part in self.local_parts)
 
     @property
@@ -218,19 +221,19 @@ class Solid:
 
     @property
     def base(self) -> Base:
-        """The base in the user's coordinates."""
+        """Base in the user's coordinates."""
         return self.local_base.changed(np.eye(2), self.origin)
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """The parts in the user's coordinates."""
+        """Parts in the user's coordinates."""
         return tuple(part.moved(*self.origin.tolist()) for part in self.local_parts)
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What nobody gave and was assumed, in words."""
+        """Assumed values, as texts."""
         return (
-            *(Message("density {assumed}", {"assumed": each}) for each in assumed_density(self.densities)),
+            *(Message("density {assumed}", {"assumed": text}) for text in assumed_density(self.densities)),
             *self._assumed,
         )
 
@@ -241,7 +244,7 @@ class Solid:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What can be computed with but was hardly meant, in words."""
+        """Warnings about implausible values, as texts."""
         centre = self.local_moments.centre
         slenderness = float(centre[2]) / self.local_base.margin(centre[:2])
         return plausibility.of_body(float(centre[2]), slenderness, self.densities)
@@ -254,7 +257,7 @@ class Solid:
         return box
 
     def answer(self) -> Answer:
-        """Return what is shown of the body.
+        """Return the results of the body.
 
         Returns
         -------
@@ -270,26 +273,26 @@ class Solid:
         })  # fmt: skip
 
     def in_plane(self, azimuth: float = 0.0) -> Section:
-        """Return the plane body that rocks in one direction, from one end of the base to the other.
+        """Return the 2D body that rocks in one direction, between the ends of the base.
 
-        Of a base that is not square to the direction these ends are its corners: the solid itself lifts earlier,
-        over an edge, as `equilibria` says.
+        If no edge of the base is normal to the direction, the ends are corners. The solid itself then has an earlier
+        uplift about an edge, see `equilibria`.
 
         Parameters
         ----------
         azimuth : float
-            Direction of the plane's x, from the solid's x counter-clockwise seen from above [rad].
+            Azimuth of x of the 2D body, counter-clockwise from x of the solid, seen from above [rad].
 
         Returns
         -------
         Section
-            The convex hull of the silhouette on the ends of the base in that direction, with mass, centre of mass and
-            moment of inertia of the solid; its x = 0 is the middle of the solid's box, its ground y = 0. What needs the
-            distribution of mass takes what `assumed` of the plane body says.
+            Convex hull of the silhouette on the ends of the base, with mass, centre of mass and moment of inertia of
+            the solid. x = 0 is the middle of the box of the solid, and y = 0 the ground. `assumed` of the section
+            contains the mass distribution for the models that need it.
 
         Examples
         --------
-        A box of 1 x 2 x 4 m from its long side:
+        A box of 1 x 2 x 4 m, seen along x:
 
         >>> from rocking.bodies.solid import box
         >>> side = Solid(box(1.0, 2.0, 4.0)).in_plane(np.pi / 2)
@@ -298,11 +301,11 @@ class Solid:
         """
         from rocking.bodies.solid.standing import plane_body
 
-        seen = self.turned(-checks.number("azimuth", azimuth, "rad"))
-        return plane_body(seen.local_parts, seen.local_base, seen.local_moments)
+        turned_body = self.turned(-checks.number("azimuth", azimuth, "rad"))
+        return plane_body(turned_body.local_parts, turned_body.local_base, turned_body.local_moments)
 
     def turned(self, angle: float) -> "Solid":
-        """Return the body turned about the vertical through its own origin.
+        """Return the body rotated about the vertical axis through its own origin.
 
         Parameters
         ----------
@@ -312,33 +315,33 @@ class Solid:
         Returns
         -------
         Solid
-            The same body, another way round.
+            Rotated body.
         """
         turn = rotation_about((0.0, 0.0, 1.0), angle)
         return self._copy([part.turned((0.0, 0.0, 1.0), angle) for part in self.local_parts], turn)
 
     def mirrored(self) -> "Solid":
-        """Return the body seen in the mirror x -> -x through its own origin.
+        """Return the body mirrored, x -> -x, about its own origin.
 
         Returns
         -------
         Solid
-            The mirror image.
+            Mirrored body.
         """
         return self._copy([part.mirrored() for part in self.local_parts], np.diag([-1.0, 1.0, 1.0]))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Solid":
-        """Return the body with all lengths times `size` and all densities times `density`.
+        """Return the body with scaled lengths and densities.
 
         Parameters
         ----------
         size, density : float
-            Factors [-].
+            Scale factors of all lengths and of all densities [-].
 
         Returns
         -------
         Solid
-            The scaled body, about its own origin.
+            Body scaled about its own origin.
         """
         factor = checks.positive("size", size)
         checks.length("size of the scaled body", self._size * factor)
@@ -346,47 +349,51 @@ class Solid:
         return self._copy(parts, np.eye(3), factor, density)
 
     def equilibria(self, *, min_barrier: float | None = None) -> Equilibria:
-        """Return in how many ways the body can stand or be balanced on level ground, exact on its convex hull.
+        """Return all equilibria of the body on horizontal ground, exact on its convex hull.
 
         Parameters
         ----------
         min_barrier : float, optional
-            Stable poses from which a smaller rise of the centre leads into a lower one are not poses of their own [m];
-            by default 0, and 1e-4 of the size with round faces, which are taken as those of 360 corners.
+            Ignore stable poses with a smaller energy barrier: rise of the centre of mass on a path to a lower pose [m].
+            The default is 0, and 1e-4 x size for round faces, which are polygons with 360 corners.
 
         Returns
         -------
         Equilibria
-            Stable poses, saddles and summits, in the user's coordinates, with the passes and barriers between them.
+            Stable poses, saddles and summits in the user's coordinates, with passes and energy barriers.
 
         Examples
         --------
         >>> from rocking.bodies.solid import cylinder
-        >>> found = Solid(cylinder(1.0, 3.0)).equilibria()
-        >>> len(found.stable), [ring.kind for ring in found.rings]
+        >>> equilibria = Solid(cylinder(1.0, 3.0)).equilibria()
+        >>> len(equilibria.stable), [ring.kind for ring in equilibria.rings]
         (2, ['stable', 'summit', 'summit'])
         """
         moments = self.local_moments
         placed = replace(moments, centre=self.centre)
-        found = equilibria_of(self.parts, placed, self._size, min_barrier)
-        stands = next((pose for pose in found.stable if pose.down[2] < _UPRIGHT - 1.0), None)
+        equilibria = equilibria_of(self.parts, placed, self._size, min_barrier)
+        upright_pose = next((pose for pose in equilibria.stable if pose.down[2] < _UPRIGHT - 1.0), None)
         base = self.base
-        if stands and isinstance(base, SupportPolygon) and _area(base.vertices) < _WHOLE * _area(stands.support):
-            return replace(found, notes=(*found.notes, _OWN_BASE))
-        return found
+        if (
+            upright_pose
+            and isinstance(base, SupportPolygon)
+            and _area(base.vertices) < _WHOLE * _area(upright_pose.support)
+        ):
+            return replace(equilibria, notes=(*equilibria.notes, _OWN_BASE))
+        return equilibria
 
     def settled(self, pose: StablePose | None = None) -> "Solid":
-        """Return the body set down in one of its stable poses.
+        """Return the body in one of its stable poses.
 
         Parameters
         ----------
         pose : StablePose, optional
-            Of its `equilibria`; by default the one into which it settles from the way up that it has.
+            A pose of its `equilibria`; the default is the pose that the body reaches from its present one.
 
         Returns
         -------
         Solid
-            The body on that facet of its convex hull, on the ground z = 0, its centre of mass above (0, 0).
+            Body on this facet of its convex hull, with the ground z = 0 and the centre of mass above (0, 0).
 
         Examples
         --------
@@ -396,25 +403,23 @@ class Solid:
         >>> round(float(lying.centre[2]), 12)
         0.5
         """
-        given: object = pose
-        if given is not None and not isinstance(given, StablePose):
-            raise InvalidValueError(
-                "pose must be one of the stable poses of `equilibria`, got {pose}", pose=f"{given!r:.60}"
-            )
+        candidate: object = pose
+        if candidate is not None and not isinstance(candidate, StablePose):
+            raise InvalidValueError("pose must be a stable pose of `equilibria`, got {pose}", pose=f"{candidate!r:.60}")
         chosen = self.equilibria().settling((0.0, 0.0, -1.0)) if pose is None else pose
         parts, base = set_down(self.parts, chosen, self._size)
         ground = min(float(part.box()[0, 2]) for part in parts)
-        turn, known = chosen.rotation, dict[str, Any]()
+        rotation, moments = chosen.rotation, dict[str, Any]()
         if self.known is not None:
-            inertia = times(times(turn, self.known.inertia), turn.T)
-            known = {"centre": (0.0, 0.0, chosen.height), "inertia": inertia}
-        result = Solid(parts, base=base, ground=ground, **known)
+            inertia = times(times(rotation, self.known.inertia), rotation.T)
+            moments = {"centre": (0.0, 0.0, chosen.height), "inertia": inertia}
+        result = Solid(parts, base=base, ground=ground, **moments)
         result.name, result.repairs, result._assumed = self.name, self.repairs, self._assumed
-        result.turn = times(turn, self.turn)
+        result.turn = times(rotation, self.turn)
         return result
 
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":
-        # not checked again: a similarity keeps a valid body valid
+        # without checks: a similarity transformation of a valid body is valid
         result = object.__new__(Solid)
         result.name, result.repairs, result.turn = self.name, self.repairs, times(matrix, self.turn)
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
@@ -438,7 +443,7 @@ class Solid:
             x, y = (self.origin + centre)[:2].tolist()
             raise GeometryError(
                 "the centre of mass (x = {x:.6g}, y = {y:.6g} m) must lie above the base", x=x, y=y,
-                hint="a body like this falls over by itself",
+                hint="this body is not stable",
             )  # fmt: skip
         plausibility.warn(self.doubts)
 
@@ -448,7 +453,7 @@ def _weighing(parts: Sequence[Part], density: float) -> tuple[Part, ...]:
 
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:
-    """Return what parts stand on: the hull of their corners on the ground, or the round face there."""
+    """Return the base of parts: the hull of their corners on the ground, or the round face there."""
     prints = [footprint(part, 0.0, tolerance) for part in parts]
     points = np.concatenate([print_[0] for print_ in prints])
     discs = [disc for print_ in prints for disc in print_[1]]
@@ -463,16 +468,14 @@ def found_base(parts: Sequence[Part], tolerance: float) -> Base:
     polygon = hull(points) if len(points) > 2 else None
     if polygon is not None and all(polygon.margin(c) >= r + slack for c, r in discs):
         return polygon
-    raise GeometryError(
-        "the body stands on round faces and corners that reach beyond each other; pass base= with points"
-    )
+    raise GeometryError("The base has round faces and corners outside each other. Use base= with points.")
 
 
 def _listed(parts: Any) -> list[Part]:
-    given = [parts] if isinstance(parts, (Part, Shape)) else parts
-    listed = list(given) if isinstance(given, Sequence) else []
+    items = [parts] if isinstance(parts, (Part, Shape)) else parts
+    listed = list(items) if isinstance(items, Sequence) else []
     if not listed or not all(isinstance(part, (Part, Shape)) for part in listed):
-        raise GeometryError("a Solid needs at least one Part(shape, density) or shape")
+        raise GeometryError("A Solid needs at least one Part(shape, density) or shape.")
     return [part if isinstance(part, Part) else Part(part) for part in listed]
 
 

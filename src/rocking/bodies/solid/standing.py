@@ -1,4 +1,4 @@
-"""How parts can stand: equilibria, rings of what is turned; parts set down or let down, and seen from the side."""
+"""Poses of parts: equilibria, rings of bodies of revolution, stable poses, and views from the side."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from rocking.messages import Message
 from rocking.portable import applied, dot, norm, times
 
 _ROUND = 1e-4
-"""Least barrier that counts of a body with round faces, relative to its size: more than flats of 360 corners leave."""
+"""Smallest energy barrier / size of a body with round faces, above the barriers between 360 corners."""
 _COAXIAL = 1e-9
 _CHORDS = 4000
 _CHORD = 0.02
@@ -29,28 +29,32 @@ _AHEAD = 1e-9
 
 
 def equilibria_of(parts: Sequence[Part], moments: SolidMoments, size: float, min_barrier: float | None) -> Equilibria:
-    """Return the equilibria of parts that are one rigid body."""
+    """Return the equilibria of a rigid body from its parts."""
     corners = np.concatenate([placed_points(p.shape.hull_points(), p.rotation, p.translation) for p in parts])
     rounded = any(isinstance(part.shape, Turned) for part in parts)
-    least = _ROUND * size * rounded if min_barrier is None else min_barrier
+    lowest_barrier = _ROUND * size * rounded if min_barrier is None else min_barrier
     faces = parts[0].shape.faces if len(parts) == 1 and isinstance(parts[0].shape, Polyhedron) else None
-    found = equilibria(corners, moments.centre, moments.mass, faces=faces, min_barrier=least, standing=(0.0, 0.0, -1.0))
-    whole = [
+    result = equilibria(
+        corners, moments.centre, moments.mass, faces=faces, min_barrier=lowest_barrier, standing=(0.0, 0.0, -1.0)
+    )
+    vertices = [
         placed_points(p.shape.vertices, p.rotation, p.translation)
         for p in parts
         if isinstance(p.shape, Polyhedron) and len(p.shape.vertices) > len(p.shape.hull_points())
     ]
-    if whole:  # points inside the hull may be near the ground
-        found = replace(found, surface=np.concatenate([found.surface, *(each - found.centre for each in whole)]))
+    if vertices:  # points inside the hull can be near the ground
+        result = replace(
+            result, surface=np.concatenate([result.surface, *(vertex_set - result.centre for vertex_set in vertices)])
+        )
     if not rounded:
-        return found
-    found = replace(found, notes=(*found.notes, Message("round faces are taken as those of 360 corners")))
+        return result
+    result = replace(result, notes=(*result.notes, Message("round faces are polygons with 360 corners")))
     axis = _axis(parts, moments.centre, size)
-    return found if axis is None else _revolved(found, parts, axis)
+    return result if axis is None else _revolved(result, parts, axis)
 
 
 def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list[Part], SupportPolygon | None]:
-    """Return parts turned so that they stand in a pose, and its support polygon; none where they have a round base."""
+    """Return the parts in a pose, and its support polygon; None for a round base."""
     turn, c, up = pose.rotation, pose.centre, np.array([0.0, 0.0, pose.height])
     turned = [
         Part(p.shape, p.density, rotation=times(turn, p.rotation), translation=applied(turn, p.translation - c) + up)
@@ -61,7 +65,7 @@ def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list
 
 
 def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
-    """Return whether the centre lies above the hull of the points that are within a tolerance of the lowest [m]."""
+    """Return True if the centre lies above the hull of the points up to a tolerance above the lowest one [m]."""
     low = points[points[:, 2] <= points[:, 2].min() + tolerance, :2]
     try:
         return hull(low).margin(centre[:2]) > 1e-12 * float(np.ptp(points, axis=0).max())
@@ -70,9 +74,9 @@ def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
 
 
 def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
-    """Return the rotation that lets a body down, from as it is onto a facet of its hull that holds its centre."""
-    # The ray from the centre downward leaves the hull through a facet; the body is turned onto that, and again, until
-    # the ray leaves through the facet that it lies on. The centre comes lower each time: from z / cos(angle) to z.
+    """Return the rotation from the present pose onto a stable facet of the hull."""
+    # The downward ray from the centre leaves the hull through a facet. The body is rotated onto this facet, repeatedly,
+    # until the ray leaves through the lowest facet. Each rotation lowers the centre from z / cos(angle) to z.
     from scipy.spatial import ConvexHull
 
     equations = ConvexHull(points - centre).equations
@@ -88,7 +92,7 @@ def settled(points: FloatArray, centre: FloatArray) -> FloatArray:
 
 
 def _axis(parts: Sequence[Part], centre: FloatArray, size: float) -> FloatArray | None:
-    """Return the axis about which all parts are turned, if there is one."""
+    """Return the common axis of revolution of all parts, or None."""
     axis = parts[0].rotation[:, 2]
     for part in parts:
         if not isinstance(part.shape, Turned) or part.shape.half_axes[0] != part.shape.half_axes[1]:
@@ -99,37 +103,50 @@ def _axis(parts: Sequence[Part], centre: FloatArray, size: float) -> FloatArray 
     return axis
 
 
-def _revolved(found: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equilibria:
-    """Return the equilibria of a body of revolution: those off its axis stand for rings."""
-    profile = np.concatenate([_profile(part, axis, found.centre) for part in parts])
+def _revolved(equilibria_of_hull: Equilibria, parts: Sequence[Part], axis: FloatArray) -> Equilibria:
+    """Return the equilibria of a body of revolution, with rings in place of equilibria off its axis."""
+    profile = np.concatenate([_profile(part, axis, equilibria_of_hull.centre) for part in parts])
     curved = any(piece.arc for part in parts for piece in cast(Turned, part.shape).meridians)
-    off = _CHORD if curved else _COAXIAL
+    tolerance = _CHORD if curved else _COAXIAL
 
-    def is_ring(one: Equilibrium) -> bool:
-        return norm(np.cross(axis, one.down)) > off
+    def is_ring(equilibrium: Equilibrium) -> bool:
+        return norm(np.cross(axis, equilibrium.down)) > tolerance
 
-    rings = [_ring(one, axis, profile) for one in (*found.stable, *found.summits) if is_ring(one)]
-    points = [one for one in found.stable if not is_ring(one)]
-    low = min([*(each.height for each in points), *(ring.height for ring in rings)])
-    order = {one.number: i for i, one in enumerate([*points, *filter(is_ring, found.stable)])}
+    rings = [
+        _ring(equilibrium, axis, profile)
+        for equilibrium in (*equilibria_of_hull.stable, *equilibria_of_hull.summits)
+        if is_ring(equilibrium)
+    ]
+    points = [equilibrium for equilibrium in equilibria_of_hull.stable if not is_ring(equilibrium)]
+    low = min([*(equilibrium_point.height for equilibrium_point in points), *(ring.height for ring in rings)])
+    order = {
+        equilibrium.number: i for i, equilibrium in enumerate([*points, *filter(is_ring, equilibria_of_hull.stable)])
+    }
 
     def energy(height: float) -> float:
-        return found.mass * g * (height - low)
+        return equilibria_of_hull.mass * g * (height - low)
 
     apart = Message(
-        "{count} circle of equilibria is told apart from the others: a body of revolution rolls on it",
+        "{count} circle of equilibria is listed separately: the body of revolution can roll along it",
         {"count": len(rings)},
-        "{count} circles of equilibria are told apart from the others: a body of revolution rolls on them",
+        "{count} circles of equilibria are listed separately: the body of revolution can roll along them",
     )
     return replace(
-        found,
-        stable=tuple(replace(one, number=order[one.number], energy=energy(one.height)) for one in points),
+        equilibria_of_hull,
+        stable=tuple(
+            replace(equilibrium, number=order[equilibrium.number], energy=energy(equilibrium.height))
+            for equilibrium in points
+        ),
         saddles=(),
-        summits=tuple(replace(one, energy=energy(one.height)) for one in found.summits if not is_ring(one)),
+        summits=tuple(
+            replace(equilibrium, energy=energy(equilibrium.height))
+            for equilibrium in equilibria_of_hull.summits
+            if not is_ring(equilibrium)
+        ),
         rings=tuple(replace(ring, energy=energy(ring.height)) for ring in rings),
-        notes=(*found.notes, apart),
-        basins={facet: order[number] for facet, number in found.basins.items()},
-        links=tuple((order[one], order[other], top) for one, other, top in found.links),
+        notes=(*equilibria_of_hull.notes, apart),
+        basins={facet: order[number] for facet, number in equilibria_of_hull.basins.items()},
+        links=tuple((order[equilibrium], order[other], top) for equilibrium, other, top in equilibria_of_hull.links),
     )
 
 
@@ -140,15 +157,15 @@ def _profile(part: Part, axis: FloatArray, centre: FloatArray) -> FloatArray:
     return np.stack([shape.half_axes[0] * radius, dot(part.translation - centre, axis) + up * height], axis=1)
 
 
-def _ring(one: Equilibrium, axis: FloatArray, profile: FloatArray) -> Ring:
-    sign = 1.0 if one.kind == "stable" else -1.0
-    start = math.acos(-dot(axis, one.down))
+def _ring(equilibrium: Equilibrium, axis: FloatArray, profile: FloatArray) -> Ring:
+    sign = 1.0 if equilibrium.kind == "stable" else -1.0
+    start = math.acos(-dot(axis, equilibrium.down))
     low, high = max(start - _CHORD, 0.0), min(start + _CHORD, math.pi)
 
     def height(tilt: float) -> float:
         return sign * float((profile[:, 0] * math.sin(tilt) - profile[:, 1] * math.cos(tilt)).max())  # Eq. 248
 
-    # by thirds: the height has a kink where it is least
+    # ternary search, because the height has a kink at its minimum
     for _ in range(80):
         third = (high - low) / 3.0
         low, high = (low, high - third) if height(low + third) < height(high - third) else (low + third, high)
@@ -159,17 +176,17 @@ _AROUND = 64
 
 
 def plane_body(parts: tuple[Part, ...], base: Base, moments: SolidMoments) -> Section:
-    """Return parts on z = 0 with a base and moments as they rock about y, from edge to edge of the base along x."""
+    """Return the 2D body of parts on z = 0 that rocks about y, between the ends of the base along x."""
     feet = _feet(base)
     ground = np.array([[foot, 0.0, 0.0] for foot in feet])
-    seen = np.concatenate([ground, *(_points(part) for part in parts)])[:, [0, 2]]
-    seen[:, 1] = np.maximum(seen[:, 1], 0.0)  # what lies within the tolerance of the base stands on it
-    outline = hull(seen).vertices
+    silhouette = np.concatenate([ground, *(_points(part) for part in parts)])[:, [0, 2]]
+    silhouette[:, 1] = np.maximum(silhouette[:, 1], 0.0)  # points within the tolerance lie on the ground
+    outline = hull(silhouette).vertices
     depth = float(np.ptp([part.box()[:, 1] for part in parts]))
     x, _, z = moments.centre.tolist()
     polar = float(moments.second[0, 0] + moments.second[2, 2])
-    known: dict[str, Any] = {"mass": moments.mass, "centre": (x, z), "moment_of_inertia": polar}
-    return Section.from_points(outline, feet=feet, depth=depth, **known)
+    moments_of_section: dict[str, Any] = {"mass": moments.mass, "centre": (x, z), "moment_of_inertia": polar}
+    return Section.from_points(outline, feet=feet, depth=depth, **moments_of_section)
 
 
 def _feet(base: Base) -> tuple[float, float]:
@@ -180,12 +197,12 @@ def _feet(base: Base) -> tuple[float, float]:
 
 
 def _points(part: Part) -> FloatArray:
-    """Return points with the convex hull of the part; of round ones polygons with exact extremes."""
+    """Return points with the convex hull of the part; round shapes are polygons with exact extremes."""
     shape = part.shape
     if isinstance(shape, Polyhedron):
         return placed_points(shape.vertices, part.rotation, part.translation)
     if not isinstance(shape, Turned):
-        raise GeometryError("a {type} has no outline from the side", type=type(shape).__name__)
+        raise GeometryError("A {type} has no outline from the side.", type=type(shape).__name__)
     radius, height = shape.profile()
     u, v = shape.half_axes[0] * part.rotation[:, 0], shape.half_axes[1] * part.rotation[:, 1]
     extremes = [math.atan2(v[k], u[k]) + turn for k in (0, 2) for turn in (0.0, math.pi)]

@@ -1,4 +1,4 @@
-"""What every shape in space answers, and pieces of its surface, flat or turned, split and sampled."""
+"""Base classes of 3D shapes and of their surfaces, with splitting and Gauss sampling of surface cells."""
 
 import math
 from abc import ABC, abstractmethod
@@ -16,68 +16,68 @@ from rocking.portable import applied, gauss_legendre, gauss_rule, times
 
 
 class Surface(ABC):
-    """A batch of surface cells, one a row, that can be split in four and sampled by a Gauss rule."""
+    """A surface in cells, one per row, for splitting into four and for sampling by a Gauss rule."""
 
     @abstractmethod
     def cells(self) -> FloatArray:
-        """Return the coarse cells that cover the surface once."""
+        """Return the coarse cells of the surface, without overlaps."""
 
     @abstractmethod
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return points that span each cell, the middle first [m], and outward area vectors of the cell there [m2]."""
+        """Return the middle and border points of each cell [m], and outward area vectors at these points [m2]."""
 
     @abstractmethod
     def split(self, cells: FloatArray) -> FloatArray:
-        """Return four cells for each."""
+        """Return four cells per cell."""
 
     @abstractmethod
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
-        """Return Gauss points of the cells with their area vectors."""
+        """Return Gauss points of the cells [m] and their area vectors [m2]."""
 
     @abstractmethod
     def triangles(self, divisions: int) -> FloatArray:
-        """Return triangles that picture the surface."""
+        """Return triangles for figures of the surface [m]."""
 
 
 @cache
 def gauss(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return the Gauss-Legendre rule on [0, 1]."""
+    """Return nodes and weights of the Gauss-Legendre rule on [0, 1]."""
     nodes, weights = gauss_legendre(order)
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
 @cache
 def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return shares of the corners (n^2, 3) and weights of sum 1 of a rule for degree 2 n - 1: a collapsed square."""
-    # towards that corner Gauss-Jacobi nodes of the weight u, so that nothing of the order is lost to the collapse
+    """Return barycentric coordinates (n^2, 3) and weights of sum 1 of a rule of degree 2 n - 1: a collapsed square."""
+    # Gauss-Jacobi nodes with the weight u towards the collapsed corner preserve the order
     k = np.arange(1.0, order)
     side = np.sqrt(k * (k + 1.0)) / (2.0 * k + 1.0)
     i = np.arange(order)
-    roots, shares_of_roots = gauss_rule(1.0 / ((2.0 * i + 1.0) * (2.0 * i + 3.0)), side)
+    roots, root_weights = gauss_rule(1.0 / ((2.0 * i + 1.0) * (2.0 * i + 3.0)), side)
     nodes, weights = gauss(order)
     u, v = (grid.ravel() for grid in np.meshgrid(0.5 * (1.0 + roots), nodes, indexing="ij"))
-    shares = np.stack([1.0 - u, u * (1.0 - v), u * v], axis=1)
-    return shares, np.outer(shares_of_roots, weights).ravel()
+    corner_weights = np.stack([1.0 - u, u * (1.0 - v), u * v], axis=1)
+    return corner_weights, np.outer(root_weights, weights).ravel()
 
 
 @cache
 def gauss_square(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the product rule on the unit square."""
+    """Return nodes u, v and weights of the product rule on the unit square."""
     nodes, weights = gauss(order)
     u, v = np.meshgrid(nodes, nodes, indexing="ij")
     return u.ravel(), v.ravel(), np.outer(weights, weights).ravel()
 
 
 def area_vectors(triangles: FloatArray) -> FloatArray:
-    """Return normals of triangles times their areas."""
+    """Return the area vectors of triangles (normal times area) [m2]."""
     a, b, c = np.moveaxis(triangles, 1, 0)
     vectors: FloatArray = 0.5 * np.cross(b - a, c - a)
     return vectors
 
 
 def boxes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return lowest and highest coordinates of each triangle."""
-    # a corner at a time, which is several times quicker than along the axis
+    """Return lowest and highest coordinates of each triangle [m]."""
+    # one corner at a time, which is several times faster than along the axis
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
@@ -104,14 +104,14 @@ class TriangleSurface(Surface):
         return np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
 
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
-        """Return Gauss points of a square collapsed onto each triangle."""
-        shares, weights = gauss_triangle(order)
-        points = times(shares, cells)
+        """Return Gauss points of the collapsed square in each triangle [m], and their area vectors [m2]."""
+        corner_weights, weights = gauss_triangle(order)
+        points = times(corner_weights, cells)
         areas = weights[:, None] * area_vectors(cells)[:, None]
         return points.reshape(-1, 3), areas.reshape(-1, 3)
 
     def triangles(self, divisions: int) -> FloatArray:
-        """Return the triangles, split until none is longer than the largest over `divisions`."""
+        """Return the triangles, split down to the largest edge length / `divisions` [m]."""
         cells, done = self.corners, []
         limit = 1.001 * float(_longest(cells).max()) / divisions
         while len(cells):
@@ -128,24 +128,24 @@ def _longest(triangles: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class TurnedSurface(Surface):
-    """A meridian turned about the z axis, stretched to half axes, then placed."""
+    """A meridian rotated about the z axis, scaled to half axes, with rotation and translation."""
 
-    # straight: (radius, height) at both ends [m]. Arc: its two polar angles from the top [rad] in the first row, its
-    # height of centre and vertical half axis [m] in the second; the radius is then 1; shape (2, 2)
+    # straight: (radius, height) at both ends [m]. Arc of radius 1: first row, the two polar angles from the top [rad];
+    # second row, height of the centre and vertical half axis [m]; shape (2, 2)
     meridian: FloatArray
-    half_axes: tuple[float, float]  # stretch along x and y [-], or the half axes of the ellipse [m] for an arc
-    arc: bool  # whether the meridian is an arc of an ellipse
+    half_axes: tuple[float, float]  # scale factors along x and y [-], or half axes of the ellipse for an arc [m]
+    arc: bool  # True for an arc of an ellipse
     rotation: FloatArray  # rotation matrix [-]; shape (3, 3)
     translation: FloatArray  # displacement [m]; shape (3,)
 
     def cells(self) -> FloatArray:
-        """Return the whole turn in eight sectors, the meridian in pieces of at most an eighth of a turn."""
+        """Return cells in eight sectors of the revolution, and in meridian pieces of at most 45 degrees."""
         u = np.linspace(0.0, 1.0, 1 + max(1, math.ceil(self._sweep / (0.25 * math.pi) - 1e-9)))
         phi = np.linspace(0.0, 2.0 * math.pi, 9)
         return np.array([(*u[i : i + 2], *phi[j : j + 2]) for i in range(len(u) - 1) for j in range(8)])
 
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the middle and eight points around of each cell [m], with area vectors [m2] (shape (n, 9, 3))."""
+        """Return the middle and eight border points of each cell [m], with area vectors [m2] (shape (n, 9, 3))."""
         ends = np.array([0.5, 0.0, 1.0])
         s, t = (grid.ravel() for grid in np.meshgrid(ends, ends, indexing="ij"))
         return self._at(cells, s, t)
@@ -157,13 +157,13 @@ class TurnedSurface(Surface):
         return np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
 
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
-        """Return Gauss points of each cell, at least eight in each direction for the curvature's sake."""
+        """Return Gauss points of each cell [m] and area vectors [m2], with order >= 8 because of the curvature."""
         u, v, weights = gauss_square(max(order, 8))
         points, areas = self._at(cells, u, v)
         return points.reshape(-1, 3), (areas * weights[:, None]).reshape(-1, 3)
 
     def triangles(self, divisions: int) -> FloatArray:
-        """Return two triangles for each patch of a regular net."""
+        """Return two triangles per patch of a regular net [m]."""
         pieces = divisions * (math.ceil(self._sweep / (0.5 * math.pi) - 1e-9) if self.arc else 1)
         u, v = np.linspace(0.0, 1.0, pieces + 1), np.linspace(0.0, 1.0, 4 * divisions + 1)
         s, t = (grid.ravel() for grid in np.meshgrid(u, v, indexing="ij"))
@@ -203,11 +203,11 @@ class TurnedSurface(Surface):
 
 
 Footprint = tuple[FloatArray, tuple[tuple[FloatArray, float], ...]]
-"""Corners that may touch the ground, (n, 3) [m], and centre and radius of round faces that may stand flat on it [m]."""
+"""Possible contact corners, shape (n, 3) [m], and centre and radius of possible round contact faces [m]."""
 
 
 class Shape(ABC):
-    """A closed volume in a frame of its own, z up where the shape has an axis; the methods speak of that frame."""
+    """A closed volume in its own frame, with z along the axis of the shape; all methods use this frame."""
 
     @abstractmethod
     def moments(self) -> SolidMoments:
@@ -223,15 +223,15 @@ class Shape(ABC):
 
     @abstractmethod
     def footprint(self) -> Footprint:
-        """Return the corners and round faces that may stand on the ground."""
+        """Return the possible contact corners and round contact faces."""
 
     @abstractmethod
     def hull_points(self) -> FloatArray:
-        """Return points whose convex hull is that of the shape, (n, 3) [m]; round faces as those of 360 corners."""
+        """Return points with the convex hull of the shape, shape (n, 3) [m]; round faces have 360 corners."""
 
     @abstractmethod
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points (n, 3) lie inside [m]; on the surface either."""
+        """Return True for points (n, 3) inside [m]; the result on the surface is undefined."""
 
     @abstractmethod
     def scaled(self, size: float) -> "Shape":
@@ -239,18 +239,18 @@ class Shape(ABC):
 
     @abstractmethod
     def mirrored(self) -> "Shape":
-        """Return the shape seen in the mirror x -> -x."""
+        """Return the shape mirrored, x -> -x."""
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return volumes [m3] and centres [m] of units that fill the shape without gaps, so many a direction or about.
+        """Return volumes [m3] and centres [m] of units that fill the shape, about `divisions` per direction.
 
-        None where only voxels serve.
+        The result is None for shapes that need voxels.
         """
         return None
 
 
 def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
-    """Return `value` as three finite numbers."""
+    """Return `value` as an array of three finite numbers."""
     array = checks.real_array(name, value, unit)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise GeometryError(parameter=name, allowed=f"three finite numbers (x, y, z) [{unit}]", value=value)
@@ -258,6 +258,6 @@ def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
 
 
 def placed_points(points: FloatArray, rotation: FloatArray | None, translation: FloatArray | None) -> FloatArray:
-    """Return points rotated, then translated."""
+    """Return points after a rotation and then a translation [m]."""
     turned = points if rotation is None else applied(rotation, points)
     return turned if translation is None else turned + translation

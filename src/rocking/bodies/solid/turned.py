@@ -1,4 +1,4 @@
-"""What is made on a lathe: a profile turned about an axis, as cylinders, cones, ellipsoids and sphere caps are."""
+"""Bodies of revolution: cylinders, cones, ellipsoids, sphere caps, and profiles rotated about an axis."""
 
 import math
 from dataclasses import dataclass
@@ -17,27 +17,27 @@ from rocking.errors import GeometryError
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Meridian:
-    """One piece of the profile that is turned."""
+    """One piece of the rotated profile."""
 
-    data: FloatArray  # as `TurnedSurface` takes it; shape (2, 2)
-    arc: bool = False  # whether it is an arc of an ellipse
+    data: FloatArray  # meridian of `TurnedSurface`; shape (2, 2)
+    arc: bool = False  # True for an arc of an ellipse
 
-    def at(self, share: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return radius and height along the piece."""
+    def at(self, fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return radius and height at a fraction of the piece [-]."""
         first, second = self.data
         if self.arc:
-            polar = first[0] + (first[1] - first[0]) * share
+            polar = first[0] + (first[1] - first[0]) * fraction
             return np.sin(polar), second[0] + second[1] * np.cos(polar)
-        return first[0] + (second[0] - first[0]) * share, first[1] + (second[1] - first[1]) * share
+        return first[0] + (second[0] - first[0]) * fraction, first[1] + (second[1] - first[1]) * fraction
 
     def scaled(self, size: float) -> "Meridian":
-        """Return the piece with its heights times `size`, its radii as they are."""
+        """Return the piece with heights times `size`, and the same radii."""
         factors = np.array([[1.0, 1.0], [size, size]] if self.arc else [[1.0, size], [1.0, size]])
         return Meridian(self.data * factors, self.arc)
 
 
 class Turned(Shape):
-    """A profile, counter-clockwise from the axis back to it, turned about z; half_axes: stretch of its plan [m]."""
+    """A counter-clockwise profile from axis to axis, rotated about z; half_axes: scale of its plan [m]."""
 
     def __init__(self, meridians: tuple[Meridian, ...], half_axes: tuple[float, float]) -> None:
         self.meridians, self.half_axes = meridians, half_axes
@@ -46,9 +46,9 @@ class Turned(Shape):
         return f"Turned({len(self.meridians)} pieces, {self.moments().mass:g} m3)"
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments, in closed form for every piece."""
+        """Return volume, centre and second moments, exact for every piece."""
         # ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``: rho or its square is a polynomial of
-        # the height, and three Gauss points integrate degree five exactly
+        # the height, and three Gauss points are exact up to degree five
         (a, b), (nodes, weights) = self.half_axes, gauss(3)
         sums = np.zeros(4)
         middle = 0.5 * float(self.extent(np.eye(3))[:, 2].sum())
@@ -69,13 +69,13 @@ class Turned(Shape):
         return SolidMoments(volume, np.array([0.0, 0.0, middle + height]), second)
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
-        """Return the placed surface, one piece for each piece of the profile."""
+        """Return the surface after rotation and translation, one piece per piece of the profile."""
         turn = np.eye(3) if rotation is None else rotation
         move = np.zeros(3) if translation is None else translation
         return [TurnedSurface(piece.data, self.half_axes, piece.arc, turn, move) for piece in self.meridians]
 
     def extent(self, rotation: FloatArray) -> FloatArray:
-        """Return the box of the rotated shape: of its circles, exact for straight profiles."""
+        """Return the box of the circles of the rotated shape, exact for straight profiles, shape (2, 3) [m]."""
         radius, height = self.profile()
         a, b = self.half_axes
         middle = np.outer(height, rotation[:, 2])
@@ -83,22 +83,22 @@ class Turned(Shape):
         return np.array([(middle - reach).min(axis=0), (middle + reach).max(axis=0)])
 
     def profile(self, chords: int = 48) -> tuple[FloatArray, FloatArray]:
-        """Return radius [-] and height [m] of corners from the axis at the bottom to that at the top."""
-        # chords: of an arc
+        """Return radius [-] and height [m] of corners from the axis at the bottom to the axis at the top."""
+        # chords: number of chords of an arc
         ends = [piece.at(np.linspace(0.0, 1.0, chords + 1 if piece.arc else 2)[:-1]) for piece in self.meridians]
         last = self.meridians[-1].at(np.array([1.0]))
         radius, height = (np.concatenate([*(end[i] for end in ends), last[i]]) for i in range(2))
         return radius, height
 
     def hull_points(self) -> FloatArray:
-        """Return 360 points round the axis for every corner of the profile, an arc in pieces of at least a degree."""
+        """Return 360 points around the axis for every corner of the profile; arcs have 180 chords."""
         (a, b), (radius, height) = self.half_axes, self.profile(180)
         phi = np.arange(360) * (2.0 * math.pi / 360.0)
         x, y = (half * np.outer(radius, around) for half, around in ((a, np.cos(phi)), (b, np.sin(phi))))
         return np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=-1).reshape(-1, 3)
 
     def footprint(self) -> Footprint:
-        """Return the discs at the bottom and at the top, if the plan is round."""
+        """Return the discs at bottom and top for a round plan, else points on their rims."""
         (a, b), discs, rims = self.half_axes, [], []
         flat = [p for p in self.meridians if not p.arc and p.data[0, 1] == p.data[1, 1]]
         phi = np.linspace(0.0, 2.0 * math.pi, 361)[:-1]
@@ -111,25 +111,25 @@ class Turned(Shape):
         return np.concatenate([np.zeros((0, 3)), *rims]), tuple(discs)
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside the turned profile."""
+        """Return True for points inside the rotated profile."""
         import shapely
 
         polygon = shapely.Polygon(np.stack(self.profile(), axis=1))
         shapely.prepare(polygon)
         a, b = self.half_axes
-        found: BoolArray = shapely.contains_xy(polygon, np.hypot(points[:, 0] / a, points[:, 1] / b), points[:, 2])
-        return found
+        is_inside: BoolArray = shapely.contains_xy(polygon, np.hypot(points[:, 0] / a, points[:, 1] / b), points[:, 2])
+        return is_inside
 
     def scaled(self, size: float) -> "Turned":
         factor, (a, b) = checks.positive("size", size), self.half_axes
         return Turned(tuple(piece.scaled(factor) for piece in self.meridians), (a * factor, b * factor))
 
     def mirrored(self) -> "Turned":
-        """Return the mirror image, which is the shape itself."""
+        """Return the shape itself."""
         return self
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return rings of the profile cut into sectors, with their own centres."""
+        """Return volumes [m3] and centres [m] of sectors of rings."""
         flat = triangulated(np.stack(self.profile(4 * divisions), axis=1))
         lifted = np.concatenate([flat, np.zeros((*flat.shape[:2], 1))], axis=2)
         flat = TriangleSurface(lifted).triangles(divisions)[..., :2]
@@ -144,21 +144,22 @@ class Turned(Shape):
         chord = math.sin(0.5 * sector) / (0.5 * sector)
         a, b = self.half_axes
         volumes = np.repeat(a * b * area * mean * sector, len(phi))
-        reach, height = np.repeat(second / mean[:, None], len(phi), axis=0).T
+        radius_of_centre, height = np.repeat(second / mean[:, None], len(phi), axis=0).T
         around = np.tile(phi, len(flat))
         return volumes, np.stack(
-            [a * chord * reach * np.cos(around), b * chord * reach * np.sin(around), height], axis=1
+            [a * chord * radius_of_centre * np.cos(around), b * chord * radius_of_centre * np.sin(around), height],
+            axis=1,
         )
 
 
 def revolution(profile: ArrayLike) -> Turned:
-    """Return a profile of straight pieces turned about the z axis.
+    """Return a profile of straight pieces rotated about the z axis.
 
     Parameters
     ----------
     profile : array_like, shape (n, 2)
-        Points (radius, height) [m] from the axis at the bottom to the axis at the top; a profile that does not
-        start or end on the axis is closed by a flat disc.
+        Points (radius, height) from the axis at the bottom to the axis at the top [m]. A flat disc closes a profile
+        that starts or ends off the axis.
 
     Returns
     -------
@@ -177,7 +178,7 @@ def revolution(profile: ArrayLike) -> Turned:
     """
     points = checks.real_array("profile", profile, "m")
     if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 2 or not np.isfinite(points).all():
-        raise GeometryError("profile must be at least two points (radius, height) in m, all finite")
+        raise GeometryError("profile must be at least two finite points (radius, height) in m")
     if (points[:, 0] < 0.0).any():
         raise GeometryError(
             "radii of the {parameter} must be >= 0 m, got {radius:g}", parameter="profile",
@@ -219,12 +220,12 @@ def cylinder(diameter: float, height: float) -> Turned:
 
 
 def frustum(lower_diameter: float, upper_diameter: float, height: float) -> Turned:
-    """Return an upright cone cut off at the top, on z = 0.
+    """Return an upright frustum of a cone on z = 0.
 
     Parameters
     ----------
     lower_diameter, upper_diameter : float
-        Diameters below and above; the upper one may be zero, which gives a cone [m].
+        Diameters of base and top [m]; an upper diameter of 0 gives a cone.
     height : float
         Height [m].
 
@@ -266,24 +267,24 @@ def cone(diameter: float, height: float) -> Turned:
 
 
 def ellipsoid(width: float, depth: float, height: float, *, cut_below: float = 0.0, cut_above: float = 0.0) -> Turned:
-    """Return an ellipsoid, or what two level cuts leave of it, its lowest point on z = 0.
+    """Return an ellipsoid, optionally with horizontal cuts, with its lowest point on z = 0.
 
     Parameters
     ----------
     width, depth, height : float
-        Full axes along x, y and z of the whole ellipsoid [m].
+        Full axes along x, y and z of the complete ellipsoid [m].
     cut_below, cut_above : float
-        Heights of the caps that are cut off [m].
+        Heights of the removed caps [m].
 
     Returns
     -------
     Turned
-        The shape: a sphere cap, for instance, is an equal-sided ellipsoid cut from below.
+        The shape.
 
     Raises
     ------
     GeometryError
-        If the cuts leave nothing.
+        If the cuts remove the complete ellipsoid.
 
     Examples
     --------
@@ -296,7 +297,7 @@ def ellipsoid(width: float, depth: float, height: float, *, cut_below: float = 0
     above = checks.within("cut_above", cut_above, 0.0, 2.0 * half, unit="m")
     if below + above >= 2.0 * half * (1.0 - 1e-9):
         raise GeometryError(
-            "cuts of {below:g} and {above:g} m leave nothing of an ellipsoid {height:g} m high", below=below,
+            "Cuts of {below:g} and {above:g} m remove the complete ellipsoid of height {height:g} m.", below=below,
             above=above, height=2.0 * half,
         )  # fmt: skip
     low, high = math.acos(max(below / half - 1.0, -1.0)), math.acos(min(1.0 - above / half, 1.0))
@@ -310,7 +311,7 @@ def ellipsoid(width: float, depth: float, height: float, *, cut_below: float = 0
 
 
 def sphere_cap(diameter: float, height: float) -> Turned:
-    """Return what a level cut leaves of a sphere above it, standing on the cut.
+    """Return the cap of a sphere above a horizontal cut, with the cut as base.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A solid divided into units: small pieces with the mass in their middle."""
+"""Division of a solid into units: small pieces with lumped masses."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from rocking.bodies.solid.surfaces import placed_points
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 
-MOST_UNITS = 20_000_000  # finer divisions are refused [-]
+MOST_UNITS = 20_000_000  # largest number of units [-]
 _SUBGRID = 3
 _Pieces = tuple[FloatArray, FloatArray, int]  # masses [kg], centres [m], order of convergence
 
@@ -23,14 +23,14 @@ class Units:
     Parameters
     ----------
     mass : ndarray, shape (n,)
-        Mass of each [kg].
+        Mass of each unit [kg].
     centre : ndarray, shape (n, 3)
-        Where it is lumped, in the user's coordinates as `Solid.centre` and `Solid.base` [m].
+        Centre of mass of each unit, in the user's coordinates [m].
     part : ndarray of int, shape (n,)
-        Part that it belongs to.
+        Index of the part of each unit.
     declared_order : int
-        Order of convergence of sums over units to the exact integrals: 2 where the units fill every part exactly,
-        1 where voxels cut its surface.
+        Order of convergence of sums over units to the exact integrals: 2 if the units fill every part exactly, 1 if
+        voxels cut the surface.
     """
 
     mass: FloatArray
@@ -43,22 +43,22 @@ class Units:
 
 
 def divided(solid: Solid, divisions: int) -> Units:
-    """Return the body divided into units, conforming to each part where its shape allows.
+    """Return the units of a body, which conform to the shape of each part if possible.
 
-    Boxes become grids, extrusions wedges, turned shapes sectors of rings, polyhedra that are seen whole from their
-    centre become pieces of pyramids; other meshes become voxels.
+    Boxes give grids, extrusions give wedges, and bodies of revolution give sectors of rings. Polyhedra with a surface
+    visible from the centre give pieces of pyramids. Other meshes give voxels.
 
     Parameters
     ----------
     solid : Solid
         The body.
     divisions : int
-        Units along each direction of a part, more or less [-].
+        Approximate number of units along each direction of a part [-].
 
     Returns
     -------
     Units
-        Their masses add up to that of the body (to the voxels' accuracy where there are some).
+        Units with the total mass of the body, up to the accuracy of voxels.
 
     Raises
     ------
@@ -83,21 +83,21 @@ def divided(solid: Solid, divisions: int) -> Units:
 
 
 def voxels(solid: Solid, divisions: int) -> Units:
-    """Return the body divided into cubes of one grid, whatever its shape.
+    """Return the body divided into cubes of one grid.
 
-    A cube on the surface has the mass and the centre of those of its 27 parts whose middles lie inside.
+    A cube on the surface has mass and centre of those of its 27 subcubes with the middle inside the body.
 
     Parameters
     ----------
     solid : Solid
         The body.
     divisions : int
-        Cubes along the longest side of the body [-].
+        Number of cubes along the longest side of the body [-].
 
     Returns
     -------
     Units
-        Of order 1, because the surface cuts cubes.
+        Units of order 1, because the surface cuts cubes.
     """
     step = solid.size / _whole(divisions)
     return _assembled(solid, [_voxels_of(part, step) for part in solid.local_parts])
@@ -118,18 +118,18 @@ def _voxels_of(part: Part, step: float) -> _Pieces:
     counts = np.maximum(np.ceil((high - low) / step - 1e-9).astype(int), 1)
     if counts.prod() * _SUBGRID**3 > MOST_UNITS * 10:
         raise InvalidValueError(
-            "{parameter} give {voxels} voxels, which are too many", parameter="divisions", voxels=int(counts.prod()),
-            hint="take fewer",
+            "{parameter} gives {voxels} voxels, more than the limit", parameter="divisions", voxels=int(counts.prod()),
+            hint="use fewer divisions",
         )  # fmt: skip
     fine = counts * _SUBGRID
     axes = [start + (np.arange(n) + 0.5) * step / _SUBGRID for start, n in zip(low, fine, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     index = np.stack(np.unravel_index(np.arange(len(points)), tuple(fine)), axis=1) // _SUBGRID
     number = np.ravel_multi_index(tuple(index.T), tuple(counts))
-    held = part.contains(points)
-    number, points = number[held], points[held]
-    share = np.bincount(number, minlength=int(counts.prod()))
-    used = share > 0
-    sums = np.stack([np.bincount(number, weights=points[:, i], minlength=len(share)) for i in range(3)], axis=1)
-    mass: FloatArray = part.density * share[used].astype(np.float64) * (step / _SUBGRID) ** 3
-    return mass, sums[used] / share[used, None], 1
+    is_inside = part.contains(points)
+    number, points = number[is_inside], points[is_inside]
+    count = np.bincount(number, minlength=int(counts.prod()))
+    used = count > 0
+    sums = np.stack([np.bincount(number, weights=points[:, i], minlength=len(count)) for i in range(3)], axis=1)
+    mass: FloatArray = part.density * count[used].astype(np.float64) * (step / _SUBGRID) ** 3
+    return mass, sums[used] / count[used, None], 1

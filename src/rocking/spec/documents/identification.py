@@ -11,39 +11,41 @@ from rocking.spec.motion_tables import OneMotionTable
 
 
 class MeasurementTable(JobTable):
-    """What was measured of a body that rocks freely: a file, or a folder in which every file is a trial."""
+    """Measurement of a freely rocking body: a file, or a folder with one file per trial."""
 
-    file: Text = Field(description="sound, video, table of times or rotations, or a folder of them")
-    kind: str | None = key("sound, video, times, rotation, displacement, angular velocity or acceleration")
-    column: str | None = key("name of the column, where a table has several")
-    unit: str | None = key("unit of the column, where the table states none")
-    time_column: str | None = key("name of the column of times; that called time if not given")
-    time_unit: str | None = key("unit of the times, s or ms, where the table states none")
-    height: Positive | None = key("height of the sensor above the base, for a displacement or an acceleration [m]")
-    region: list[float] | None = key(
-        "of a video, where the body is at rest, if not found by what moves: left, top, width, height [pixels]"
+    file: Text = Field(description="sound file, video, table of times or rotations, or folder of such files")
+    kind: str | None = key(
+        "kind of measurement: sound, video, times, rotation, displacement, angular velocity or acceleration"
     )
-    frame_rate: Positive | None = key("of a video played more slowly than it was taken, as it was taken [1/s]")
+    column: str | None = key("name of the measured column, for a table with several columns")
+    unit: str | None = key("unit of the column, for a table without unit")
+    time_column: str | None = key("name of the column of times, default: time")
+    time_unit: str | None = key("unit of the times, s or ms, for a table without unit")
+    height: Positive | None = key("height of the sensor above the base, for displacement or acceleration [m]")
+    region: list[float] | None = key(
+        "video: region of the body at rest as left, top, width, height, default: detected from the movement [pixels]"
+    )
+    frame_rate: Positive | None = key("frame rate of the camera, for a video in slow motion [1/s]")
 
 
 class IdentifyTable(JobTable):
-    """What is known beside a measurement; everything that is left out has its usual value."""
+    """Standard deviations and options of an identification."""
 
-    size_error: float | None = key("standard deviation of a length of the body, relative; 0.01 if not given [-]")
+    size_error: float | None = key("relative standard deviation of the body dimensions, default 0.01 [-]")
     tilt: float | list[float] | None = key(
-        "standard deviation of the tilt of the floor, or [tilt, deviation], clockwise; 0.0052 if not given [rad]"
+        "standard deviation of the floor tilt, or [tilt, deviation], positive clockwise, default 0.0052 [rad]"
     )
-    asymmetry: float | None = key("standard deviation of ln r landing right less left; 0.06 if not given [-]")
-    trend: bool | None = key("fit a change of r with the speed")
-    damping: bool | None = key("fit damping between impacts")
+    asymmetry: float | None = key("standard deviation of ln r on the right minus ln r on the left, default 0.06 [-]")
+    trend: bool | None = key("fit of a linear change of r with the impact velocity")
+    damping: bool | None = key("fit of a damping between impacts")
     clock: float | list[float] | None = key(
-        "under a motion: standard deviation of the clock against that of the motion, or [ahead, deviation]; 0.02 [s]"
+        "with a motion: standard deviation of the time offset between both clocks, or [offset, deviation], 0.02 [s]"
     )
-    first: Literal["left", "right"] | None = key("foot on which it stands after the first impact, of times")
+    first: Literal["left", "right"] | None = key("times: contact foot after the first impact")
 
 
 class IdentificationDocument(JobTable):
-    """A file that asks what a measurement says of the coefficient of restitution."""
+    """Input file of an identification."""
 
     body: dict[str, Any] | None = None
     measurement: MeasurementTable
@@ -53,19 +55,19 @@ class IdentificationDocument(JobTable):
     @model_validator(mode="before")
     @classmethod
     def _pairs(cls, stated: Any) -> Any:
-        known = stated.get("identify") if isinstance(stated, dict) else None
-        known = known if isinstance(known, dict) else {}
-        for name in {"tilt", "clock"} & set(known):
-            pair = given if isinstance(given := known[name], list) else [given, 0.0]
-            if len(pair) != 2 or not all(type(each) in {int, float} and abs(each) < math.inf for each in pair):
+        identify = stated.get("identify") if isinstance(stated, dict) else None
+        identify = identify if isinstance(identify, dict) else {}
+        for name in {"tilt", "clock"} & set(identify):
+            pair = value if isinstance(value := identify[name], list) else [value, 0.0]
+            if len(pair) != 2 or not all(type(number) in {int, float} and abs(number) < math.inf for number in pair):
                 raise InvalidValueError(
-                    "{parameter} is one number, or a value and its deviation, got {value}",
-                    parameter=f"identify.{name}", value=given,
+                    "{parameter} must be a number, or a value and its standard deviation, got {value}.",
+                    parameter=f"identify.{name}", value=value,
                 )  # fmt: skip
         return stated
 
     @model_validator(mode="after")
     def _of_two_clocks(self) -> "IdentificationDocument":
         if self.identify.clock is not None and self.motion is None:
-            raise InvalidValueError("identify.clock goes with [motion]: it is of both clocks")
+            raise InvalidValueError("identify.clock needs [motion]. Add a motion, or remove the key.")
         return self

@@ -11,23 +11,23 @@ from rocking.spec.settings_tables import StudySettingsTable
 
 
 class PredictTable(JobTable):
-    """What is not known of a body: a number, [low, high], more numbers, or a table of a distribution."""
+    """Uncertain inputs of a body: a number, [low, high], a sample of three or more numbers, or a distribution."""
 
-    restitution: Any = key('"measured" (usual), a model, "complementarity", or a coefficient [-]')
-    friction: Any = key("coefficient of friction; [0.3, 0.8] if not given [-]")
-    base: Any = key("how far feet lie inside of the drawn base; up to 2 % of its width if not given [m]")
-    centre: Any = key("factor on the height of the centre of mass; [0.97, 1.03] if not given [-]")
-    polarity: Any = key("1 as recorded, -1 mirrored; both alike if not given")
-    azimuth: Any = key("of the body's plane, with motions of two components; any if not given [rad]")
-    sliding_beyond: Positive = key("distance from which it is said to slide [m]", 0.01)
-    pga: Text | None = key("peak ground acceleration to which each motion is scaled: 0.3g, 2.9m/s2")
-    count: int = key("bodies drawn for each motion, a power of two", 128, ge=4, le=1 << 20)
-    contributions: bool = key("find which input matters how much", True)
-    seed: Seed = key("seed of the draws", 0)
+    restitution: Any = key('coefficient of restitution, model, "complementarity", or "measured" (default) [-]')
+    friction: Any = key("coefficient of friction, default [0.3, 0.8] [-]")
+    base: Any = key("distance of the feet from the edges of the base, default 0 to 2 % of the base width [m]")
+    centre: Any = key("scale factor of the height of the centre of mass, default [0.97, 1.03] [-]")
+    polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
+    azimuth: Any = key("azimuth of the plane of the body for motions with two components, default uniform [rad]")
+    sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
+    pga: Text | None = key("peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2")
+    count: int = key("number of sampled bodies for each motion, a power of two", 128, ge=4, le=1 << 20)
+    contributions: bool = key("contributions of the inputs to the variance", True)
+    seed: Seed = key("random seed", 0)
 
 
 class PredictedBody(JobTable):
-    """A body, what is not known of it, and how to integrate."""
+    """A body, its uncertain inputs, and the settings of the integration."""
 
     predict: PredictTable = Field(default_factory=PredictTable)
     body: dict[str, Any]
@@ -35,19 +35,19 @@ class PredictedBody(JobTable):
 
     @model_validator(mode="after")
     def _one_engine(self) -> "PredictedBody":
-        known = {"gravity", "friction", "normal_restitution", "normal_restitution_law"}
-        odd = sorted(self.settings.model_fields_set - known)
-        if odd:
+        allowed = {"gravity", "friction", "normal_restitution", "normal_restitution_law"}
+        refused = sorted(self.settings.model_fields_set - allowed)
+        if refused:
             raise InvalidValueError(
-                "{parameter} does not go with a prediction, which has one engine", parameter=f"settings.{odd[0]}"
+                "A prediction does not accept {parameter}. Remove it.", parameter=f"settings.{refused[0]}"
             )
         if "friction" in self.settings.model_fields_set & self.predict.model_fields_set:
-            raise InvalidValueError("predict.friction and settings.friction say the same: leave one out")
+            raise InvalidValueError("Use predict.friction or settings.friction, not both.")
         return self
 
 
 class PredictionDocument(PredictedBody):
-    """A file that asks how likely a body is to overturn."""
+    """Input file of a prediction."""
 
     motion: ComponentsTable | None = None
     motions: Annotated[list[MotionTable], BeforeValidator(in_list)] = Field(default_factory=list)
@@ -55,21 +55,21 @@ class PredictionDocument(PredictedBody):
     @model_validator(mode="after")
     def _whole(self) -> "PredictionDocument":
         if (self.motion is None) == (not self.motions):
-            raise InvalidValueError("give [[motions]], or [motion] with x and y, and not both")
+            raise InvalidValueError("Use [[motions]], or [motion] with x and y, not both.")
         return self
 
 
 class AssessTable(JobTable):
-    """What is asked of an assessment, and what stands on its report."""
+    """Options of an assessment and of its report."""
 
-    restitutions: list[Any] | None = key("models and coefficients of the histories; all models if not given")
-    margin: Positive = key("factor on the motions that remedies must hold [-]", 1.0)
-    project: Text | None = key("what the project is called")
-    author: Text | None = key("who signs")
-    date: Text | None = key("day of the report; today if not given")
+    restitutions: list[Any] | None = key("restitution models and coefficients to compare, default: all models")
+    margin: Positive = key("required margin: scale factor of the motions for the retrofit measures [-]", 1.0)
+    project: Text | None = key("name of the project")
+    author: Text | None = key("author of the report")
+    date: Text | None = key("date of the report, default: today")
 
 
 class AssessmentDocument(PredictionDocument):
-    """A file that asks whether a body stands, and what to do about it."""
+    """Input file of an assessment."""
 
     assess: AssessTable = Field(default_factory=AssessTable)

@@ -10,18 +10,18 @@ from rocking.spec.motion_tables import ComponentsTable, MotionTable
 
 
 class RecordDocument(JobTable):
-    """A file that says how one record is read and corrected."""
+    """Input file for reading and processing one record."""
 
     motion: ComponentsTable
 
 
 class RecordSetDocument(JobTable):
-    """A file that says how a set of records is read, corrected and chosen."""
+    """Input file for reading, processing and selecting a set of records."""
 
     motions: Annotated[list[MotionTable], Field(min_length=1, max_length=1), BeforeValidator(in_list)]
 
     @model_validator(mode="after")
     def _of_records(self) -> "RecordSetDocument":
         if self.motions[0].records is None:
-            raise InvalidValueError("motions.records is missing: a set is one of records")
+            raise InvalidValueError("motions.records is missing. Add record files, a folder or a pattern.")
         return self

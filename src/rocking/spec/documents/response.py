@@ -13,34 +13,34 @@ from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
 
 
 class ResponseTable(JobTable):
-    """How the body starts, and on what it stands."""
+    """Initial state of the body, and contact with the ground."""
 
     initial_rotation: float | None = key(
-        "no motion: initial rotation over the slenderness angle; above 0 to the right (x), below 0 to the left [-]"
+        "without motion: initial rotation / slenderness angle, > 0 to the right (+x), < 0 to the left [-]"
     )
     friction: float | None = key("coefficient of friction; enables sliding [-]", None, gt=0.0)
-    normal_restitution: float | None = key("with friction: coefficient of normal restitution, from 0 [-]", None, ge=0.0)
+    normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)
     normal_restitution_law: Literal["newton", "poisson", "stronge"] | None = key(BOUNCE_LAW)
     start_height: float | None = key(
-        "with friction: initial height of the lowest point, from which the body drops [m]", None, ge=0.0
+        "with friction: initial height of the lowest point above the ground [m]", None, ge=0.0
     )
     start_velocity: list[float] | None = key(
-        "with friction: initial velocity of the lowest point; x and up for a plane body, x, y and up for a solid [m/s]"
+        "with friction: initial velocity of the lowest point, (x, up) of a 2D body, (x, y, up) of a 3D body [m/s]"
     )
     assumed_friction: float = Field(
         gt=0.0,
         default_factory=lambda: DEFAULT_FRICTION,
-        description="without friction: what pure rocking is compared with; 0.5 if not given [-]",
+        description="without friction: coefficient of friction for the sliding check, default 0.5 [-]",
     )
 
     @property
     def dropped(self) -> bool:
-        """Whether the body starts above the ground, or in motion."""
+        """True if the body starts above the ground, or with a velocity."""
         return bool(self.start_height) or any(self.start_velocity or ())
 
 
 class ResponseTables(JobTable):
-    """What every document of a response has, wherever its body and motion come from."""
+    """Tables of a response other than body and motion."""
 
     restitution: RestitutionTable = Field(default_factory=lambda: RestitutionTable(model=DEFAULT_RESTITUTION))
     response: ResponseTable = Field(default_factory=ResponseTable)
@@ -55,7 +55,7 @@ class ResponseTables(JobTable):
 
 
 def check_start(moved: bool, start: ResponseTable) -> None:
-    """Refuse a document in which nothing moves the body, and one with both a motion and an initial rotation."""
+    """Refuse a document without a motion or an initial state, and one with both motion and initial rotation."""
     if moved and start.initial_rotation is not None:
         raise InvalidValueError("Use a motion or response.initial_rotation, not both.")
     if not moved and start.initial_rotation is None and not start.dropped:
@@ -63,7 +63,7 @@ def check_start(moved: bool, start: ResponseTable) -> None:
 
 
 class ResponseDocument(ResponseTables):
-    """A file that describes one response."""
+    """Input file of one response."""
 
     body: dict[str, Any]
     motion: ComponentsTable | None = None

@@ -8,16 +8,16 @@ from rocking.spec.motion_tables import OF_FILES, MotionKeys
 
 
 class ValidationDocument(PredictedBody):
-    """A file beside a table of outcomes: the body, what is not known of it, and how its records are read."""
+    """Input file of a validation: the body, its uncertain inputs, and the options of the record files."""
 
     motion: MotionKeys = Field(default_factory=MotionKeys)
 
     @model_validator(mode="after")
     def _of_files(self) -> "ValidationDocument":
-        known = OF_FILES - {"vertical_file"}
-        if odd := sorted(self.motion.model_fields_set - known):
+        allowed = OF_FILES - {"vertical_file"}
+        if refused := sorted(self.motion.model_fields_set - allowed):
             raise InvalidValueError(
-                "[motion] takes {names} here, got {key}", names=", ".join(sorted(known)), key=odd[0],
-                hint="outcomes name the rest",
+                "[motion] accepts {names} here, got {key}", names=", ".join(sorted(allowed)), key=refused[0],
+                hint="the table of outcomes contains the other values",
             )  # fmt: skip
         return self

@@ -1,4 +1,4 @@
-"""Studies: one file per study, used because it is in this folder."""
+"""Studies: one module per study; every module of this folder is used."""
 
 from importlib import import_module
 from pkgutil import iter_modules
@@ -17,7 +17,7 @@ def questions() -> dict[str, type[StudyQuestion]]:
 
 
 def question_of(text: str) -> StudyQuestion:
-    r"""Return the study that a job file describes.
+    r"""Return the study of a job file.
 
     >>> question_of('[campaign]\nname = "a"\nkind = "stripe"')
     Traceback (most recent call last):
@@ -27,11 +27,11 @@ def question_of(text: str) -> StudyQuestion:
 
 
 def question_in(tables: dict[str, Any]) -> StudyQuestion:
-    """Return the study that tables describe, of the class of its kind."""
-    tables, known = migrated(tables), questions()
+    """Return the study of the tables, as an instance of the class of its kind."""
+    tables, classes = migrated(tables), questions()
     campaign = tables.get("campaign")
     kind = campaign.get("kind") if isinstance(campaign, dict) else None
-    if isinstance(kind, str) and kind in known:
-        return validated(known[kind], tables)
-    own = {name for question in known.values() for name in question.model_fields} - {*StudyQuestion.model_fields}
+    if isinstance(kind, str) and kind in classes:
+        return validated(classes[kind], tables)
+    own = {name for question in classes.values() for name in question.model_fields} - {*StudyQuestion.model_fields}
     return validated(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # which refuses

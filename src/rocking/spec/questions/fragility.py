@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from rocking.studies.motion_sets import MotionSet
     from rocking.studies.study_plan import Study
 
-ANALYSES = ("fragility", "fragility-points", "fema-p58")  # what can be exported of the curves of one restitution
-MEASURES = "ims"  # what the ranking of intensity measures is called among the exports
+ANALYSES = ("fragility", "fragility-points", "fema-p58")  # exports of the curves of one restitution
+MEASURES = "ims"  # export of the ranking of intensity measures
 
-_USUAL_COLUMNS = ("magnitude", "ln distance_km")  # metadata of a sufficiency test, where all motions have them
+_DEFAULT_COLUMNS = ("magnitude", "ln distance_km")  # metadata for a sufficiency test, if all motions have them
 _LOGARITHM = "ln "
 _OF_ONE_KIND = {
     "export.columns": "cloud",
@@ -35,39 +35,39 @@ _OF_ONE_KIND = {
 
 
 class ExportTable(JobTable):
-    """How files are written, how often a study is repeated for intervals, and which measures are compared."""
+    """Treatment of crossing curves, confidence intervals, and comparison of intensity measures."""
 
     crossing_curves: Literal["keep-uplift", "common-dispersion", "refuse"] = key(
-        "treatment of curves that cross", "keep-uplift"
+        "treatment of crossing fragility curves", "keep-uplift"
     )
-    bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = key("how often a study is repeated", 0)
-    ims: Annotated[list[Text], Field(min_length=1)] | None = key("intensity measures that are compared")
-    columns: list[Text] | None = key("columns of the comparison")
+    bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = key("number of bootstrap samples", 0)
+    ims: Annotated[list[Text], Field(min_length=1)] | None = key("intensity measures of the comparison")
+    columns: list[Text] | None = key("metadata columns for the sufficiency test of the comparison")
 
 
 def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
-    """Return a limit state; what is none has one error, whatever the kinds of states are."""
+    """Return a limit state; raise one error for an invalid value, independent of the number of allowed types."""
     try:
         return validate(value)
     except ValidationError as error:
         if isinstance(value, str):
             raise InvalidValueError(
-                "must be a rotation over the slenderness angle, rocking or overturning, got {entry!r:.60}", entry=value
+                "must be rocking, overturning, or a rotation / slenderness angle, got {entry!r:.60}", entry=value
             ) from error
         raise PydanticKnownError("greater_than", {"gt": 0}) from error
 
 
 class FragilityTable(JobTable):
-    """Measure, levels and limit states of a fragility analysis."""
+    """Intensity measure, intensity levels and limit states of a fragility analysis."""
 
     im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga")
-    levels: Numbers | None = key("levels of the measure [its unit]")
+    levels: Numbers | None = key("intensity levels, in the unit of the intensity measure")
     limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
-        "limit states: rotation / slenderness angle [-]; rocking and overturning are added unless one of them is given",
+        "limit states: rotation / slenderness angle, rocking, overturning; numbers alone include the other two",
         [0.5],
     )
-    tolerance: float | None = key("width of the last brackets over the level [-]", None, ge=0.0, le=0.1)
-    scale: Positive | None = key("scale factor of all motions of a cloud [-]")
+    tolerance: float | None = key("relative width of the last intervals: width / level [-]", None, ge=0.0, le=0.1)
+    scale: Positive | None = key("scale factor of all motions of a cloud analysis [-]")
 
 
 class AnalysisQuestion(BodyQuestion):
@@ -82,37 +82,37 @@ class AnalysisQuestion(BodyQuestion):
     @model_validator(mode="after")
     def _keys_of_its_kind(self) -> "AnalysisQuestion":
         if (self.fragility.levels is None) != (self.kind == "cloud"):
-            senseless = "{parameter} makes no sense: a cloud takes the motions as they are"
-            text = "{parameter} is missing" if self.fragility.levels is None else senseless
+            extra = "{parameter} is not allowed: a cloud analysis uses the motions as recorded."
+            text = "{parameter} is missing" if self.fragility.levels is None else extra
             raise InvalidValueError(text, parameter="fragility.levels")
         for path, kind in _OF_ONE_KIND.items():
             table, _, name = path.partition(".")
             if getattr(getattr(self, table), name) is not None and kind != self.kind:
                 raise InvalidValueError(
-                    '{parameter} goes with kind = "{expected}" only, this is "{kind}"', parameter=path, expected=kind,
-                    kind=self.kind,
+                    '{parameter} is allowed with kind = "{expected}" only, got "{kind}".',
+                    parameter=path, expected=kind, kind=self.kind,
                 )  # fmt: skip
         return self
 
     @property
     def levels(self) -> FloatArray | None:
-        """Levels of the measure."""
+        """Intensity levels, in the unit of the intensity measure."""
         return None if self.fragility.levels is None else self.fragility.levels.numbers()
 
     @property
     def sizes(self) -> list[int]:
-        """Motions, restitutions and levels."""
+        """Numbers of motions, restitutions and levels."""
         return [*super().sizes, 1 if self.fragility.levels is None else self.fragility.levels.size]
 
     @property
     def elements(self) -> dict[str, int]:
-        """Limit states."""
+        """Number of limit states."""
         return {"states": len(self.fragility.limit_states)}
 
     def analysis(
         self, problem: "StudyProblem", restitution: Any, motions: "MotionSet | None" = None
     ) -> "FragilityQuestion":
-        """Return the analysis with one restitution; motions: the same ones, kept in memory."""
+        """Return the analysis with one restitution; motions: those of the problem, in memory."""
         from rocking.studies.fragility.question import FragilityQuestion
         from rocking.studies.fragility.subject import Subject
 
@@ -123,8 +123,8 @@ class AnalysisQuestion(BodyQuestion):
         )  # fmt: skip
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the analysis; stripes with several restitutions are compared."""
-        motions, body = problem.kept_motions, problem.only("bodies")  # made once, for every level
+        """Return the analysis, or for stripes with several restitutions their comparison."""
+        motions, body = problem.kept_motions, problem.only("bodies")  # computed once for all levels
         if len(problem.restitutions) == 1 or self.one_restitution:
             return self.analysis(problem, problem.only("restitutions"), motions).computed(threads, progress)
         from rocking.studies.sensitivity import fragility_sensitivity
@@ -134,15 +134,15 @@ class AnalysisQuestion(BodyQuestion):
         return fragility_sensitivity(body, motions, self.levels, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study over motion, level save in clouds, and several restitutions."""
+        """Return the study over motion, level (except in clouds) and restitution (if several)."""
         from rocking.studies.sensitivity.restitutions import sampled
         from rocking.studies.study_plan import Study, along, labels_along, motions_along
         from rocking.tables import Column
 
         with located("fragility"):
-            questions = {label: self.analysis(problem, each) for label, each in problem.restitutions.items()}
-            products = [question.histories for question in questions.values()]  # the same but for their sides
-            sides = {n: np.concatenate([each.sides[n] for each in products], axis=1) for n in products[0].sides}
+            questions = {label: self.analysis(problem, analysis) for label, analysis in problem.restitutions.items()}
+            products = [question.histories for question in questions.values()]  # they differ in their sides only
+            sides = {n: np.concatenate([analysis.sides[n] for analysis in products], axis=1) for n in products[0].sides}
             merged = replace(products[0], sides=sides)
         question = next(iter(questions.values()))
         label, levels = question.subject.label, question.levels
@@ -161,16 +161,16 @@ class AnalysisQuestion(BodyQuestion):
         }
 
         def finish(results: dict[str, Any]) -> dict[str, Any]:
-            """Hand every analysis its own of the results of all."""
+            """Return every analysis with its own results, by restitution."""
             return {
-                label: each.answer({name: values[k :: len(questions)] for name, values in results.items()})
-                for k, (label, each) in enumerate(questions.items())
+                label: analysis.answer({name: values[k :: len(questions)] for name, values in results.items()})
+                for k, (label, analysis) in enumerate(questions.items())
             }
 
         return Study(sampled(merged), dims, coordinates, attributes, ("histories", *ANALYSES), finish)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw the curves that are exported."""
+        """Return the figure of the exported curves."""
         from rocking.plots.fragility import fragility_picture
         from rocking.studies.fragility.curves import shown_curves
 
@@ -179,13 +179,13 @@ class AnalysisQuestion(BodyQuestion):
 
 
 class StripesQuestion(AnalysisQuestion):
-    """The fragility of one body: every motion at every level."""
+    """Fragility of one body with every motion at every level."""
 
     kind: ClassVar[str] = "stripes"
 
 
 class IncrementalQuestion(AnalysisQuestion):
-    """The fragility of one body: every level at which a motion begins or ceases to overturn it."""
+    """Fragility of one body from all levels at which a motion begins or ceases to overturn it."""
 
     kind: ClassVar[str] = "incremental"
     one_restitution: ClassVar[bool] = True
@@ -193,59 +193,59 @@ class IncrementalQuestion(AnalysisQuestion):
     def analysis(
         self, problem: "StudyProblem", restitution: Any, motions: "MotionSet | None" = None
     ) -> "FragilityQuestion":
-        """Return the analysis with one restitution; motions: the same ones, kept in memory."""
-        # the tolerance of [fragility] is the search's; that of [settings] is the engine's
+        """Return the analysis with one restitution; motions: those of the problem, in memory."""
+        # [fragility] contains the tolerance of the search, [settings] that of the engine
         if "tolerance" in self.settings.stated():
-            raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
+            raise InvalidValueError("settings.tolerance is not allowed in an incremental analysis. Remove it.")
         return super().analysis(problem, restitution, motions)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw the levels of every motion."""
+        """Return the figure of the levels of every motion."""
         from rocking.plots.fragility import incremental_dynamic_analysis_picture
 
         return incremental_dynamic_analysis_picture(finished.analysis(restitution))
 
 
 class CloudQuestion(AnalysisQuestion):
-    """The fragility of one body: the motions as they are."""
+    """Fragility of one body with the motions as recorded."""
 
     kind: ClassVar[str] = "cloud"
     one_restitution: ClassVar[bool] = True
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study over motion, and several restitutions."""
+        """Return the study over motion and restitution (if several)."""
         from rocking.studies.motion_sets import MotionList
 
         study = super().study(problem)
         with located("export"):
             self.ims()
             if self.export.columns:
-                self.columns(MotionList(problem.motions[0]))  # of the motions only the first is asked
+                self.columns(MotionList(problem.motions[0]))  # only the first motion is checked here
         return replace(study, exports=(*study.exports, MEASURES))
 
     def ims(self) -> list[str]:
-        """Return the measures of intensity that are compared: those of [export], or the usual ones and its own."""
+        """Return the compared intensity measures: those of [export], or the default ones and `im`."""
         from rocking.motions.intensity import measure
         from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
 
         named = self.export.ims
-        known = [measure(name).name for name in named or [*DEFAULT_MEASURES, self.fragility.im]]
-        twice = [name for name in known if known.count(name) > 1]
-        if named is not None and twice:
-            raise InvalidValueError("ims: {name} is named twice", parameter="ims", name=twice[0])
-        return list(dict.fromkeys(known))
+        names = [measure(name).name for name in named or [*DEFAULT_MEASURES, self.fragility.im]]
+        duplicates = [name for name in names if names.count(name) > 1]
+        if named is not None and duplicates:
+            raise InvalidValueError("{name} appears twice in ims. Remove one.", parameter="ims", name=duplicates[0])
+        return list(dict.fromkeys(names))
 
     def columns(self, motions: "MotionSet") -> dict[str, FloatArray]:
-        """Return numbers in the metadata of the motions: the columns of [export], or the usual ones there are.
+        """Return numbers from the metadata of the motions: the columns of [export], or the available default columns.
 
-        A name that begins with ``ln`` is the logarithm of what follows.
+        A name that begins with ``ln`` is the logarithm of the named column.
         """
         named = self.export.columns
-        wanted = _USUAL_COLUMNS if named is None else named
-        columns: dict[str, list[float]] = {name: [] for name in wanted}
-        if len(columns) < len(wanted):
+        requested = _DEFAULT_COLUMNS if named is None else named
+        columns: dict[str, list[float]] = {name: [] for name in requested}
+        if len(columns) < len(requested):
             raise InvalidValueError(
-                "columns: one of {names} is named twice", parameter="columns", names=", ".join(wanted)
+                "A column appears twice in {names}. Remove one.", parameter="columns", names=", ".join(requested)
             )
         for k in range(len(motions)):
             motion = motions[k]
@@ -256,9 +256,9 @@ class CloudQuestion(AnalysisQuestion):
                 except ValueError as error:
                     if named is not None:
                         raise InvalidValueError(
-                            "columns: {value} must be a number of every motion, {reason} of motion {index}, "
-                            "{motion!r:.60}, which knows {names}", parameter="columns", value=name, reason=str(error),
-                            index=k, motion=motion.name, names=", ".join(metadata) or "nothing",
+                            "{value} must be a number in the metadata of every motion, {reason} for motion {index}, "
+                            "{motion!r:.60}. Its metadata: {names}.", parameter="columns", value=name,
+                            reason=str(error), index=k, motion=motion.name, names=", ".join(metadata) or "none",
                         ) from error  # fmt: skip
                     del columns[name]
             if not columns:
@@ -267,10 +267,10 @@ class CloudQuestion(AnalysisQuestion):
 
 
 def _number(name: str, metadata: Any) -> float:
-    """Return a number of the metadata, or its logarithm; a ValueError says why there is none."""
+    """Return a number of the metadata, or its logarithm; raise ValueError with the reason if there is no number."""
     key = name.removeprefix(_LOGARITHM)
     if key not in metadata:
-        raise ValueError("there is none")
+        raise ValueError("got no value")
     try:
         value = float(metadata[key])
     except ValueError as error:

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 class HistoriesTable(JobTable):
-    """What the histories of a campaign are made with, beside bodies, motions and restitutions."""
+    """Scale factors of the histories of a campaign."""
 
-    scales: Numbers = Field(default_factory=lambda: Values(values=[1.0]), description="factors on the motions [-]")
+    scales: Numbers = Field(default_factory=lambda: Values(values=[1.0]), description="scale factors of motions [-]")
 
 
 class HistoriesQuestion(BodyQuestion):
@@ -30,7 +30,7 @@ class HistoriesQuestion(BodyQuestion):
 
     @property
     def sizes(self) -> list[int]:
-        """Motions, bodies, restitutions and scale factors."""
+        """Numbers of motions, bodies, restitutions and scale factors."""
         return [*super().sizes, self.histories.scales.size]
 
     def study(self, problem: "StudyProblem") -> "Study":
@@ -44,7 +44,7 @@ class HistoriesQuestion(BodyQuestion):
         bad = np.flatnonzero(np.abs(scales) > 1e6)
         if bad.size:
             raise InvalidValueError(
-                "{parameter} must be within 1e6, got {value} at index {index}", parameter="histories.scales",
+                "{parameter} must be from -1e6 to 1e6, got {value} at index {index}.", parameter="histories.scales",
                 value=float(scales[bad[0]]), index=bad[0],
             )  # fmt: skip
         with located("body"):
@@ -52,15 +52,15 @@ class HistoriesQuestion(BodyQuestion):
         angle, frequency = product.sides["alpha_right"][:, 0], product.sides["p_right"][:, 0]
         coordinates = {
             "motion": motions_along(motions),
-            "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
-            "scale": along("scale", scales, "1", "factor on the motion"),
+            "body": along("body", np.arange(len(problem.bodies)), "1", "index of the body in the job"),
+            "scale": along("scale", scales, "1", "scale factor of the motion"),
             "restitution": labels_along("restitution", problem.restitutions, "restitution"),
             "slenderness_angle": along("body", angle, "rad", "slenderness angle of the right side"),
             "frequency_parameter": along("body", frequency, "rad/s", "frequency parameter of the right side"),
         }
         if isinstance(motions, MotionList):
             sources = ("; ".join(provenance_of(motions[k])) for k in range(len(motions)))
-            coordinates["motion_provenance"] = labels_along("motion", sources, "where the motion comes from")
+            coordinates["motion_provenance"] = labels_along("motion", sources, "source of the motion")
         sizes = (len(motions), len(problem.bodies), scales.size, len(problem.restitutions))
         dims = dict(zip(("motion", "body", "scale", "restitution"), sizes, strict=True))
         attributes["bodies"] = "; ".join(repr(body) for body in problem.bodies)[:4000]

@@ -1,4 +1,4 @@
-"""Inventories: which objects of a list stay standing."""
+"""Inventories: ratings of the objects of a list."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -20,30 +20,32 @@ if TYPE_CHECKING:
 
 
 class ThresholdsTable(JobTable):
-    """Where one light ends and the next begins; what is left out is as in every report."""
+    """Limits between the ratings green, amber and red."""
 
-    rocking: float | None = key("rotation over the slenderness angle that most motions may reach where it is green [-]")
-    overturning_green: float | None = key("share of motions that may overturn it where it is green [-]")
-    overturning_red: float | None = key("share of motions from which on it is red [-]")
-    level: float | None = key("confidence of the shares' intervals [-]")
-    low_consequence: float | None = key("what the shares are multiplied by where a fall is of low consequence [-]")
-    high_consequence: float | None = key("the same where a fall is of high consequence; a fall weighs the inverse [-]")
+    rocking: float | None = key("green: largest rotation / slenderness angle under most motions [-]")
+    overturning_green: float | None = key("green: largest fraction of motions that overturn the object [-]")
+    overturning_red: float | None = key("red: smallest fraction of motions that overturn the object [-]")
+    level: float | None = key("confidence level of the intervals of the fractions [-]")
+    low_consequence: float | None = key("multiplier of both fractions for an object of low consequence [-]")
+    high_consequence: float | None = key("multiplier of both fractions for an object of high consequence [-]")
 
 
 class InventoryTable(JobTable):
-    """A list of objects, and how strong the shaking is: a number with its unit, such as 0.3g."""
+    """A list of objects, and the intensity of the ground motions."""
 
-    objects: Text = key("list as .xlsx, .ods or CSV: name, width, depth, height and more, each with its unit", ...)
-    encoding: Text | None = key("encoding of a CSV file, such as cp1252; told from the file if left out")
+    objects: Text = key(
+        "list of objects as .xlsx, .ods or CSV: name, width, depth, height and more, with units in the header", ...
+    )
+    encoding: Text | None = key("encoding of a CSV file, such as cp1252, default: detected from the file")
     map_columns: Text | dict[str, str] | None = key(
-        'what columns are, by their titles: "Objekt=name, Maß B=width_cm, Rahmenbreite="; nothing leaves one out; '
-        "a title with a comma in quotation marks: '\"Höhe, gesamt\"=height_cm'"
+        'meaning of columns by title: "Objekt=name, Maß B=width_cm, Rahmenbreite=". An empty meaning ignores the '
+        "column. Quote a title with a comma: '\"Höhe, gesamt\"=height_cm'"
     )
     pga: Text | None = key("peak ground acceleration of every motion: 0.3g, 2.9m/s2")
-    pgv: Text | None = key("peak ground velocity in its place: 25cm/s, 0.25m/s")
-    language: Text | None = key("language of the report: en, de, it, zh; that of the list's header if not given")
+    pgv: Text | None = key("peak ground velocity of every motion, in place of pga: 25cm/s, 0.25m/s")
+    language: Text | None = key("language of the report: en, de, it, zh, default: language of the header of the list")
     thresholds: ThresholdsTable = Field(
-        default_factory=ThresholdsTable, description="where one light ends and the next begins"
+        default_factory=ThresholdsTable, description="limits between the ratings green, amber and red"
     )
 
     @model_validator(mode="after")
@@ -54,10 +56,10 @@ class InventoryTable(JobTable):
 
 
 class InventoryQuestion(StudyQuestion):
-    """Which objects of a list stay standing."""
+    """Ratings of the objects of a list."""
 
     kind: ClassVar[str] = "inventory"
-    without_body: ClassVar[str] = "the objects stand in the file that [inventory] names"
+    without_body: ClassVar[str] = "the objects are in the file inventory.objects"
     names_files: ClassVar[bool] = True
 
     inventory: InventoryTable
@@ -66,17 +68,17 @@ class InventoryQuestion(StudyQuestion):
     def _shaken_as_a_list_is(self) -> "InventoryQuestion":
         if odd := sorted(self.settings.model_fields_set - {"gravity", "friction"}):
             raise InvalidValueError(
-                "{parameter} does not go with an inventory, which takes gravity and friction only",
+                "{parameter} is not allowed in an inventory. Allowed: gravity, friction.",
                 parameter=f"settings.{odd[0]}",
             )  # fmt: skip
         families = [table for table in self.motions if table.synthetic is not None]
         if any(table.pulse is not None for table in self.motions) or (families and len(self.motions) > 1):
-            raise InvalidValueError("the motions of an inventory are records, or one family of synthetic ones alone")
+            raise InvalidValueError("The motions of an inventory must be records, or one family of synthetic motions.")
         for table in families:
             if odd := sorted({"pga", "pgv", "time_step"} & table.model_fields_set):
                 raise InvalidValueError(
-                    "{parameter} does not go with an inventory", parameter=f"motions.{odd[0]}",
-                    hint="how strong it is stands in [inventory]",
+                    "{parameter} is not allowed in an inventory", parameter=f"motions.{odd[0]}",
+                    hint="set inventory.pga or inventory.pgv",
                 )  # fmt: skip
         if families and self.inventory.pga is None and self.inventory.pgv is None:
             raise InvalidValueError(
@@ -87,14 +89,14 @@ class InventoryQuestion(StudyQuestion):
     def read(
         self, problem: "StudyProblem"
     ) -> "tuple[Inventory, Callable[[Progress], Hazard], Thresholds, Any]":  # fmt: skip
-        """Return the objects, what makes their motions, the limits of the ratings, and the stated model."""
+        """Return the objects, a function that computes the motions, the limits of the ratings, and the stated model."""
         from rocking.studies.inventory import Thresholds, read_inventory
         from rocking.studies.inventory.hazard import SEED, Hazard, IntensityLevel
         from rocking.studies.motion_sets import SyntheticSet
 
         table, motions = self.inventory, problem.motions
         if len(problem.restitutions) > 1:
-            raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
+            raise InvalidValueError("An inventory accepts one restitution model. It compares the model with Housner.")
         stated = problem.restitution if "restitution" in self.model_fields_set else None
         with located("inventory.thresholds"):
             limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
@@ -113,7 +115,7 @@ class InventoryQuestion(StudyQuestion):
         def hazard(progress: Progress = None) -> Hazard:
             with located("inventory"):
                 if isinstance(motions, SyntheticSet):
-                    assert level is not None  # the question refuses to be without
+                    assert level is not None  # checked by the class of the question
                     own = self.motions[0].seed
                     seed = SEED if own is None else own  # as on the command line
                     return Hazard.of_family(motions.family, level, count=motions.count, seed=seed, progress=progress)
@@ -133,9 +135,9 @@ class InventoryQuestion(StudyQuestion):
         )  # fmt: skip
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study over motion, object, direction and the model of impact, those asked beside it.
+        """Return the study over motion, object, direction and restitution model.
 
-        With friction or body files over object, model of impact, motion and direction.
+        With friction or body files, the order is object, restitution model, motion, direction.
         """
         from rocking.studies.inventory.assessment import DEFAULT_MODELS, assessment_plan
         from rocking.studies.inventory.objects import DIRECTIONS
@@ -152,17 +154,17 @@ class InventoryQuestion(StudyQuestion):
         coordinates = {
             "motion": motions_along(histories.motions),
             "object": labels_along("object", (item.name for item in items), "name of the object"),
-            "row": along("object", [item.row for item in items], "1", "line of the object in its file"),
+            "row": along("object", [item.row for item in items], "1", "row number of the object in its file"),
             "number": labels_along("object", (item.number for item in items), "inventory number"),
-            "note": labels_along("object", (item.note for item in items), "what the list notes"),
-            "direction": labels_along("direction", DIRECTIONS, "direction of the shaking"),
-            "restitution": labels_along("restitution", names, "model of impact"),
+            "note": labels_along("object", (item.note for item in items), "note in the list"),
+            "direction": labels_along("direction", DIRECTIONS, "direction of the ground motion"),
+            "restitution": labels_along("restitution", names, "restitution model"),
         }
         attributes = {"shaking": hazard.words(), "hazard": str(hazard.source), "objects": objects.source}
         return Study(histories, dims, coordinates, attributes, assess=finish)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw the ratings of the objects."""
+        """Return the figure of the ratings."""
         from rocking.plots.inventory import inventory_picture
 
         return inventory_picture(finished.assessment)

@@ -21,24 +21,24 @@ if TYPE_CHECKING:
 class AxisTable(Values):
     """An axis of a map."""
 
-    axis: Text = key("what changes along it: frequency_ratio, pga, semi_diagonal and more", ...)
+    axis: Text = key("quantity on the axis: frequency_ratio, pga, semi_diagonal and more", ...)
 
 
 class MapTable(JobTable):
-    """The two axes of a map, and how closely to follow the boundaries in it."""
+    """The two axes of a map, and the refinement of its boundaries."""
 
-    x: AxisTable = key("axis, and its values in SI", ...)
-    y: AxisTable = key("the upright axis", ...)
-    refine: int | None = key("levels of refinement along boundaries, each of half the spacing", None, ge=0, le=12)
-    boundary: Literal["verdict", "mode"] = key("which boundaries: of overturning, or of all modes", "verdict")
-    tolerance: float = key("how closely boundaries are bisected [-]", 1e-10, ge=1e-15, le=0.1)
+    x: AxisTable = key("horizontal axis: quantity, and values in SI units", ...)
+    y: AxisTable = key("vertical axis: quantity, and values in SI units", ...)
+    refine: int | None = key("number of refinements along boundaries, each halves the spacing", None, ge=0, le=12)
+    boundary: Literal["verdict", "mode"] = key("boundaries of overturning only, or of all modes", "verdict")
+    tolerance: float = key("relative width of the last intervals of the bisection [-]", 1e-10, ge=1e-15, le=0.1)
 
     @model_validator(mode="after")
     def _refined(self) -> "MapTable":
         odd = sorted({"boundary", "tolerance"} & self.model_fields_set)
         if odd and self.refine is None:
             raise InvalidValueError(
-                "{keys} goes with refine, how often cells along boundaries are halved: give it", keys=" and ".join(odd)
+                "{keys} needs refine. Add the number of refinements along boundaries.", keys=" and ".join(odd)
             )
         return self
 
@@ -53,7 +53,7 @@ class MapQuestion(BodyQuestion):
 
     @property
     def axes(self) -> "tuple[Axis, ...]":
-        """The axes x and y."""
+        """Axes x and y."""
         from rocking.studies.axis import axis_of
 
         axes = []
@@ -64,12 +64,12 @@ class MapQuestion(BodyQuestion):
 
     @property
     def is_adaptive(self) -> bool:
-        """Whether the map is refined."""
+        """True if the map is refined."""
         return self.map.refine is not None
 
     @property
     def sizes(self) -> list[int]:
-        """Points along x and y, and restitutions."""
+        """Numbers of points along x and y, and of restitutions."""
         return [self.map.x.size, self.map.y.size, self.choices]
 
     @property
@@ -79,7 +79,7 @@ class MapQuestion(BodyQuestion):
         return 4 * (self.map.x.size + self.map.y.size) * 2**refine * self.choices if refine else 0
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the map as `MapArrays`; with several restitutions their comparison."""
+        """Return the map as `MapArrays`, or with several restitutions their comparison."""
         from rocking.studies._overturning_map import map_arrays
 
         options = {**problem.stated, "threads": threads, "progress": progress}
@@ -89,13 +89,13 @@ class MapQuestion(BodyQuestion):
             return map_arrays(*subject, problem.restitution, refine=self.map.refine, **options)
         if self.map.refine is not None:
             refine = Parameter("map.refine", "map.refine")
-            raise InvalidValueError("{refine} is for one restitution: several are compared cell by cell", refine=refine)
+            raise InvalidValueError("{refine} accepts one restitution model.", refine=refine)
         from rocking.studies.sensitivity import map_sensitivity
 
         return map_sensitivity(*subject, problem.restitutions, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study over y and x, and the restitution before them where there are several."""
+        """Return the study over restitution (if several), y and x."""
         from rocking.studies.adaptive_grid import Plane
         from rocking.studies.map_rounds import MapHistories, MapSearch
         from rocking.studies.question import Question
@@ -104,7 +104,7 @@ class MapQuestion(BodyQuestion):
 
         if len(problem.motions) != 1:
             raise InvalidValueError(
-                "motions: a map is of one motion, got {count}", parameter="motions", count=len(problem.motions)
+                "A map accepts one motion, got {count}.", parameter="motions", count=len(problem.motions)
             )
         subject, (x, y) = (problem.bodies[0], problem.motions[0]), self.axes
         with located("map"):
@@ -119,7 +119,7 @@ class MapQuestion(BodyQuestion):
             planes = [Plane(question, x, y) for question in questions]
             histories = MapHistories.of(planes)
         several = {"restitution": len(planes)} if len(planes) > 1 else {}
-        # as of `overturning_map`; the provenance says which engine computes, a dimension which restitutions
+        # as in `overturning_map`; the provenance contains the engine, a dimension the restitutions
         attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
         coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.meaning) for axis in (y, x)}
         if several:
@@ -132,7 +132,7 @@ class MapQuestion(BodyQuestion):
         return replace(study, search=search, exports=("histories", "refined", "boundary"))
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw the map, with the boundaries of a refined one."""
+        """Return the figure of the map, with the boundaries if refined."""
         from rocking.plots.overturning_map import overturning_map_picture
 
         lines = finished.answer.value[1] if self.is_adaptive else ()

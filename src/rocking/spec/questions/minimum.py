@@ -1,4 +1,4 @@
-"""Minimum accelerations: every acceleration at which bodies begin or cease to overturn under motions."""
+"""Minimum accelerations: all accelerations at which bodies begin or cease to overturn."""
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 
 class MinimumTable(JobTable):
-    """Where and how closely to look for the accelerations at which a body begins or ceases to overturn."""
+    """Range and precision of the search for accelerations at which a body begins or ceases to overturn."""
 
-    min_pga: Positive | None = key("smallest PGA; that of uplift if not given [m/s2]")
-    max_pga: Positive | None = key("largest PGA; 50 times that of uplift if not given [m/s2]")
-    samples: int = key("number of first samples, in equal ratios", 400, ge=2, le=1_000_000)
-    bisections: int = key("number of bisections of suspicious intervals, 0 to 12", 4, ge=0, le=12)
-    tolerance: float = key("width of the last brackets over the acceleration [-]", 1e-12, ge=0.0, le=0.1)
+    min_pga: Positive | None = key("smallest PGA, default: uplift acceleration [m/s2]")
+    max_pga: Positive | None = key("largest PGA, default: 50 x uplift acceleration [m/s2]")
+    samples: int = key("number of initial samples, with a constant ratio", 400, ge=2, le=1_000_000)
+    bisections: int = key("number of bisections of intervals that may contain a further change", 4, ge=0, le=12)
+    tolerance: float = key("relative width of the last intervals: width / acceleration [-]", 1e-12, ge=0.0, le=0.1)
 
 
 class MinimumQuestion(BodyQuestion):
-    """Every acceleration at which bodies begin or cease to overturn under motions."""
+    """All accelerations at which bodies begin or cease to overturn under motions."""
 
     kind: ClassVar[str] = "minimum-acceleration"
     several_bodies: ClassVar[bool] = True
@@ -37,12 +37,12 @@ class MinimumQuestion(BodyQuestion):
 
     @property
     def is_adaptive(self) -> bool:
-        """Always."""
+        """True."""
         return True
 
     @property
     def sizes(self) -> list[int]:
-        """Motions, bodies, first samples and restitutions."""
+        """Numbers of motions, bodies, restitutions and initial samples."""
         return [*super().sizes, self.minimum.samples]
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
@@ -54,7 +54,7 @@ class MinimumQuestion(BodyQuestion):
         return minimum_overturning_acceleration(*subject, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study: its first samples, over motion, restitution, body and point."""
+        """Return the study with its initial samples, over motion, restitution, body and point."""
         from rocking.dynamics.mechanics import mechanics_of
         from rocking.dynamics.parameters import sides_of
         from rocking.spec.construction import MOST_IN_MEMORY
@@ -66,7 +66,7 @@ class MinimumQuestion(BodyQuestion):
         table, settings = self.minimum, problem.settings
         if len(problem.motions) > MOST_IN_MEMORY:
             raise InvalidValueError(
-                "motions: there may be up to {limit}, got {count}", parameter="motions", limit=MOST_IN_MEMORY,
+                "At most {limit} motions are allowed, got {count}.", parameter="motions", limit=MOST_IN_MEMORY,
                 count=len(problem.motions),
             )  # fmt: skip
         motions = problem.kept_motions
@@ -77,8 +77,8 @@ class MinimumQuestion(BodyQuestion):
         with located("minimum"):
             effort = Effort(table.samples, table.bisections, table.tolerance)
             cases = Cases.joined([
-                Cases.of(motions[k], each, settings, table.min_pga, table.max_pga)
-                for k in range(len(motions)) for each in sides
+                Cases.of(motions[k], sides_of_law, settings, table.min_pga, table.max_pga)
+                for k in range(len(motions)) for sides_of_law in sides
             ])  # fmt: skip
         shape = (len(motions), len(problem.restitutions), len(problem.bodies))
         names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(problem.restitutions)}
@@ -89,8 +89,8 @@ class MinimumQuestion(BodyQuestion):
         coordinates = {
             "motion": labels_along("motion", names["motion"], "name of the motion"),
             "restitution": labels_along("restitution", names["restitution"], "restitution"),
-            "body": along("body", np.arange(len(problem.bodies)), "1", "number of the body in the job"),
-            "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
+            "body": along("body", np.arange(len(problem.bodies)), "1", "index of the body in the job"),
+            "scale": Column(scale, "1", "scale factor of the motion", dims=tuple(dims)),
         }
         attributes = {
             "samples": effort.samples,
@@ -102,7 +102,7 @@ class MinimumQuestion(BodyQuestion):
         return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw a panel for each restitution, with a lane for every motion and body."""
+        """Return a figure with one panel per restitution, and one lane per motion and body."""
         from rocking.plots.transitions import transitions_of_many_picture
 
         problem, several = finished.problem, len(finished.problem.bodies) > 1
@@ -119,7 +119,7 @@ class MinimumQuestion(BodyQuestion):
         for label, row in rows.items():
             if None in row:
                 raise InvalidValueError(
-                    "there is no picture: no history of {lane} with restitution {restitution} has a result",
+                    "No figure: no history of {lane} with restitution {restitution} has a result.",
                     lane=lanes[row.index(None)], restitution=label,
                 )  # fmt: skip
         return transitions_of_many_picture(rows, lanes, lane_title="motion and body" if several else "motion")

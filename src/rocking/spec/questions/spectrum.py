@@ -1,4 +1,4 @@
-"""Rocking spectra: the peak rotations of blocks of many sizes under motions."""
+"""Rocking spectra: peak rotations of blocks of many sizes under motions."""
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,32 +18,32 @@ _LONGEST = 1e100  # period whose square is still a number [s]
 
 
 class SpectrumTable(JobTable):
-    """The blocks of rocking spectra."""
+    """Blocks and scale factor of rocking spectra."""
 
     slenderness_angles: Numbers = key("slenderness angles alpha = atan(b/h) [rad]", ...)
-    periods: Numbers = key("periods 2 pi / p [s]", ...)
-    scale: float = key("factor on the acceleration of the ground [-]", 1.0)
+    periods: Numbers = key("rocking periods 2 pi / p [s]", ...)
+    scale: float = key("scale factor of the ground acceleration [-]", 1.0)
 
 
 class SpectrumQuestion(StudyQuestion):
-    """The peak rotations of blocks of many sizes under motions."""
+    """Peak rotations of blocks of many sizes under motions."""
 
     kind: ClassVar[str] = "rocking-spectrum"
     plane: ClassVar[bool] = True
     without_body: ClassVar[str] = (
-        "a spectrum makes its own blocks; of a body, plane or in space, a map over semi_diagonal shows all sizes"
+        "a spectrum has its own blocks. Use a map over semi_diagonal for one body of many sizes."
     )
 
     spectrum: SpectrumTable
 
     @property
     def sizes(self) -> list[int]:
-        """Motions, slenderness angles, periods and restitutions."""
+        """Numbers of motions, slenderness angles, periods and restitutions."""
         return [self.motion_count, self.spectrum.slenderness_angles.size, self.spectrum.periods.size, self.choices]
 
     @property
     def elements(self) -> dict[str, int]:
-        """Blocks with each restitution."""
+        """Number of blocks x number of restitutions."""
         blocks = self.spectrum.slenderness_angles.size * self.spectrum.periods.size
         return {"blocks times restitutions": blocks * self.choices}
 
@@ -57,7 +57,7 @@ class SpectrumQuestion(StudyQuestion):
         return rocking_spectrum(motions, *blocks, problem.only("restitutions"), scale=table.scale, **options)
 
     def study(self, problem: "StudyProblem") -> "Study":
-        """Return the study over motion, slenderness angle and period, and several restitutions."""
+        """Return the study over motion, slenderness angle, period, and restitution (if several)."""
         from rocking import checks
         from rocking.studies._rocking_spectrum import spectrum_study
 
@@ -66,7 +66,7 @@ class SpectrumQuestion(StudyQuestion):
         times = checks.positive_array("spectrum.periods", table.periods.numbers(), "s")
         for name, row in (("slenderness_angles", angles), ("periods", times)):
             if np.any(np.diff(row) <= 0.0):
-                raise InvalidValueError("{parameter} must increase from value to value", parameter=f"spectrum.{name}")
+                raise InvalidValueError("{parameter} must be strictly increasing.", parameter=f"spectrum.{name}")
         scale = checks.within("spectrum.scale", table.scale, -1e6, 1e6)
         if times.max() > _LONGEST:
             raise InvalidValueError(
@@ -79,7 +79,7 @@ class SpectrumQuestion(StudyQuestion):
             )  # fmt: skip
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Draw the spectra."""
+        """Return the figure of the spectra."""
         from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 
         return rocking_spectrum_picture(finished.dataset(restitution))

@@ -106,18 +106,18 @@ MENDED = {
     "noise": ((noisy(4e-4), F), ""),
     "folded": (folded(), "smoothed"),
     "soup": ((V[F].reshape(-1, 3), np.arange(3 * len(F)).reshape(-1, 3)), "merged"),
-    "doubled": (joined((V, F), (V, F)), "lay on top of others"),
-    "scanned twice": (joined((noisy(3e-4, 1), F), (noisy(3e-4, 2), F)), "united 2 shells"),
-    "skin within skin": (joined((V, F), (CENTRE + 0.999 * (V - CENTRE), F)), "of a surface scanned twice"),
-    "inside out": ((V, F[:, ::-1]), "inside out"),
-    "turned anyhow": (flipped(), "looked the other way"),
+    "doubled": (joined((V, F), (V, F)), "duplicate faces"),
+    "scanned twice": (joined((noisy(3e-4, 1), F), (noisy(3e-4, 2), F)), "united 2 intersecting shells"),
+    "skin within skin": (joined((V, F), (CENTRE + 0.999 * (V - CENTRE), F)), "double scan"),
+    "inside out": ((V, F[:, ::-1]), "reversed 1 shell"),
+    "turned anyhow": (flipped(), "opposite to their neighbours"),
     "dust": (speckled(), "loose piece(s)"),
     "fin": (finned(), "fins"),
     "on its table": (joined((V, F), (TABLE, np.array([[0, 1, 2], [0, 2, 3]]))), "loose piece"),
-    "on a rough table": (joined((V, F), table()), "open sheet(s) beside the body"),
-    "cloud": ((bad_scans.scattered(V, F, 6000), NONE), "skin over"),
+    "on a rough table": (joined((V, F), table()), "separate open sheet(s)"),
+    "cloud": ((bad_scans.scattered(V, F, 6000), NONE), "skin around"),
     "cloud without a bottom": ((bad_scans.scattered(V, SIDES, 6000), NONE), "closed the open bottom"),
-    "cloud with noise": ((bad_scans.scattered(V, F, 6000) + 2e-4 * RANDOM.normal(size=(6000, 3)), NONE), "skin over"),
+    "cloud with noise": ((bad_scans.scattered(V, F, 6000) + 2e-4 * RANDOM.normal(size=(6000, 3)), NONE), "skin around"),
 }
 
 
@@ -145,7 +145,7 @@ def test_an_open_scan_that_leans_is_set_upright(degrees, tmp_path):
     turn = rotation_about([1.0, 0.4, 0.0], math.radians(degrees))
     upright = read(tmp_path / "upright.ply", V, F)
     found = read(tmp_path / "leaning.ply", V[:-1] @ turn.T, SIDES)
-    assert any("degrees from level as its rim is" in words for words in found.repairs)
+    assert any("degrees like its rim" in words for words in found.repairs)
     assert found.centre[2] - found.ground == pytest.approx(upright.centre[2] - upright.ground, abs=2e-4 * SIZE)
     margins = [each.base.margin(each.centre[:2]) for each in (found, upright)]
     assert margins[0] == pytest.approx(margins[1], rel=1e-2)
@@ -170,7 +170,7 @@ def test_a_hole_in_the_top_of_a_plinth_is_no_bottom(tmp_path):
 
 def stated(repairs):
     """The bounds that sentences state: of the volume [-], of the centre [m]."""
-    pattern = r"at most ([\d.e-]+) % of the volume and ([\d.e-]+) mm"
+    pattern = r"at most ([\d.e-]+) % of the volume, ([\d.e-]+) mm"
     pairs = [tuple(map(float, match)) for words in repairs for match in re.findall(pattern, words)]
     return sum(pair[0] for pair in pairs) / 100.0, sum(pair[1] for pair in pairs) / 1000.0
 
@@ -186,11 +186,11 @@ def read(path, vertices, faces, units="m", **options):
 REFUSED = {
     "wide hole": ((V, without(V[1000], 0.09)), {}, "closed 1 hole", {"repair": "all"}),
     "hole of any size": ((V, without(V[1000], 0.02)), {"repair": "none"}, "1 hole", {"repair": "safe"}),
-    "crumpled": ((noisy(6e-3), F), {}, "passes through itself", {"surface": "hull"}),
+    "crumpled": ((noisy(6e-3), F), {}, "intersects itself", {"surface": "hull"}),
     "millimetres": ((1000.0 * V, F), {}, 'units="mm"', {"units": "mm"}),
-    "sparse cloud": ((bad_scans.scattered(V, F, 400), NONE), {}, "skin over 400 points", {"repair": "all"}),
+    "sparse cloud": ((bad_scans.scattered(V, F, 400), NONE), {}, "skin around 400 points", {"repair": "all"}),
     "in pieces": ((V[F].reshape(-1, 3) + 2e-3 * RANDOM.normal(size=(3 * len(F), 3)),
-                   np.arange(3 * len(F)).reshape(-1, 3)), {}, "hardly hang together", {"surface": "hull"}),
+                   np.arange(3 * len(F)).reshape(-1, 3)), {}, "too few faces are connected", {"surface": "hull"}),
 }  # fmt: skip
 
 
@@ -232,17 +232,17 @@ def test_clouds_in_text(tmp_path):
     assert rk.read_body(path, units="m").volume == pytest.approx(VOLUME, rel=MOST_VOLUME)
     assert rk.read_body(path, units="m", surface="Faces").volume == rk.read_body(path, units="m").volume
     np.savetxt(path, V[:3], fmt="%.6f")
-    with pytest.raises(BodyFileError, match="too few for a cloud"):
+    with pytest.raises(BodyFileError, match="points are too few"):
         rk.read_body(path, units="m")
     np.savetxt(path, V[:100] * [1.0, 1.0, 0.0], fmt="%.6f")
-    with pytest.raises(GeometryError, match="lie in one plane"):
+    with pytest.raises(GeometryError, match="coplanar"):
         rk.read_body(path, units="m")
 
 
 def test_a_unit_is_doubted(tmp_path):
     """A body of 45 m comes in and is doubted aloud, with the unit that is likelier."""
     found = read(tmp_path / "scan.obj", 50.0 * V, F)
-    assert any('check the unit; units="cm" or ' in words for words in found.repairs)
+    assert any('check the unit. Possible: units="cm" or ' in words for words in found.repairs)
 
 
 def test_fewer_faces(monkeypatch):
@@ -253,7 +253,7 @@ def test_fewer_faces(monkeypatch):
     monkeypatch.setattr(_shells, "MOST_FACES", 20_000)
     done = repaired(vertices, faces)
     words = next(sentence for sentence in done.repairs if sentence.startswith("simplified"))
-    hull, shift = (float(x) / 1000.0 for x in re.findall(r"by (?:at most )?([\d.e-]+) mm", words)[:2])
+    hull, shift = (float(x) / 1000.0 for x in re.findall(r"(?:at most|of the centre) ([\d.e-]+) mm", words)[:2])
     assert len(done.shape.faces) < 0.7 * len(faces)
     volume, centre = bad_scans.volume_and_centre(vertices, faces)
     found = done.shape.moments()
@@ -287,11 +287,11 @@ def test_let_down(tmp_path):
     found = read(tmp_path / "askew.obj", askew, column.faces)
     # the ray at 36.9 degrees leaves the base's plane, half a metre below, .375 m aside, beyond half the depth: it falls
     assert found.centre[2] - found.ground == pytest.approx(0.2, rel=1e-7)
-    assert any(words.startswith("does not stand as the file has it") for words in found.repairs)
+    assert any(words.startswith("not stable in the pose of the file") for words in found.repairs)
     little = column.vertices @ set_down(-np.array([0.0, 0.05, 1.0]) / np.hypot(0.05, 1.0))
     found = read(tmp_path / "little.obj", little, column.faces)
     assert found.centre[2] - found.ground == pytest.approx(0.5, rel=1e-7)
-    assert "turned by 2.9 degrees" in found.repairs[-1]
+    assert "rotated by 2.9 degrees" in found.repairs[-1]
     assert read(tmp_path / "upright.obj", column.vertices, column.faces).repairs == ()
 
 
@@ -341,12 +341,12 @@ def test_hollow(tmp_path):
     whole, void = 0.2, 0.46 * 0.36 * 0.96
     square = (whole * (0.5**2 + 0.4**2) - void * (0.46**2 + 0.36**2)) / 12.0 / walls
     assert found.inertia[2, 2] / found.mass == pytest.approx(square, rel=0.01)
-    assert "right to about 3 %" in found.repairs[-1]
+    assert "accuracy 3 %" in found.repairs[-1]
     (tmp_path / "column.toml").write_text(
         'units = "cm"\n[[solid.part]]\nmesh = { file = "column.obj", units = "m", wall = 0.02 }\ndensity = 8700\n'
     )
     assert rk.read_body(tmp_path / "column.toml").mass == pytest.approx(found.mass, rel=1e-12)
-    with pytest.raises(GeometryError, match="leaves nothing hollow"):
+    with pytest.raises(GeometryError, match="leaves no cavity"):
         read(tmp_path / "column.obj", column.vertices, column.faces, wall=0.21)
     with pytest.raises(InvalidValueError, match="wall must be"):
         read(tmp_path / "column.obj", column.vertices, column.faces, wall=-0.01)
@@ -367,4 +367,4 @@ def test_on_the_command_line(tmp_path, run, printed):
     command = ["restitution", tmp_path / "statue.stl", "--units", "mm"]
     assert "! closed the open bottom" in printed(*command)
     assert "--set body.repair=safe closes an open bottom" in run(*command, "--set", "body.repair=none")[2]
-    assert "leaves nothing hollow" in run(*command, "--set", "body.wall=200")[2]
+    assert "leaves no cavity" in run(*command, "--set", "body.wall=200")[2]

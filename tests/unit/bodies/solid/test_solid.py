@@ -76,7 +76,7 @@ def test_edges_run_round_the_base():
     for edge in base.edges:
         assert np.linalg.norm(edge.direction) == pytest.approx(1.0, abs=1e-15)
         assert np.cross(edge.direction, middle - edge.point)[2] > 0.0
-    with pytest.raises(GeometryError, match="no edge of the base is parallel"):
+    with pytest.raises(GeometryError, match="No edge of the base is parallel"):
         base.opposite(0)
     tangent = RoundBase(np.array([1.0, 2.0]), 0.5).edge(math.pi / 2)
     assert tangent.point == pytest.approx([1.0, 2.5, 0.0])
@@ -161,17 +161,17 @@ LEG = box(0.2, 0.2, 1.0)
     [
         (lambda: Solid([]), "at least one Part"),
         (lambda: Solid("box"), "at least one Part"),
-        (lambda: Part("box"), "a Part needs a shape"),
+        (lambda: Part("box"), "A Part needs a shape"),
         (lambda: Part(LEG, -1.0), "density must be > 0"),
-        (lambda: Part(LEG, rotation=np.diag([-1.0, 1.0, 1.0])), "rotation matrix"),
+        (lambda: Part(LEG, rotation=np.diag([-1.0, 1.0, 1.0])), "orthogonal without reflection"),
         (lambda: Part(LEG, translation=(0, 0)), "three finite numbers"),
-        (lambda: Solid(Part(LEG).moved(0, 0, 0.5)), "floats above"),
-        (lambda: Solid(Part(LEG).moved(0, 0, -0.5)), "reaches below"),
-        (lambda: Solid(ellipsoid(1, 1, 1)), "stands on 0 point"),
-        (lambda: Solid(Part(cone(1.0, 2.0)).turned((1, 0, 0), math.pi).moved(0, 0, 2.0)), "stands on 0 point"),
+        (lambda: Solid(Part(LEG).moved(0, 0, 0.5)), "is above the ground"),
+        (lambda: Solid(Part(LEG).moved(0, 0, -0.5)), "is below the ground"),
+        (lambda: Solid(ellipsoid(1, 1, 1)), "The base has 0 point"),
+        (lambda: Solid(Part(cone(1.0, 2.0)).turned((1, 0, 0), math.pi).moved(0, 0, 2.0)), "The base has 0 point"),
         (lambda: Solid([Part(LEG), Part(LEG).moved(0.1, 0.0, 0.0)]), "parts 0 and 1 overlap over about 0.02 m3"),
-        (lambda: Solid([Part(LEG), Part(box(3.0, 0.2, 0.2)).moved(2.0, 0.0, 1.0)]), "falls over by itself"),
-        (lambda: Solid(LEG, base=[(0, 0), (1, 0), (0, 1)]), "falls over by itself"),
+        (lambda: Solid([Part(LEG), Part(box(3.0, 0.2, 0.2)).moved(2.0, 0.0, 1.0)]), "not stable"),
+        (lambda: Solid(LEG, base=[(0, 0), (1, 0), (0, 1)]), "not stable"),
         (lambda: Solid(LEG, base=[(0, 0), (1, 0)]), "base with an area"),
         (lambda: Solid(LEG, base=[(0, 0, 0)]), "base points"),
         (lambda: Solid(LEG).base.edge(4), "edge must be a whole number"),
@@ -217,6 +217,6 @@ def test_round_faces_and_corners():
     beam = Part(box(0.2, 2.0, 0.2)).moved(2.0, 0.0, 0.0)
     cross = [disc, Part(box(0.3, 0.3, 0.2)).moved(0.7, 0.0, 0.0)]
     assert isinstance(Solid([disc, Part(box(0.2, 0.2, 0.2)).moved(0.0, 0.0, 0.2)]).base, RoundBase)
-    with pytest.raises(GeometryError, match="pass base= with points"):
+    with pytest.raises(GeometryError, match="Use base= with points"):
         Solid([*cross, beam])
     assert len(Solid(cross, base=[(-0.3, -0.3), (0.3, -0.3), (0.3, 0.3), (-0.3, 0.3)]).base.vertices) == 4

@@ -105,7 +105,7 @@ def test_one_response():
     assert np.array_equal(law.factors, wanted.factors)
 
 
-ONE = "give mean and deviation, or values alone"
+ONE = "Use mean and deviation, or values, or posterior"
 
 
 @pytest.mark.parametrize(
@@ -117,12 +117,12 @@ ONE = "give mean and deviation, or values alone"
             (f"values = {each}", r"restitution\.distribution\.values")
             for each in ("[0.9]", "[]", "[0.9, -0.1]", "[0.9, nan]", "[0.9, 1.1]")
         ),
-        ("posterior = true\nvalues = [0.8, 0.9]", "posterior alone; got values and posterior"),
-        ("posterior = true\nmean = 0.9", "posterior alone; got mean and posterior"),
+        ("posterior = true\nvalues = [0.8, 0.9]", "or posterior. Got values and posterior"),
+        ("posterior = true\nmean = 0.9", "or posterior. Got mean and posterior"),
         ("posterior = false", r"restitution\.distribution\.posterior"),
         ("posterior = true\ncount = 1", r"restitution\.distribution\.count"),
-        ("values = [0.8, 0.9]\ncount = 5", "count goes with posterior"),
-        ('posterior = true\ntimes = "ked"', "times does not go with posterior"),
+        ("values = [0.8, 0.9]\ncount = 5", "count is allowed with posterior only"),
+        ('posterior = true\ntimes = "ked"', "Use times or posterior, not both"),
     ],
 )
 def test_refused_tables(distribution, words):
@@ -134,7 +134,7 @@ def test_refused_tables(distribution, words):
 def test_one_body_is_needed():
     """Several bodies have several posteriors, and a spectrum has no body: both are refused by name."""
     two = BODY.replace("[body]", "[[body]]")
-    with pytest.raises(InvalidValueError, match=r"of one body, and the job has 2 bodies: make a job of each"):
+    with pytest.raises(InvalidValueError, match=r"needs one body, and the job has 2 bodies: use one job per body"):
         job_of("posterior = true", "histories", body=two + two.replace("0.5", "0.4"), rest="")
     spectrum = "[spectrum]\nslenderness_angles = [0.2]\nperiods = [2.0]\n"
     with pytest.raises(InvalidValueError, match=r"the job has no \[body\]"):

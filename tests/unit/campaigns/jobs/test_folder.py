@@ -53,11 +53,17 @@ def test_job_file_may_change_afterwards(job, tmp_path):
     [
         (
             lambda path: path.write_text("0.0 0.0\n0.1 1.0\n0.2 0.0\n"),
-            r"one\.txt: has changed since the campaign began",
+            r"one\.txt: The file changed after the start of the campaign",
         ),
-        (lambda path: path.write_text("no record at all"), r"one\.txt: has changed since the campaign began"),
+        (
+            lambda path: path.write_text("no record at all"),
+            r"one\.txt: The file changed after the start of the campaign",
+        ),
         (lambda path: path.unlink(), r"one\.txt: No such file"),
-        (lambda path: path.with_name("zero.txt").write_bytes(path.read_bytes()), r"zero\.txt: was not there"),
+        (
+            lambda path: path.with_name("zero.txt").write_bytes(path.read_bytes()),
+            r"zero\.txt: The campaign does not use this new file",
+        ),
     ],
 )
 def test_inputs_that_changed(job, tmp_path, records, change, wanted):
@@ -220,7 +226,7 @@ def test_changed_model_is_refused(own):
     """Another number in the file, or none of it: the campaign is not gone on with, and says why."""
     JobFolder.create(own / "c", Job.read(own / "job.toml"))
     (own / "mine.py").write_text(MINE.format(value=0.9) + "# a remark\n", encoding="utf-8")
-    with pytest.raises(InvalidValueError, match=r"mine\.py: has changed since the campaign began"):
+    with pytest.raises(InvalidValueError, match=r"mine\.py: The file changed after the start of the campaign"):
         JobFolder.open(own / "c")
     (own / "mine.py").unlink()
     with pytest.raises(InvalidValueError, match=r"mine\.py: No such file"):

@@ -203,5 +203,5 @@ def test_refusals_of_crossing(crossed, text, tmp_path):
         export(folder, tmp_path / "r.nc", crossing_curves="refuse")
     with pytest.raises(InvalidValueError, match=r"export\.crossing"):
         Job.of_text(text("stripes") + COMMON.replace("common-", "un"))
-    with pytest.raises(InvalidValueError, match=r"\[export\] does not go with kind = .overturning-map"):
+    with pytest.raises(InvalidValueError, match=r"kind = .overturning-map. does not accept \[export\]"):
         JobFolder.create(tmp_path / "m", Job.of_text(text("overturning-map") + COMMON))

@@ -203,11 +203,14 @@ def test_nothing_to_export(finished, tmp_path):
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ("ims = ['pga', 'pgx']", "export: measure must be one of"),
-        ("ims = ['sa(1)', 'sa(1.0)']", r"export: ims: sa\(1.0\) is named twice"),
+        ("ims = ['pga', 'pgx']", "export: im must be one of"),
+        ("ims = ['sa(1)', 'sa(1.0)']", r"export: sa\(1.0\) appears twice in ims"),
         ("ims = []", "export.ims"),
-        ("columns = ['depth']", "export: columns: 'depth' must be a number of every motion, there is none of motion 0"),
-        ("columns = ['magnitude', 'magnitude']", "is named twice"),
+        (
+            "columns = ['depth']",
+            "export: 'depth' must be a number in the metadata of every motion, got no value for motion 0",
+        ),
+        ("columns = ['magnitude', 'magnitude']", "appears twice"),
         ("column = ['magnitude']", "unknown key 'column'; did you mean columns"),
     ],
 )
@@ -219,7 +222,7 @@ def test_refusals_of_the_job(table, words):
 
 def test_only_of_clouds(text):
     """Other analyses take no list of measures."""
-    with pytest.raises(InvalidValueError, match=r'export\.ims goes with kind = "cloud" only'):
+    with pytest.raises(InvalidValueError, match=r'export\.ims is allowed with kind = "cloud" only'):
         Job.of_text(text("stripes") + "[export]\nims = ['pga']\n")
 
 

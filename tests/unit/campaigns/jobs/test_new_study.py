@@ -160,7 +160,7 @@ def test_one_file_is_a_command(added, run, refuses, monkeypatch):
         ({"polarity": {"factor": -1.0}}, r"polarity\.factor must be a number > 0, got -1"),
         ({"polarity": {"factors": 1.0}}, "polarity: unknown key 'factors'; did you mean factor"),
         ({"polarity": None}, "polarity"),
-        ({"map": {}}, r'\[map\] does not go with kind = "polarity", which takes \[polarity\]'),
+        ({"map": {}}, r'kind = "polarity" does not accept \[map\]. Use \[polarity\]'),
         ({"body": None}, r"\[body\] is missing"),
     ],
 )

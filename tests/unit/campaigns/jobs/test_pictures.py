@@ -44,7 +44,7 @@ def test_kinds_with_and_without():
         ("histories", "{}/b.doc", r"histories can be written as .* got '\.doc'"),
         ("histories", "{}/none/b.nc", "no folder"),
         ("histories", "report={}/b.html", "report is for inventories"),
-        ("histories", "{}/b.png", 'a campaign of kind "histories" has no picture; take its table'),
+        ("histories", "{}/b.png", 'A campaign of kind "histories" has no figure; export its table'),
         ("histories", "{}/a.nc", "names a.nc twice"),
         ("overturning-map", "picture={}/b.nc", r"a picture must be \.png, \.svg, \.pdf, got '\.nc'"),
         ("overturning-map", "{}/none/b.png", "no folder"),

@@ -97,15 +97,15 @@ REFUSED = {
     "nothing moves": (f"[response]\n{BODY}", "No ground motion"),
     "both": (TEXT.replace("assumed_friction = 0.4", "initial_rotation = 0.5"), "not both"),
     "two sources": (TEXT + 'record = "a.at2"\n', "exactly one of pulse, record, synthetic"),
-    "pulse with units": (TEXT + 'units = "g"\n', "pulse takes no units"),
-    "zero": (TEXT.replace("1.2", "0.0"), "nothing would move"),
+    "pulse with units": (TEXT + 'units = "g"\n', "units is not allowed with pulse"),
+    "zero": (TEXT.replace("1.2", "0.0"), "scale must not be 0"),
     "nan": (TEXT.replace("1.2", "nan"), "must be a finite number"),
     "body": (TEXT.replace("width = 50", "width = -50"), "body: block.width must be a number > 0"),
     "record": (TEXT.replace('pulse = "sine:amplitude=3,period=0.8"', 'record = "a.at2"'), "motion: a.at2"),
     "pulse": (TEXT.replace("sine:", "sinus:"), "motion: unknown pulse 'sinus'"),
     "two levels": (
         f'[response]\n{BODY}[motion]\nsynthetic = "pulse-like"\npga = 1.0\npgv = 1.0\n',
-        "to pga or to pgv, not to both",
+        "Use pga or pgv, not both",
     ),
     "model": (TEXT + '[restitution]\nmodel = "best"\n', "unknown restitution model 'best'"),
     "drawn per history": (
@@ -113,7 +113,7 @@ REFUSED = {
         'must be "impact" for one history',
     ),
     "settings": (TEXT + "[settings]\norder = 5\n", "settings: order must be one of"),
-    "not TOML": ("[response\n", "is not TOML"),
+    "not TOML": ("[response\n", "Invalid TOML"),
 }
 
 

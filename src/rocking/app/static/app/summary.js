@@ -1,4 +1,4 @@
-/** Summary of the body in the column beside all other views. */
+/** Summary of the body in the side column. */
 
 import { html, render, signal, useMemo } from "/parts/preact.js";
 import { number, quantity } from "/app/format.js";

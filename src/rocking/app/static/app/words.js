@@ -15,7 +15,7 @@ const lists = new Intl.ListFormat(language === "en" ? "en-GB" : language);
 
 /** An English text in the language of the page, its places filled; of [one, other] the form for the fact `count`.
  * @param {string | [string, string]} text @param {{ [name: string]: any }} [facts] @returns {string} */
-export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), facts) : words(/** @type {string} */ (text)));
+export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), facts) : translatedText(/** @type {string} */ (text)));
 
 /** @typedef {{ text: string, facts: { [name: string]: any }, many?: string, context?: string }} Message */
 
@@ -40,7 +40,7 @@ const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (match, 
 
 // A word in a place has its translation too.
 /** @param {any} fact @returns {string} */
-const spelled = (fact) => (typeof fact === "string" ? words(fact) : String(fact));
+const spelled = (fact) => (typeof fact === "string" ? translatedText(fact) : String(fact));
 
 /** Name of a user in a text: t() does not translate it. @param {string} name */
 export const userText = (name) => new String(name);
@@ -61,7 +61,7 @@ export const dateTime = (time) => new Date(time).toLocaleString(locale, { dateSt
 export const listed = (parts) => lists.format(parts);
 
 /** A text of the page in its language, with the spaces around it. @param {string} text */
-const words = (text) => {
+const translatedText = (text) => {
   const bare = text.trim();
   const translated = bare && catalogue.get(bare.replace(/[ \n\t]+/g, " "));
   return typeof translated === "string" ? text.replace(bare, () => translated) : text;
@@ -74,13 +74,13 @@ export const childrenInWords = (tag, attributes, children) => (!catalogue.size |
 /** The attributes of an element in the language of the page. @param {unknown} tag @param {any} attributes */
 export const attributesInWords = (tag, attributes) => {
   if (!catalogue.size || !attributes || stays(tag, attributes)) return attributes;
-  const texts = ATTRIBUTES.filter((name) => typeof attributes[name] === "string").map((name) => [name, words(attributes[name])]);
+  const texts = ATTRIBUTES.filter((name) => typeof attributes[name] === "string").map((name) => [name, translatedText(attributes[name])]);
   if (attributes.children !== undefined) texts.push(["children", inWords(attributes.children)]); // those that a component hands on
   return texts.length ? { ...attributes, ...Object.fromEntries(texts) } : attributes;
 };
 
 /** @param {any} child @returns {any} */
-const inWords = (child) => (typeof child === "string" ? words(child) : Array.isArray(child) ? child.map(inWords) : child);
+const inWords = (child) => (typeof child === "string" ? translatedText(child) : Array.isArray(child) ? child.map(inWords) : child);
 
 /** @param {any} tag @param {any} attributes */
 const stays = (tag, attributes) => UNTOUCHED.includes(tag) || [false, "no"].includes(attributes?.translate);
@@ -89,8 +89,8 @@ const stays = (tag, attributes) => UNTOUCHED.includes(tag) || [false, "no"].incl
 /** @param {Element} element */
 const translate = (element) => {
   if (stays(element.localName, { translate: element.getAttribute("translate") })) return;
-  for (const name of ATTRIBUTES) if (element.hasAttribute(name)) element.setAttribute(name, words(element.getAttribute(name) ?? ""));
-  for (const node of element.childNodes) if (node instanceof Text) node.data = words(node.data);
+  for (const name of ATTRIBUTES) if (element.hasAttribute(name)) element.setAttribute(name, translatedText(element.getAttribute(name) ?? ""));
+  for (const node of element.childNodes) if (node instanceof Text) node.data = translatedText(node.data);
   for (const child of element.children) translate(child);
 };
 

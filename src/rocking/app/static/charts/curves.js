@@ -1,4 +1,4 @@
-/** Content of a line chart, drawn with a pen: the canvas of uPlot or an SVG writer. */
+/** Content of a line chart for a pen: the canvas of uPlot or an SVG writer. */
 
 import { svg } from "/app/dom.js";
 import { t } from "/app/words.js";

@@ -21,7 +21,7 @@ export const Pictured = ({ title, more = "", about = "", canvasOf, children }) =
   return html`<div ref=${holder} class="pictured">${children}</div><${Made} node=${files} class="chart-foot" />`;
 };
 
-/** Figure drawn by the server; its file is the shown image. @param {{ title: string, path: string, [more: string]: any }} props */
+/** Figure from the server; its file is the shown image. @param {{ title: string, path: string, [more: string]: any }} props */
 export const Fetched = ({ title, path, ...more }) => {
   const files = useMemo(() => {
     /** @param {(file: Blob, title: string) => unknown} save */

@@ -10,9 +10,9 @@ import { colour, inLight } from "/charts/style.js";
 const LARGER = 2; // dots of a PNG for one of the page
 const [MARGIN, LEAST, ROW] = [14, 360, 17];
 const FONT = "system-ui, sans-serif";
-/** @type {{ [what: string]: string }} */
+/** @type {{ [subject: string]: string }} */
 const SAVE = { chart: "Save the chart {title}", picture: "Save the picture {title}" };
-/** @type {{ [what: string]: string }} */
+/** @type {{ [subject: string]: string }} */
 const OF = { chart: "{kind} of the chart {title}", picture: "{kind} of the picture {title}" };
 
 /** @typedef {{ node: SVGSVGElement, title?: string, about?: string, alt?: string | null, note?: string }} Still */
@@ -44,26 +44,26 @@ export const savePngOf = async (drawing, title) => {
 
 /** Menu of a figure: `draw` gives its shown content, `csv` its numbers. `data-own` is the description
  * with names of the user, `data-about` a description, one line per element, of the elements around it.
- * @param {string} title @param {() => Still} draw @param {string} [what] @param {(() => string) | null} [csv] */
-export const chartFiles = (title, draw, what = "chart", csv = null) => {
+ * @param {string} title @param {() => Still} draw @param {string} [subject] @param {(() => string) | null} [csv] */
+export const chartFiles = (title, draw, subject = "chart", csv = null) => {
   const sheet = () => inLight(() => sheetOf(title, draw(), menu));
   /** @type {[string, () => unknown][]} */
   const kinds = [["PNG", () => savePngOf(blobOf(sheet()), title)], ["SVG", () => saveSvg(sheet(), title)]];
   if (csv) kinds.push(["CSV", () => saveFile(new Blob([csv()], { type: "text/csv" }), title, "csv")]);
-  const menu = menuOf(title, what, kinds);
+  const menu = menuOf(title, subject, kinds);
   return menu;
 };
 
-/** Menu of the file formats of a figure. @param {string} title @param {string} what @param {[string, () => unknown][]} kinds */
-export const menuOf = (title, what, kinds) => {
+/** Menu of the file formats of a figure. @param {string} title @param {string} subject @param {[string, () => unknown][]} kinds */
+export const menuOf = (title, subject, kinds) => {
   const items = kinds.map(([kind, save]) => el("button", {
-    type: "button", class: "button quiet", "aria-label": t(OF[what], { kind, title }),
+    type: "button", class: "button quiet", "aria-label": t(OF[subject], { kind, title }),
     onclick: () => {
       leave();
       Promise.resolve().then(save).catch((error) => say(error.message, "error"));
     },
   }, kind));
-  const head = el("summary", { class: "button quiet", "aria-label": t(SAVE[what], { title }) }, "Save");
+  const head = el("summary", { class: "button quiet", "aria-label": t(SAVE[subject], { title }) }, "Save");
   const menu = el("details", { class: "chart-files" }, head, el("div", {}, items));
   const leave = () => { // and the keyboard stays at the menu
     menu.open = false;

@@ -38,7 +38,7 @@ export const inLight = (make) => {
     return make();
   } finally {
     dataset.theme = theme;
-    document.dispatchEvent(new CustomEvent("rocking:theme")); // figures drawn with the light theme are redrawn
+    document.dispatchEvent(new CustomEvent("rocking:theme")); // figures of the light theme are updated
   }
 };
 
@@ -54,7 +54,7 @@ const look = ({ label, unit, log }) => ({
   labelSize: 18,
   labelFont: "12px system-ui, sans-serif",
   font: "12px system-ui, sans-serif",
-  stroke: "transparent", // placed by uPlot, drawn by drawChart
+  stroke: "transparent", // positioned by uPlot, painted by drawChart
   grid: { show: false },
   ticks: { show: false },
   /** @param {unknown} _ @param {(number | null)[]} ticks */

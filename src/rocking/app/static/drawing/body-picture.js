@@ -42,7 +42,7 @@ const everything = (body) => [
 export const sameSides = ({ left, right }) =>
   /** @type {(keyof Server.SideFacts)[]} */ (Object.keys(left)).every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(right[key]));
 
-// Equal sides are drawn once, over the right foot.
+// Equal sides appear once, over the right foot.
 /** @param {Drawn} body @returns {[Server.SideFacts, number, number][]} */
 const sidesOf = ({ sides, foot_positions: feet }) => {
   /** @type {[Server.SideFacts, number, number]} */

@@ -9,7 +9,7 @@ export const pathOf = (rings, view) =>
     (ring) => `M${ring.map(([x, y]) => `${round(view.x(x))} ${round(view.y(y))}`).join("L")}Z`
   ).join("");
 
-/** One path per region; a region of lower density is drawn lighter.
+/** One path per region; a region of lower density is lighter.
  * @param {Region[]} regions @param {Viewport} view @param {Attributes} [attributes] */
 export const regionPaths = (regions, view, attributes = {}) => {
   const densest = highest(regions.map((region) => region.density ?? 1));

@@ -62,7 +62,7 @@ export const arc = (x, y, radius, angle) => {
   );
 };
 
-/** Text beside a symbol, with a halo for legibility over lines.
+/** Text next to a symbol, with a halo for legibility over lines.
  * @param {number} x @param {number} y @param {string} text @param {Attributes} [attributes] */
 export const label = (x, y, text, attributes = {}) => svg(
   "text", { x: r(x), y: r(y), class: "halo", ...attributes }, text,

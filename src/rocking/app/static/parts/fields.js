@@ -71,9 +71,9 @@ export const NumberField = ({
   useLayoutEffect(() => faults.mark.bind(null, box.current, "", ""), []);
   /** @param {string} text */
   const take = (text) => {
-    const { fault = "", given } = checked(text, { min, above, max, integer, moves, optional, unit });
+    const { fault = "", parsed } = checked(text, { min, above, max, integer, moves, optional, unit });
     type(text, fault);
-    if (!fault) put(given);
+    if (!fault) put(parsed);
   };
   /** @param {KeyboardEvent} event */
   const turn = (event) => {
@@ -108,7 +108,7 @@ export const Field = ({
     <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
-/** Choice from a list of [value, words]; chosen: initial value; own: options named by users.
+/** Choice from a list of [value, words]; `chosen` is the initial value, `own` are options named by users.
  * @param {FieldProps<any> & { chosen?: unknown, own?: boolean, options: [any, string][] }} props */
 export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: message = "", hidden, ...more }) => {
   const id = useId("choice");
@@ -148,7 +148,7 @@ export const Switch = ({ label, value, on, help, hidden }) => {
     <p id=${`${id}-about`} class="field-help">${help}</p></div>`;
 };
 
-/** Slider with its value beside the label; logarithmic on request.
+/** Slider with its value next to the label, logarithmic on request.
  * @param {FieldProps<number> & { min: number, max: number, step?: number, log?: boolean }} props */
 export const Slider = ({ label, unit = "", value, on, min, max, step, log = false, help, hidden }) => {
   const id = useId("slider");
@@ -221,20 +221,20 @@ const saysNumber = (text, now) => (text.trim() ? now !== null && parseNumber(tex
 /** @param {string} text @param {unknown} now */
 const saysText = (text, now) => text.trim() === now;
 
-/** @param {string} text @param {Limits & { unit: string }} limits @returns {{ given?: number | null, fault?: string }} */
+/** @param {string} text @param {Limits & { unit: string }} limits @returns {{ parsed?: number | null, fault?: string }} */
 const checked = (text, { min, above, max, integer, moves, optional, unit }) => {
-  if (!text.trim()) return optional ? { given: null } : { fault: "Enter a number." };
-  const given = parseNumber(text);
-  if (given === null) return { fault: "This is not a number." };
-  if (moves && given === 0) return { fault: "Enter a value other than 0." };
+  if (!text.trim()) return optional ? { parsed: null } : { fault: "Enter a number." };
+  const parsed = parseNumber(text);
+  if (parsed === null) return { fault: "This is not a number." };
+  if (moves && parsed === 0) return { fault: "Enter a value other than 0." };
   const wrong = /** @type {[boolean, string, number | undefined][]} */ ([
-    [above !== undefined && given <= above, "More than {limit}.", above],
-    [min !== undefined && min !== null && given < min, "At least {limit}.", min],
-    [max !== undefined && max !== null && given > max, "At most {limit}.", max],
+    [above !== undefined && parsed <= above, "More than {limit}.", above],
+    [min !== undefined && min !== null && parsed < min, "At least {limit}.", min],
+    [max !== undefined && max !== null && parsed > max, "At most {limit}.", max],
   ]).find(([fails]) => fails);
-  if (integer && Math.abs(given) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
+  if (integer && Math.abs(parsed) > Number.MAX_SAFE_INTEGER) return { fault: t("At most {limit}.", { limit: Number.MAX_SAFE_INTEGER }) };
   if (wrong) return { fault: t(wrong[1], { limit: quantity(wrong[2], unit) }) };
-  return integer && !Number.isInteger(given) ? { fault: "Enter a whole number." } : { given };
+  return integer && !Number.isInteger(parsed) ? { fault: "Enter a whole number." } : { parsed };
 };
 
 // "1,000" is 1 here and 1000 elsewhere: show the interpreted value.

@@ -10,7 +10,7 @@ export const Made = ({ node, ...more }) => {
   return html`<div ref=${element} ...${more}></div>`;
 };
 
-/** Picture in the available width, drawn by `draw(...of, width)`.
+/** Picture in the available width from `draw(...of, width)`.
  * @param {{ draw: (...given: any[]) => Child, of: any[] }} props */
 export const Drawn = ({ draw, of }) => {
   const element = useRef(null);

@@ -91,10 +91,10 @@ export const ProjectDialog = ({ projects, app, handle }) => {
               <div class="toolbar">
                 ${project.id === here.id
                   ? html`<span class="project-open">open</span>`
-                  : html`<${Act} text="Open" one=${project} go=${act(() => projects.open(project.id), true)} />`}
-                <${Act} text="Copy" one=${project} go=${act(() => projects.copy(project.id, t("{name} (copy)", { name: userText(project.name) }), project.name))} />
-                <${Act} text="Export" one=${project} go=${take(project)} />
-                <${Act} text="Delete" one=${project} go=${remove(project)} />
+                  : html`<${Act} text="Open" project=${project} go=${act(() => projects.open(project.id), true)} />`}
+                <${Act} text="Copy" project=${project} go=${act(() => projects.copy(project.id, t("{name} (copy)", { name: userText(project.name) }), project.name))} />
+                <${Act} text="Export" project=${project} go=${take(project)} />
+                <${Act} text="Delete" project=${project} go=${remove(project)} />
               </div>
             </li>`)}
         </ul>
@@ -125,7 +125,7 @@ export const ProjectDialog = ({ projects, app, handle }) => {
             ${lists.value.deleted.map((project) => html`
               <li key=${project.id}>
                 <p><strong translate=${false}>${project.name}</strong><span class="quiet">${dateTime(project.deleted ?? "")}</span></p>
-                <${Act} text="Restore" one=${project}
+                <${Act} text="Restore" project=${project}
                   go=${act(() => app.call(`projects/${project.id}/back`, { method: "POST" }))} />
               </li>`)}
           </ul>`}
@@ -133,9 +133,9 @@ export const ProjectDialog = ({ projects, app, handle }) => {
     </dialog>`;
 };
 
-/** @param {{ text: string, one: Server.ProjectFacts, go: () => unknown }} props */
-const Act = ({ text, one, go }) => html`
-  <${Button} aria-label=${`${t(text)}: ${one.name}`} onClick=${go}>${text}<//>`;
+/** @param {{ text: string, project: Server.ProjectFacts, go: () => unknown }} props */
+const Act = ({ text, project, go }) => html`
+  <${Button} aria-label=${`${t(text)}: ${project.name}`} onClick=${go}>${text}<//>`;
 
 /** @param {{ for: string, label: string, value: string, text: string, onSubmit: (event: any) => unknown }} props */
 const NameForm = ({ for: purpose, label, value, text, onSubmit }) => html`

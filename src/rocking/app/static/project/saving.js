@@ -201,7 +201,7 @@ export const createProjects = (app, first) => {
     if (changed.size) await save();
     else await inLine(async () => {
       const theirs = await ask("");
-      // Changes in the meantime are based on the previous version: saving merges them, or asks.
+      // Changes in the meantime are based on the previous version: saving merges them, or needs a decision.
       if (changed.size) save();
       else show(adopt(theirs));
     }).catch(() => {}); // it is looked at again with the next change
@@ -285,7 +285,7 @@ export const createProjects = (app, first) => {
         const joined = ours || join(project.document);
         if (joined) last = /** @type {Own} */ (project.document);
         changed.add("inputs");
-        adopt(joined ? project : { ...project, version: kept.version }); // another reload asks again
+        adopt(joined ? project : { ...project, version: kept.version }); // another reload needs the decision again
         if (joined) await save();
         else clash.value = { theirs: project, mine };
         return;
@@ -314,9 +314,9 @@ const partsOf = (document) => Object.fromEntries(
 );
 
 // The order of keys has no meaning.
-/** @param {any} one @param {any} other */
-const same = (one, other) => {
-  const [first, second] = [one, other].map((document) => JSON.stringify([inputsOf(document?.inputs), formsOf(document?.forms)]));
+/** @param {any} left @param {any} right */
+const same = (left, right) => {
+  const [first, second] = [left, right].map((document) => JSON.stringify([inputsOf(document?.inputs), formsOf(document?.forms)]));
   return first === second;
 };
 
@@ -330,7 +330,7 @@ const remembered = () => {
 
 /** @param {{ id: string, version: number, more: boolean, sent: Own[], last: Own | null }} facts */
 const remember = (facts) => {
-  for (const more of [{}, { sent: [], last: null }]) { // a reload asks if the changes are too large to be stored twice
+  for (const more of [{}, { sent: [], last: null }]) { // a reload needs a decision if the changes are too large to be stored twice
     try {
       return sessionStorage.setItem(OPEN, JSON.stringify({ ...facts, ...more }));
     } catch {

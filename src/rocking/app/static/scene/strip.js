@@ -1,4 +1,4 @@
-/** Strip under the stage: all rotations over alpha, drawn once, with a line at the present instant. */
+/** Strip under the stage: all rotations over alpha, with a line at the present time. */
 import { fixed } from "/app/format.js";
 import { highest } from "/app/extremes.js";
 import { t } from "/app/words.js";

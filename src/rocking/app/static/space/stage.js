@@ -1,4 +1,4 @@
-/** 3D body on its ground, drawn by three.js with poses of the server. */
+/** 3D body on its ground, rendered by three.js with poses of the server. */
 
 import { svg } from "/app/dom.js";
 import { colour } from "/charts/style.js";
@@ -9,7 +9,7 @@ const FIRST = { turned: -1.1, raised: 0.3 };
 const [LOWEST, HIGHEST] = [0.03, 1.5];
 const FINEST = 2; // pixels of a canvas for one of the page
 
-/** Picture of one body, drawn on request. */
+/** Picture of one body, rendered on request. */
 export class Stage {
   /** @param {any} three @param {HTMLCanvasElement} canvas @param {SpaceModel} model */
   constructor(three, canvas, model) {
@@ -141,7 +141,7 @@ export class Stage {
     return points;
   }
 
-  /** Vertices of the hull, of which some are shown; initially none. @param {string} paint */
+  /** Visible vertices of the hull, initially none. @param {string} paint */
   contacts(paint) {
     if (!this.model.hull) return null;
     const { three } = this;

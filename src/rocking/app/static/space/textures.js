@@ -51,7 +51,7 @@ export const markTexture = (three, shape) => drawn(three, (pen) => {
   pen.fill();
 });
 
-/** The same mark beside text. @param {string} kind */
+/** The same mark next to text. @param {string} kind */
 export const markKey = (kind) => {
   const pen = new SvgPen();
   const draw = SHAPES[kind] ?? SHAPES.dot;

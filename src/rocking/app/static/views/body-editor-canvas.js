@@ -11,7 +11,7 @@ import { t } from "/app/words.js";
 
 const HEIGHT = 460;
 const NARROWEST = 80; // pixels: a narrower canvas is about to be hidden or shown
-const CELL = 12; // least width of a grid cell in pixels
+const CELL = 12; // smallest width of a grid cell in pixels
 const REACH = 16; // pixels from a vertex within which it is picked
 const ZOOM = 1.25;
 const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body fills the board
@@ -210,7 +210,7 @@ const fitted = (regions, width, photo) => {
   return viewport(roomy, { width, height: HEIGHT, margin: { left: 44, right: 12, top: 10, bottom: 26 } });
 };
 
-// The drawn step is the snap step: the typed one, doubled until its cells are visible; without one, a round step
+// The visible step is the snap step: the typed one, doubled until its cells are visible; without one, a round step
 // with visible cells.
 /** @param {Viewport} view @param {number | null | undefined} typed */
 const gridStep = (view, typed) => {
@@ -317,12 +317,12 @@ const refusedPoint = (fault, rings, view) => {
 const ringsNamed = (fault, regions) => (fault?.regions ?? []).map((/** @type {number} */ index) => regions[index]).filter(Boolean)
   .map((/** @type {Region} */ region) => region.holes?.[fault.hole] ?? region.outline);
 
-// Message of the error beside its mark; the alert below contains it for screen readers.
+// Message of the error next to its mark; the alert below contains it for screen readers.
 /** @param {HTMLElement} note @param {Editor} editor @param {Viewport} view @param {number} width @param {number[] | null} point */
 const putWords = (note, editor, view, width, point) => {
   note.hidden = !point;
   if (!point) return;
-  // beside the body if possible, so that no vertex is hidden
+  // next to the body if possible, so that no vertex is hidden
   const box = boxOf(editor.regions().flatMap((region) => region.outline));
   const [left, right] = [view.x(box.left), width - view.x(box.right)].map((room) => Math.min(room, width - 20) - 20);
   const [side, other] = left >= right ? ["right", "left"] : ["left", "right"];

@@ -155,7 +155,7 @@ export const EdgePart = ({ editor }) => {
     </div></details>`;
 };
 
-/** Photograph as background. It remains in this browser: drawn from the file, neither sent nor stored.
+/** Photograph as background. It remains in this browser: it is neither sent nor stored.
  * @param {{ editor: Editor }} props */
 export const PhotoPart = ({ editor }) => {
   const { state: { photo, tool }, tool: { say } } = editor;

@@ -66,7 +66,7 @@ export const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
-  // Feet and depth are typed beside the canvas: an undo step includes them only if it changed them.
+  // Feet and depth are typed next to the canvas: an undo step includes them only if it changed them.
   const now = ({ whole: withSection = false } = {}) => {
     const { section, units: of } = body();
     return { section, regions: regions(), units: of, whole: withSection };
@@ -74,7 +74,7 @@ export const createEditor = (app) => {
   const step = () => state.grid ?? state.step ?? 0.05;
   /** @type {Editor} */
   const editor = {
-    state, history, regions, step, drawn, told: boardText, board: /** @type {any} */ (null), // until it is drawn
+    state, history, regions, step, drawn, told: boardText, board: /** @type {any} */ (null), // until the first painting
     tool: /** @type {any} */ (null), // at the end
     shown: () => shapeOf(body()) === "section",
     section: () => body().section,

@@ -29,7 +29,7 @@ export const About = ({ app, label, onClose }) => {
       <h3>Assumptions</h3><${List} of=${model.assumptions} />
       ${model.domain && html`<h3>Range of validity</h3><p>${model.domain}</p>`}
       <h3>Known defects</h3><${List} of=${model.known_defects} />
-      <h3>Evidence</h3><${Evidence} found=${impact.value} name=${model.name} />
+      <h3>Evidence</h3><${Evidence} impact=${impact.value} name=${model.name} />
       <div class="toolbar"><${Button} onClick=${() => app.go("impact")}>Compare with measurements<//>${close}</div>
     </section>`;
 };
@@ -44,8 +44,8 @@ const LANDS = {
   right: "This body, impact on the right foot: r = {coefficient}. 95 % interval for a measured body: {low} to {high}.",
 };
 
-/** @param {{ found: Server.ImpactAnswered | null, name: string }} props */
-const Evidence = ({ found: impact, name }) => {
+/** @param {{ impact: Server.ImpactAnswered | null, name: string }} props */
+const Evidence = ({ impact, name }) => {
   if (!impact) return html`<p class="waiting">Computing</p>`;
   const rows = Object.entries(impact.coefficients)
     .flatMap(([foot, all]) => all.filter(({ model }) => familyOf(model) === name).slice(0, 1).map((row) => ({ foot, row })));

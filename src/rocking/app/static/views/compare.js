@@ -48,7 +48,7 @@ export const mount = (section, app) => {
   };
 };
 
-/** Least scale factors of the motion that overturn the body, by model, as in `rocking assess`; for the present inputs.
+/** Smallest scale factors with overturning, by model, as in `rocking assess`; for the present inputs.
  * @param {App} app */
 const createMargins = (app) => {
   const questions = createQuestions(app, "assess");

@@ -178,7 +178,7 @@ const WHAT = { uplift: "rocks", sliding: "slides", overturning: "overturns" };
 /** @param {number | null} low @param {number | null} high */
 const between = (low, high) => (low === null ? "\u2013" : t("{low} to {high}", { low: percent(low), high: percent(high) }));
 
-/** Probabilities, under these motions and under further motions of the same kind; beside them those with another restitution.
+/** Probabilities, under these motions and under further motions of the same kind, compared with those of another restitution.
  * @param {{ of: any }} props */
 const Chances = ({ of: { probability, beside } }) => html`
   <${Rows} caption="Probabilities" head=${["outcome", "probability", "95 % interval", "with similar motions"]}

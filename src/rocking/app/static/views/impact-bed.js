@@ -50,11 +50,11 @@ export const Laboratory = ({ app, body }) => {
       ${refused.value.text && html`<${Note} kind="error" role="alert" text=${refused.value.text} />`}
       <div class="toolbar"><${Button} type="submit" disabled=${busy.value}>Compute<//></div>
     </form>
-    ${result.value && html`<${Emerged} found=${result.value} />`}</div>`;
+    ${result.value && html`<${Emerged} result=${result.value} />`}</div>`;
 };
 
-/** @param {{ found: Server.ContactBedAnswered }} props */
-const Emerged = ({ found: { varied, unit, values, results, rigid } }) => {
+/** @param {{ result: Server.ContactBedAnswered }} props */
+const Emerged = ({ result: { varied, unit, values, results, rigid } }) => {
   const shown = useSignal("coefficient");
   const time = useRef(createTime()).current;
   const { unit: of, values: curve } = results[shown.value];

@@ -1,4 +1,4 @@
-/** Implied impulse position of every model, drawn along the base. */
+/** Implied impulse position of every model along the base. */
 
 import { svg } from "/app/dom.js";
 import { highest, lowest } from "/app/extremes.js";

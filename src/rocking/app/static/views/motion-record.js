@@ -65,7 +65,7 @@ export const createRecord = (app, onChange) => {
     const named = places.some(({ kind }) => kind === "file") ? t("The file {refusal}", { refusal: text }) : text;
     return { text: `${sentence(named)}${stays}`, kind: "error" };
   };
-  // Given data are kept as typed, with the error beside its field.
+  // Given data are kept as typed, with the error next to its field.
   /** @param {any} error */
   const refuse = ({ message, ...error }) => {
     if (!openNeeds.value || error.needs?.length) {

@@ -17,7 +17,7 @@ const write = (entries) => {
   try {
     localStorage.setItem(KEPT, JSON.stringify(Object.fromEntries(entries.slice(-MOST))));
   } catch {
-    // a browser without storage asks again
+    // a browser without storage needs the data again
   }
 };
 

@@ -19,7 +19,7 @@ const SHAPE = {
  * @param {App} app @param {Server.StudyFacts} study */
 export const createCell = (app, study) => {
   const summary = signal("Click a cell of the map.");
-  const data = signal(null); // of the last drawn curve
+  const data = signal(null); // of the last visible curve
   const curve = signal(false);
   const opens = signal(false);
   /** @type {any} */

@@ -63,7 +63,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     </div>`;
 };
 
-/** Records with the same data share one table. @param {any[]} tables */
+/** Records with the same data have one table. @param {any[]} tables */
 const together = (tables) => {
   const byOptions = new Map();
   for (const { records, ...options } of tables) {

@@ -61,7 +61,7 @@ const NO_CURVE = { x: [], probability: [], low: null, high: null };
 const Curve = ({ state, curve, points, index, x }) => {
   const { colour } = seriesStyle(index);
   const band = Boolean(curve.low && curve.high);
-  // the legend contains the drawn curves only
+  // the legend contains the visible curves only
   const drawn = [curve.x.length > 0, band, band, true];
   const series = [
     { label: "maximum likelihood", colour, width: 2.2 },

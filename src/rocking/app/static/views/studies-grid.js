@@ -96,7 +96,7 @@ export const createGrid = (canvas, x, y) => {
   /** @type {{ by?: PaintOf, lines?: Lines }} */
   let painted = {};
   let seen = [WHOLE, WHOLE]; // fractions of the axes
-  const still = document.createElement("canvas"); // all except the pointer marks: drawn once, not at every move
+  const still = document.createElement("canvas"); // all except the pointer marks: painted once, not at every move
 
   const fit = () => {
     const width = Math.max(240, canvas.parentElement?.clientWidth ?? 0);
@@ -266,7 +266,7 @@ export const createGrid = (canvas, x, y) => {
     }
   };
 
-  /** Fractions of the axes at the pointer, on the map or beside it. @param {MouseEvent} event */
+  /** Fractions of the axes at the pointer, on the map or next to it. @param {MouseEvent} event */
   const sharesAt = (event) => {
     const box = canvas.getBoundingClientRect();
     const right = (event.clientX - box.left - LEFT) / inner().w;

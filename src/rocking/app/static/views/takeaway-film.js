@@ -7,9 +7,9 @@ import { t } from "/app/words.js";
 
 const NAME = "rocking-animation.gif";
 
-/** Button with the number of drawn frames. @param {{ app: App, children?: any, [more: string]: any }} props */
+/** Button with the number of finished frames. @param {{ app: App, children?: any, [more: string]: any }} props */
 export const Film = ({ app, children, ...more }) => {
-  const seconds = useSignal(null); // seconds since the start; null while no frames are drawn
+  const seconds = useSignal(null); // seconds since the start; null while no frames are finished
   const [start, progress, abort] = [useRef(null), useRef(null), useRef(null)];
   const running = seconds.value !== null;
   const draw = async () => {
