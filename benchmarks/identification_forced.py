@@ -173,9 +173,11 @@ def identified(number: int, kind: str = "rotation", *, friction: bool = False, s
     friction: whether its feet slide; slides: whether this is thought of.
     """
     case = shaken(number, kind, friction=friction)
-    known = Knowledge.of(case["body"], SIZE_ERROR, TILT, 2.0 * HALF_ERROR, trend=False, damping=False, first="right")
+    prior = Knowledge.checked(
+        case["body"], SIZE_ERROR, TILT, 2.0 * HALF_ERROR, trend=False, damping=False, first="right"
+    )
     began = time.process_time()
-    fit = fit_forced(case["series"], known, case["motion"], (0.0, CLOCK))
+    fit = fit_forced(case["series"], prior, case["motion"], (0.0, CLOCK))
     said = (
         None if fit is None else with_sliding(fit) if slides else (fit, IntervalEstimate(math.nan, 0.0, math.nan), ())
     )

@@ -132,7 +132,7 @@ def test_half_cycles_are_those_of_the_engine(response):
     state = hits["time"][large], np.zeros(large.size), np.abs(hits["velocity_after"][large])
     sign = np.where(hits["foot"][large] == "right", 1.0, -1.0)
     lasts = np.diff(hits["time"])[large]
-    found = Flights.of(response.motion, state, body, sign, 1.2 * lasts).ends()
+    found = Flights.integrated(response.motion, state, body, sign, 1.2 * lasts).ends()
     assert large.size > 4
     np.testing.assert_allclose(found[0], lasts, atol=1e-6)
     np.testing.assert_allclose(found[1], np.abs(hits["velocity_before"][large + 1]), rtol=1e-3)  # cubic between steps
@@ -158,7 +158,7 @@ def test_feet_that_slide_are_those_of_the_engine(response):
     (before, old), (after, new), begin = states("before", -sign), states("after", sign), [blow.time for blow in blows]
     feet, lasts = (np.full(sign.size, FRICTION), new, np.zeros(sign.size)), np.diff(begin)
     state = np.array(begin), np.zeros(sign.size), after
-    ends = Flights.of(response.motion, state, (alpha, p, size), sign, np.append(1.2 * lasts, 1.0), feet).ends()
+    ends = Flights.integrated(response.motion, state, (alpha, p, size), sign, np.append(1.2 * lasts, 1.0), feet).ends()
     assert np.sum(new != 0.0) > 5
     assert np.sum(new == 0.0) > 5
     np.testing.assert_allclose(ends[0][:-1], lasts, atol=1e-5)
@@ -193,8 +193,12 @@ def test_mirror_images_have_the_same_coefficients(response):
     ("measured", "given", "words"),
     [
         (ImpactTimes([0.0, 1.0, 1.9, 2.7]), {}, "RotationSeries"),
-        (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4, from_acceleration=True), {}, "adds its own"),
-        (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4), {"body": None}, "body must be given"),
+        (
+            RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4, from_acceleration=True),
+            {},
+            "includes the ground acceleration",
+        ),
+        (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4), {"body": None}, "body is required"),
         (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4), {"damping": True}, "damping must be False"),
         (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4), {"motion": 3.0}, "motion must be"),
         (RotationSeries([0.0, 1.0, 1.9, 2.7], [0.0] * 4), {"clock": 60.0}, "clock must be in"),
@@ -214,7 +218,7 @@ def test_a_motion_that_lifts_nothing_is_refused(peak):
     """By what it takes, and with the likely cause."""
     time = np.arange(0.0, 3.0, 0.01)
     series = RotationSeries(time, rotation=1e-4 * np.random.default_rng(3).normal(size=time.size))
-    with pytest.raises(InvalidValueError, match=f"must lift the body.* got a peak of {peak:g} m/s2"):
+    with pytest.raises(InvalidValueError, match=f"must exceed the uplift acceleration.* got a peak of {peak:g} m/s2"):
         identify(series, BODY, motion=rk.GroundMotion(peak * np.sin(time), 0.01))
 
 
@@ -239,8 +243,8 @@ def test_doubts_of_records_and_clocks(response):
     def doubts(motion, ahead=0.0):
         return " ".join(identify(RotationSeries(time + ahead, rotation=values), BODY, motion=motion).doubts)
 
-    assert "The motion ends at 1.68 s while it still shakes" in doubts(cut)
-    assert "is found to be ahead by 0.1 s, though 0 +- 0.02 s" in doubts(response.motion, 0.1)
+    assert "The ground motion ends at 1.68 s" in doubts(cut)
+    assert "is ahead by 0.1 s, but 0 +- 0.02 s" in doubts(response.motion, 0.1)
     assert "ahead" not in doubts(response.motion)
     assert "ends at" not in doubts(response.motion)
 

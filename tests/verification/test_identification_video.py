@@ -39,6 +39,6 @@ def test_another_clock_is_noticed():
 
     assert not found(1.0).refused
     assert not found(1.0).doubts
-    assert "as a body of other sizes would" in " ".join(found(1.05).doubts)
+    assert "that of a body of another size" in " ".join(found(1.05).doubts)
     assert found(2.0).refused
     assert found(0.5).refused

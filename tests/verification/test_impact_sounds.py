@@ -17,7 +17,7 @@ from rocking.errors import MeasurementError
 from rocking.identification.readers import sound as sounds
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import law_misfit, next_impact
-from rocking.identification.readers.sound import _begun, impacts_heard
+from rocking.identification.readers.sound import _onset_density, impacts_from_sound
 
 pytestmark = pytest.mark.verifies(room="evidence")
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
@@ -25,7 +25,7 @@ ROOMS, OTHERS, FIRST = (60, 100, 700_000) if CAMPAIGN else (6, 1, 700_000)
 
 
 def heard(samples):
-    return impacts_heard(Recording("made", samples[:, None], RATE))
+    return impacts_from_sound(Recording("made", samples[:, None], RATE))
 
 
 def complete(found, times):
@@ -107,7 +107,7 @@ def slow_clicks(seed):
 def test_what_rises_slowly_is_not_picked_late(seed):
     """When such clicks begin is known to a deviation that is stated, of less than 2e-4 s."""
     sound, places, late = slow_clicks(seed)
-    after, share = _begun(sound, RATE, places)
+    after, share = _onset_density(sound, RATE, places)
     found = after @ share
     assert found == pytest.approx(-late, abs=2e-4)
     assert np.sqrt(share @ (after - found) ** 2) < 2e-4
@@ -128,12 +128,12 @@ def test_a_sound_whose_hum_is_clipped_is_refused():
     """Where most samples are at the limit, clicks are cut away: no times are given."""
     sound = rocking_sounds.rocking(FIRST, 15.0).samples
     hum = np.sin(2.0 * np.pi * 50.0 * np.arange(sound.size) / RATE)
-    with pytest.raises(MeasurementError, match=r"clipped, more than 33 %: record at a lower level"):
+    with pytest.raises(MeasurementError, match=r"clipped, at most 33 % is allowed; record at a lower level"):
         heard(np.clip(sound + 2.0 * hum, -0.8, 0.8))
     assert heard(np.clip(sound, -0.8 * np.abs(sound).max(), None)).times.size == 11
     for dead in (0.0, 0.2):  # of a recorder that keeps two channels and hears with one
         both = Recording("made", np.column_stack([sound, np.full_like(sound, dead)]), RATE)
-        assert impacts_heard(both).times.size == 11
+        assert impacts_from_sound(both).times.size == 11
         assert both.clipped == Recording("made", sound[:, None], RATE).clipped
 
 
@@ -209,4 +209,4 @@ def test_what_is_no_rocking_is_refused(kind):
         except MeasurementError as refusal:
             refusals.append(str(refusal))
     assert len(refusals) == OTHERS
-    assert all(re.search("no sound of a rocking body|fewer than three clicks", words) for words in refusals)
+    assert all(re.search("not the sound of a rocking body|fewer than three clicks", words) for words in refusals)

@@ -1,4 +1,4 @@
-"""The front door: a measurement in, coefficients with intervals out."""
+"""The function `identify`: coefficients of restitution with intervals from a measurement."""
 
 import math
 from collections.abc import Sequence
@@ -30,13 +30,14 @@ from rocking.messages import Message, Option
 from rocking.motions.pulse import Motion
 
 Reason = str | Message
-_TREND = Message("try {trend}", {"trend": Option("identify.trend", True)})
-_SHARE, _OF_ALL, _AFTER = 0.66, 0.5, 1.0  # of times; seconds, after which nobody hears the last impacts any more
-_ADVANTAGE, _MOST_SCATTER, _UNLIKELY, _EXPLAINED = 5.0, 0.12, 1e-4, 0.9
-_STRANGE, _FOREIGN = 4.0, 6.0  # standard deviations of p and the slenderness angle: doubted, refused
+_TREND = Message("use {trend}", {"trend": Option("identify.trend", True)})
+_MIN_FRACTION, _MIN_FRACTION_OF_ALL = 0.66, 0.5  # of the times
+_FADED_AFTER = 1.0  # time after the last audible impact [s]
+_MIN_ADVANTAGE, _MAX_SCATTER, _MIN_P_VALUE, _MIN_EXPLAINED = 5.0, 0.12, 1e-4, 0.9
+_DOUBTED_SIZE, _REFUSED_SIZE = 4.0, 6.0  # standard deviations of p and the slenderness angle
 
 
-def identify(  # noqa: PLR0913 - what is known beside the measurement
+def identify(  # noqa: PLR0913 - prior knowledge
     measurement: ImpactTimes | RotationSeries,
     body: Any = None,
     *,
@@ -49,81 +50,81 @@ def identify(  # noqa: PLR0913 - what is known beside the measurement
     motion: Motion | None = None,
     clock: float | Sequence[float] = 0.02,
 ) -> Identification:
-    """Return what a measurement of rocking says about restitution: of free rocking, or under a known ground motion.
+    """Return the coefficient of restitution from measured rocking, free or under a known ground motion.
 
     Parameters
     ----------
     measurement : ImpactTimes or RotationSeries
-        Times of impacts, of which some may be missing and some none; or rotations or angular velocities.
+        Times of impacts, possibly with missing and false ones; or rotations or angular velocities.
     body : Block, Section or MassPoints, optional
         The body. Without it the frequency parameter is fitted too, and intervals are wider.
     size_error : float
         Standard deviation of a length of the body, relative [-].
     tilt : float or (float, float)
-        Standard deviation of the tilt of the floor, or tilt and standard deviation, clockwise; 0 of a level floor.
-        It is the floor that makes times alone tell little about each side [rad].
+        Standard deviation of the tilt of the floor, or tilt and standard deviation, clockwise; 0 for a level floor.
+        With an unknown tilt, times alone hardly determine the coefficient of each side [rad].
     asymmetry : float
-        Standard deviation of ln r landing right less ln r landing left; 0 if both are the same [-].
+        Standard deviation of the difference of ln r between both feet; 0 for equal coefficients [-].
     trend, damping : bool
-        Whether r may change with the speed, and whether damping between impacts is fitted.
+        Fit a change of r with the speed, or the damping between impacts.
     first : {"left", "right"}
-        Foot on which the body stands after the first impact, of times, which do not tell.
+        Foot in contact after the first impact; for times only.
     motion : GroundMotion or Pulse, optional
-        How the ground moved under a body that stood at rest before; rotations are relative to the ground.
+        Ground motion of a body at rest before it; rotations are relative to the ground.
     clock : float or (float, float)
-        Standard deviation of by how much the clock of the measurement is ahead of that of the motion, or that and
+        Standard deviation of the lead of the clock of the measurement over the clock of the motion, or the lead and
         its standard deviation [s].
 
     Returns
     -------
     Identification
-        Coefficients, scatter, impacts, what they agree with; why it is refused, if it is no rocking.
+        Coefficients, scatter, impacts, and agreeing models; the reasons, if the measurement is refused.
 
     Raises
     ------
     InvalidValueError
-        If the measurement or the body is none, or a value is outside its range.
+        If the measurement or the body has another class, or a value is outside its range.
 
     Examples
     --------
     >>> import rocking as rk
     >>> times = [0.0, 1.2158, 2.2432, 3.1403, 3.9387, 4.6583, 5.3126, 5.9119, 6.4634]
-    >>> found = identify(ImpactTimes(times, sigma=1e-3), rk.Block(width=1.0, height=4.0), tilt=0.0)
-    >>> found.refused, 0.90 < found.mean.low < found.mean.high < 0.94
+    >>> result = identify(ImpactTimes(times, sigma=1e-3), rk.Block(width=1.0, height=4.0), tilt=0.0)
+    >>> result.refused, 0.90 < result.mean.low < result.mean.high < 0.94
     ((), True)
     """
-    known = Knowledge.of(body, size_error, tilt, asymmetry, trend=bool(trend), damping=bool(damping), first=first)
+    prior = Knowledge.checked(body, size_error, tilt, asymmetry, trend=bool(trend), damping=bool(damping), first=first)
     if motion is not None:
-        return identify_forced(measurement, known, motion, clock) or _nothing(
-            measurement, "fewer than three impacts stand out of the noise"
+        return identify_forced(measurement, prior, motion, clock) or _refused(
+            measurement, "fewer than three impacts are above the noise"
         )
     if isinstance(measurement, ImpactTimes):
-        return _of_times(measurement, known)
+        return _from_times(measurement, prior)
     if isinstance(measurement, RotationSeries):
-        return _of_series(measurement, known)
+        return _from_series(measurement, prior)
     raise InvalidValueError(parameter="measurement", allowed="ImpactTimes or a RotationSeries", value=measurement)
 
 
-def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
-    found = fit_times(measurement, known)
-    if found is None or found[0].clicks.size < 4:
-        return _nothing(measurement, "fewer than four times belong together as impacts")
-    (track, told), refused, doubts = found, list[Reason](), list[Reason](measurement.doubts)
+def _from_times(measurement: ImpactTimes, prior: Knowledge) -> Identification:
+    fit = fit_times(measurement, prior)
+    if fit is None or fit[0].clicks.size < 4:
+        return _refused(measurement, "fewer than four times are impacts of one body")
+    (track, posterior), refused, doubts = fit, list[Reason](), list[Reason](measurement.doubts)
     times = measurement.times[track.clicks]
-    advantage = told.evidence - _steady(np.diff(times) / np.diff(track.impacts))
+    advantage = posterior.evidence - _log_density_at_constant_intervals(np.diff(times) / np.diff(track.impacts))
     missed, extra = int(np.ptp(track.impacts)) + 1 - track.impacts.size, track.within - track.clicks.size
     bounces = min(track.bounces, extra)
-    outside = int(np.sum((measurement.times < times[0]) | (measurement.times > times[-1] + _AFTER)))
+    outside = int(np.sum((measurement.times < times[0]) | (measurement.times > times[-1] + _FADED_AFTER)))
     share = times.size / (times.size + extra - bounces + missed)
-    if share < _SHARE or times.size + bounces < _OF_ALL * (track.within + outside):
+    if share < _MIN_FRACTION or times.size + bounces < _MIN_FRACTION_OF_ALL * (track.within + outside):
         refused.append(
             Message(
-                "{count} of {total} times belong together, {missed} between them are missing",
+                "only {count} of {total} times are impacts of one body, {missed} impacts between them are missing",
                 {"count": times.size, "total": measurement.times.size, "missed": missed},
             )
         )
-    if advantage < _ADVANTAGE:
-        refused.append("intervals do not shrink from impact to impact as those of a rocking body do")
+    if advantage < _MIN_ADVANTAGE:
+        refused.append("the intervals do not decrease as those of a rocking body")
     if missed:
         doubts.append(
             Message(
@@ -140,13 +141,13 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
                 many="{count} times between the impacts are no impacts; bounces or echoes: {bounces}.",
             )
         )
-    if known.asymmetry and known.tilt_error:
-        doubts.append("Times alone do not tell a tilted floor from sides that differ: intervals by side include both.")
+    if prior.asymmetry and prior.tilt_error:
+        doubts.append("Times cannot distinguish a tilted floor from unequal sides. The intervals by side include both.")
     result = _result(
         measurement,
-        known,
-        told,
-        known.first,
+        prior,
+        posterior,
+        prior.first,
         refused,
         doubts,
         independent=float(times.size),
@@ -155,43 +156,47 @@ def _of_times(measurement: ImpactTimes, known: Knowledge) -> Identification:
     return replace(result, residual_times=times)
 
 
-def _of_series(measurement: RotationSeries, known: Knowledge) -> Identification:
-    found = fit_series(measurement, known)
-    if found is None:
-        return _nothing(measurement, "the rotation does not pass through its middle often enough")
-    told, rows, independent = found
-    parts = np.split(told.average(told.residuals), np.cumsum([row.values.size for row in rows])[:-1])
-    missed = [part * row.scale for row, part in zip(rows, parts, strict=True)]
-    about = [row.values - row.values.mean() for row in rows]
-    total = max(float(a @ a) / float((b**2).sum()) for a, b in zip(missed, about, strict=True))
+def _from_series(measurement: RotationSeries, prior: Knowledge) -> Identification:
+    fit = fit_series(measurement, prior)
+    if fit is None:
+        return _refused(measurement, "the rotation crosses its middle fewer than three times")
+    posterior, rows, independent = fit
+    parts = np.split(posterior.average(posterior.residuals), np.cumsum([row.values.size for row in rows])[:-1])
+    missed = [residuals * row.scale for row, residuals in zip(rows, parts, strict=True)]
+    centred = [row.values - row.values.mean() for row in rows]
+    unexplained = max(float(a @ a) / float((b**2).sum()) for a, b in zip(missed, centred, strict=True))
     refused: list[Reason] = []
-    if total > 1.0 - _EXPLAINED:
-        refused.append(Message("rocking explains {share:.0f} % of the motion only", {"share": 100.0 * (1.0 - total)}))
-    first: Foot = "right" if told.model.sides[0] == 0 else "left"
-    doubts: list[Reason] = [*measurement.doubts]
-    far = float(np.linalg.norm(told.average(told.u)[[FREQUENCY, SLENDERNESS]]))
-    if known.body is not None and far > _STRANGE:
-        words = (
-            f"it moves as a body of other sizes would, by {far:.2g} standard deviations of size_error; another clock?"
+    if unexplained > 1.0 - _MIN_EXPLAINED:
+        refused.append(
+            Message("rocking explains only {share:.0f} % of the motion", {"share": 100.0 * (1.0 - unexplained)})
         )
-        (refused if far > _FOREIGN else doubts).append(words)
-    result = _result(measurement, known, told, first, refused, doubts, independent=independent, advantage=math.nan)
+    first: Foot = "right" if posterior.model.sides[0] == 0 else "left"
+    doubts: list[Reason] = [*measurement.doubts]
+    size_deviation = float(np.linalg.norm(posterior.average(posterior.u)[[FREQUENCY, SLENDERNESS]]))
+    if prior.body is not None and size_deviation > _DOUBTED_SIZE:
+        size_message = (
+            f"the motion is that of a body of another size, by {size_deviation:.2g} standard deviations of size_error: "
+            "check the sizes and the clock"
+        )
+        (refused if size_deviation > _REFUSED_SIZE else doubts).append(size_message)
+    result = _result(measurement, prior, posterior, first, refused, doubts, independent=independent, advantage=math.nan)
     return replace(result, residual_times=np.concatenate([row.time for row in rows]))
 
 
-def _nothing(measurement: ImpactTimes | RotationSeries, why: str) -> Identification:
-    none = IntervalEstimate(math.nan, math.nan, math.nan)
-    sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, none)
+def _refused(measurement: ImpactTimes | RotationSeries, reason: str) -> Identification:
+    no_estimate = IntervalEstimate(math.nan, math.nan, math.nan)
+    sides: dict[Foot, IntervalEstimate] = dict.fromkeys(FEET, no_estimate)
     return Identification(
-        measurement.source, (why,), measurement.doubts, none, sides, none, math.nan, none, none, None, None, (),
-        np.zeros(0), none, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
+        measurement.source, (reason,), measurement.doubts, no_estimate, sides, no_estimate, math.nan, no_estimate,
+        no_estimate, None, None, (),
+        np.zeros(0), no_estimate, 0.0, math.nan, math.nan, False, {}, (), (), {}, measurement,
     )  # fmt: skip
 
 
 def _result(
     measurement: ImpactTimes | RotationSeries,
-    known: Knowledge,
-    found: Posterior,
+    prior: Knowledge,
+    posterior: Posterior,
     first: Foot,
     refused: list[Reason],
     doubts: list[Reason],
@@ -199,18 +204,20 @@ def _result(
     independent: float,
     advantage: float,
 ) -> Identification:
-    mean = found.shared((MEAN, 1.0))
-    by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
-    coefficients = {foot: estimated(each, 1.0) for foot, each in by_side.items()}
-    r, scattered = estimated(mean, 1.0), _of_grid(found, found.scatter)
-    p_value = _steadiness(found)
+    mean = posterior.shared((MEAN, 1.0))
+    by_side = {foot: posterior.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
+    coefficients = {foot: estimated(mixture, 1.0) for foot, mixture in by_side.items()}
+    r, scattered = estimated(mean, 1.0), _grid_interval(posterior, posterior.scatter)
+    p_value = _trend_p_value(posterior)
     if mean.below(0.0) < 0.975:
-        refused.append(Message("impacts take no energy: r is {coefficient}", {"coefficient": r}))
-    if scattered.value > _MOST_SCATTER:
-        refused.append(Message("what impacts take scatters by {share:.0f} %", {"share": 100.0 * scattered.value}))
-    remedy = Message("check the sizes of the body, then {way}", {"way": _TREND}) if known.body is not None else _TREND
+        refused.append(Message("the impacts lose no energy: r is {coefficient}", {"coefficient": r}))
+    if scattered.value > _MAX_SCATTER:
+        refused.append(
+            Message("the coefficient of restitution scatters by {share:.0f} %", {"share": 100.0 * scattered.value})
+        )
+    remedy = Message("check the sizes of the body, then {way}", {"way": _TREND}) if prior.body is not None else _TREND
     trend = {"probability": p_value, "remedy": remedy}
-    if p_value < _UNLIKELY and not known.trend:
+    if p_value < _MIN_P_VALUE and not prior.trend:
         refused.append(
             Message(
                 "the energy loss changes steadily with the number of impacts (p = {probability:.1g}); {remedy}", trend
@@ -220,60 +227,60 @@ def _result(
         doubts.append(
             Message("The energy loss changes with the number of impacts, p = {probability:.2g}: {remedy}.", trend)
         )
-    if not found.converged:
-        doubts.append("The maximum of the posterior was not found everywhere: intervals may be wrong.")
-    frequency = math.sqrt(found.model.p[0] * found.model.p[1])
-    body, alpha = known.body, found.model.alpha
+    if not posterior.converged:
+        doubts.append("The maximum of the posterior was not found for all nodes. The intervals may be wrong.")
+    frequency = math.sqrt(posterior.model.p[0] * posterior.model.p[1])
+    body, alpha = prior.body, posterior.model.alpha
     experiments: tuple[Design, ...] = ()
     if math.isfinite(r.value):
-        p_error = float(found.model.deviation[FREQUENCY])
-        noise = float(found.average(found.noise)) if isinstance(measurement, ImpactTimes) else 1e-3
+        p_error = float(posterior.model.deviation[FREQUENCY])
+        noise = float(posterior.average(posterior.noise)) if isinstance(measurement, ImpactTimes) else 1e-3
         experiments = designs(
             math.sqrt(alpha[0] * alpha[1]), frequency, p_error, min(r.value, 0.999), scattered.value, noise
         )
     return Identification(
         source=measurement.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scattered, no_scatter=found.no_scatter,
-        frequency_parameter=estimated(found.shared((FREQUENCY, 1.0)), frequency),
-        tilt=estimated(found.shared((TILT, 1.0))),
-        trend=estimated(found.shared((TREND, 1.0))) if known.trend else None,
-        damping=estimated(found.shared((DAMPING, 1.0))) if known.damping else None,
-        impacts=_impacts(found, first), residuals=found.average(found.residuals),
-        noise=_of_grid(found, found.noise), independent=independent, p_value=p_value, advantage=advantage,
-        converged=found.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
+        scatter=scattered, no_scatter=posterior.no_scatter,
+        frequency_parameter=estimated(posterior.shared((FREQUENCY, 1.0)), frequency),
+        tilt=estimated(posterior.shared((TILT, 1.0))),
+        trend=estimated(posterior.shared((TREND, 1.0))) if prior.trend else None,
+        damping=estimated(posterior.shared((DAMPING, 1.0))) if prior.damping else None,
+        impacts=_impacts(posterior, first), residuals=posterior.average(posterior.residuals),
+        noise=_grid_interval(posterior, posterior.noise), independent=independent, p_value=p_value, advantage=advantage,
+        converged=posterior.converged, impulse=impulses(body, coefficients) if body is not None and not refused else {},
         models=compared(body, r) if body is not None and not refused else (), designs=experiments,
         measurement=measurement, quantiles=next_impact(mean, 0.0),
-        _common=found.explained(MEAN, (FREQUENCY, SLENDERNESS)),
-        _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
+        _common=posterior.explained(MEAN, (FREQUENCY, SLENDERNESS)),
+        _next={foot: next_impact(mixture, posterior.scatter) for foot, mixture in by_side.items()},
     )  # fmt: skip
 
 
-def _impacts(found: Posterior, first: Foot) -> tuple[Impact, ...]:
-    """Return what every impact took of whose speeds before and after something is known."""
-    best = int(np.argmax(found.weights))
-    path = found.model.path(found.u[best : best + 1], found.scatter[best : best + 1])
-    made, foot = [], first
-    for number in range(1, found.model.sides.size):
+def _impacts(posterior: Posterior, first: Foot) -> tuple[Impact, ...]:
+    """Return the coefficient of each impact with known speeds before and after it."""
+    best = int(np.argmax(posterior.weights))
+    path = posterior.model.path(posterior.u[best : best + 1], posterior.scatter[best : best + 1])
+    impacts, foot = [], first
+    for number in range(1, posterior.model.sides.size):
         foot = opposite(foot)
-        slopes = np.zeros_like(found.u)
-        slopes[:, MEAN] = found.model.deviation[MEAN]
-        slopes[:, HALF] = found.model.deviation[HALF] * (1.0 if foot == "right" else -1.0)
-        slopes[:, TREND] = found.model.deviation[TREND] * (path.speeds[0, number - 1] - found.model.middle)
-        slopes[:, len(SHARED) + number - 1] = found.scatter
-        each = estimated(found.normal(slopes, float(found.model.mean[MEAN])), 1.0)
+        slopes = np.zeros_like(posterior.u)
+        slopes[:, MEAN] = posterior.model.deviation[MEAN]
+        slopes[:, HALF] = posterior.model.deviation[HALF] * (1.0 if foot == "right" else -1.0)
+        slopes[:, TREND] = posterior.model.deviation[TREND] * (path.speeds[0, number - 1] - posterior.model.middle)
+        slopes[:, len(SHARED) + number - 1] = posterior.scatter
+        coefficient = estimated(posterior.normal(slopes, float(posterior.model.mean[MEAN])), 1.0)
         speed = float(np.exp(path.speeds[0, number - 1]))
-        made.append(Impact(number, float(path.times[0, number]), foot, speed, each))
-    return tuple(made)
+        impacts.append(Impact(number, float(path.times[0, number]), foot, speed, coefficient))
+    return tuple(impacts)
 
 
-def _of_grid(found: Posterior, values: FloatArray) -> IntervalEstimate:
-    """IntervalEstimate of the scatter or the noise, which the grid holds."""
-    return IntervalEstimate(*interval_of_nodes(values, found.weights))
+def _grid_interval(posterior: Posterior, values: FloatArray) -> IntervalEstimate:
+    """Return median and 95 % interval of the scatter or the noise from the weights of the grid."""
+    return IntervalEstimate(*interval_of_nodes(values, posterior.weights))
 
 
-def _steadiness(found: Posterior) -> float:
-    """Probability that draws change as steadily with their number as these, by Student's t."""
-    draws = found.average(found.u[:, len(SHARED) :] * found.scatter[:, None])
+def _trend_p_value(posterior: Posterior) -> float:
+    """Return the probability of an equally steady change with the impact number, by Student's t."""
+    draws = posterior.average(posterior.u[:, len(SHARED) :] * posterior.scatter[:, None])
     degrees = draws.size - 3
     if degrees < 2 or not np.ptp(draws) > 0.0:
         return 1.0
@@ -282,10 +289,10 @@ def _steadiness(found: Posterior) -> float:
     return float(2.0 * stdtr(degrees, -t))
 
 
-def _steady(intervals: FloatArray) -> float:
-    """Ln of the probability density of intervals whose logarithms are normal about one mean."""
+def _log_density_at_constant_intervals(intervals: FloatArray) -> float:
+    """Return ln of the density of intervals with normal logarithms about one mean."""
     ln, n = np.log(intervals), intervals.size
     tau = np.geomspace(1e-3, 1.0, 60)
-    about = float(((ln - ln.mean()) ** 2).sum())
-    each = -0.5 * about / tau**2 - (n - 1) * np.log(tau * np.sqrt(2.0 * np.pi)) - 0.5 * np.log(n)
-    return float(logsumexp(each) - np.log(tau.size) - np.log(np.log(20.0 / 0.02)) - ln.sum())  # Eq. 279
+    square_sum = float(((ln - ln.mean()) ** 2).sum())
+    log_densities = -0.5 * square_sum / tau**2 - (n - 1) * np.log(tau * np.sqrt(2.0 * np.pi)) - 0.5 * np.log(n)
+    return float(logsumexp(log_densities) - np.log(tau.size) - np.log(np.log(20.0 / 0.02)) - ln.sum())  # Eq. 279

@@ -1,7 +1,7 @@
-"""Times of impacts: which of those heard are impacts, with which number, and the posterior of what they say.
+"""Assignment of measured times to impacts, and the posterior of these impacts.
 
-Hypotheses are followed from time to time by an extended Kalman filter, the best of them are kept (a beam). The slender
-closed form is close enough here.
+An extended Kalman filter follows hypotheses from time to time. A beam search keeps the best of them. The slender closed
+form is sufficiently accurate here.
 """
 
 from dataclasses import dataclass, replace
@@ -16,53 +16,59 @@ from rocking.identification.posterior import Knowledge, Noise, Posterior, poster
 from rocking.identification.state_space import MEAN, SHARED, SPEED, Clicks, Model
 
 KEPT: Final = 300
-_HEARD, _FALSE_SHARE = 0.9, 0.2  # of the impacts that are heard, of the times that are no impacts
-_BOUNCE, _BOUNCES = 0.045, 6.0  # seconds after an impact, clicks a second there
+_HEARD, _FALSE_SHARE = 0.9, 0.2  # fraction of audible impacts; fraction of false times
+_BOUNCE, _BOUNCES = 0.045, 6.0  # duration after an impact [s]; rate of clicks within it [1/s]
 _SHORTEST, _MOST_IMPACTS, _GATE = 0.03, 80, 4.5
 _SCATTER = 0.03
-_WORTH = 4.0  # of a time, as the logarithm of a likelihood ratio
+_WORTH = 4.0  # log likelihood ratio of a time
 _FIRST, _SECOND = 6, 5
-_LONGEST = 3.5  # p T / 2: a body that just does not overturn
+_LONGEST = 3.5  # p T / 2 of a body close to overturning
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
     """The times that are impacts."""
 
-    clicks: IntArray  # which of the times they are
-    impacts: IntArray  # their numbers, from zero; a number that is left out was missed
-    score: float  # ln of how much likelier it is than that nothing belongs together
+    clicks: IntArray  # indices of the times
+    impacts: IntArray  # numbers from zero; an absent number is a missed impact
+    score: float  # log likelihood ratio to unrelated times
     bounces: int  # times shortly after impacts
     within: int  # times from the first to the last impact
 
 
 @dataclass(eq=False)
 class _Beam:
-    """Hypotheses side by side: of time, ln y after the last impact, ln r, alternation of ln r, ln p."""
+    """Hypotheses in rows, with the state: time, ln y after the last impact, ln r, alternation of ln r, ln p."""
 
     mean: FloatArray  # h, 5
     covariance: FloatArray  # h, 5, 5
     number: IntArray  # of the last impact
-    last: IntArray  # the time that was matched last
-    missed: IntArray  # impacts since
+    last: IntArray  # index of the last matched time
+    missed: IntArray  # missed impacts since then
     score: FloatArray
     of_click: IntArray  # h, clicks: number of the impact, -1 none
     bounces: IntArray
 
-    def taken(self, which: IntArray) -> "_Beam":
-        return _Beam(*(value[which] for value in vars(self).values()))
+    def selected(self, indices: IntArray) -> "_Beam":
+        return _Beam(*(value[indices] for value in vars(self).values()))
 
-    def joined(self, other: "_Beam") -> "_Beam":
+    def concatenated(self, other: "_Beam") -> "_Beam":
         return _Beam(*(np.concatenate(pair) for pair in zip(vars(self).values(), vars(other).values(), strict=True)))
 
 
 def associate(
-    times: FloatArray, sure: FloatArray, noise: float, ln_p: tuple[float, float], alternation: tuple[float, float]
+    times: FloatArray,
+    probabilities: FloatArray,
+    noise: float,
+    ln_p: tuple[float, float],
+    alternation: tuple[float, float],
 ) -> Track | None:
-    """Return the likeliest track, or None."""
-    # sure: probability of each time to be an impact [-]; ln_p, alternation: mean and standard deviation
+    """Return the most likely track, or None."""
+    # probabilities: of each time to be an impact [-]; ln_p, alternation: mean and standard deviation
     generic = np.log(_FALSE_SHARE * times.size / (times[-1] - times[0]))
-    gain = np.log(sure) - np.log1p(-np.minimum(sure, 0.98)) - np.log(0.98 / 0.02)  # nothing where all are sure
+    gain = (
+        np.log(probabilities) - np.log1p(-np.minimum(probabilities, 0.98)) - np.log(0.98 / 0.02)
+    )  # zero if all times are certain
     following = np.searchsorted(times, times + _BOUNCE, side="right") - np.arange(1, times.size + 1)
     bounce = max(np.log(_BOUNCES) - generic, 0.0)
     beam = _started(times, noise, ln_p, alternation)
@@ -73,30 +79,30 @@ def associate(
         if top := beam.score.size:
             top = int(np.argmax(beam.score))
             if beam.missed[top] == 0 and beam.score[top] > best_score:
-                best, best_score = beam.taken(np.array([top])), float(beam.score[top])
-        taken = _advanced(beam)
-        if not taken.score.size:
+                best, best_score = beam.selected(np.array([top])), float(beam.score[top])
+        advanced = _advanced(beam)
+        if not advanced.score.size:
             break
-        spread = np.sqrt(taken.covariance[:, 0, 0] + noise**2)
-        off = times - taken.mean[:, :1]
-        since = times[taken.last][:, None]
-        # a long half cycle is hard to foretell, but it does not come out short
-        later = times - since > np.maximum(_SHORTEST, 0.5 * (taken.mean[:, :1] - since))
-        which, click = np.nonzero((np.abs(off) < _GATE * spread[:, None]) & later)
-        heard = _updated(taken.taken(which), times[click], noise)
-        innovation = off[which, click] / spread[which]
-        heard.score += np.log(_HEARD) - 0.5 * innovation**2 - np.log(spread[which] * np.sqrt(2.0 * np.pi)) - generic
+        spread = np.sqrt(advanced.covariance[:, 0, 0] + noise**2)
+        deviations = times - advanced.mean[:, :1]
+        since = times[advanced.last][:, None]
+        # the duration of a long half cycle is uncertain, but it is not short
+        later = times - since > np.maximum(_SHORTEST, 0.5 * (advanced.mean[:, :1] - since))
+        rows, click = np.nonzero((np.abs(deviations) < _GATE * spread[:, None]) & later)
+        heard = _updated(advanced.selected(rows), times[click], noise)
+        innovation = deviations[rows, click] / spread[rows]
+        heard.score += np.log(_HEARD) - 0.5 * innovation**2 - np.log(spread[rows] * np.sqrt(2.0 * np.pi)) - generic
         heard.score += explained[click]
         heard.bounces = heard.bounces + following[click]
         heard.last, heard.missed = click, np.zeros_like(click)
         heard.of_click[np.arange(click.size), click] = heard.number
-        taken.score += np.log(1.0 - _HEARD)
-        taken.missed = taken.missed + 1
-        # two may be missed after each other, and nothing is missed behind the last time
-        silent = taken.taken(np.flatnonzero((taken.missed <= 2) & (taken.mean[:, 0] < times[-1])))
-        beam = heard.joined(silent)
-        # those of the same number of impacts have come differently far: what is passed over must not look cheap
-        beam = beam.taken(np.argsort(_WORTH * beam.last - beam.score, kind="stable")[:KEPT])
+        advanced.score += np.log(1.0 - _HEARD)
+        advanced.missed = advanced.missed + 1
+        # at most two successive impacts are missed, none of them after the last time
+        silent = advanced.selected(np.flatnonzero((advanced.missed <= 2) & (advanced.mean[:, 0] < times[-1])))
+        beam = heard.concatenated(silent)
+        # tracks with equal impact counts end at different times: each skipped time has a cost
+        beam = beam.selected(np.argsort(_WORTH * beam.last - beam.score, kind="stable")[:KEPT])
         if not beam.score.size:
             break
     if best is None or (best.of_click >= 0).sum() < 3:
@@ -106,10 +112,10 @@ def associate(
 
 
 def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alternation: tuple[float, float]) -> _Beam:
-    """Every pair of early times as the first two impacts."""
+    """Return a hypothesis for every pair of early times as the first two impacts."""
     pairs = [(i, j) for i in range(_FIRST) for j in range(i + 1, i + _SECOND) if j < times.size]
     first, second = np.array(pairs + pairs).T
-    silent = np.repeat([0, 1], len(pairs))  # impacts between them that were missed
+    silent = np.repeat([0, 1], len(pairs))  # missed impacts between them
     half = 0.5 * np.exp(ln_p[0]) * (times[second] - times[first]) * np.where(silent, 0.47, 1.0)
     y = np.tanh(half)
     slope = np.where(half > 1e-6, half * (1.0 - y * y) / y, 1.0)  # of ln y over ln(p T)
@@ -131,11 +137,11 @@ def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alterna
     of_click[np.arange(count), first], of_click[np.arange(count), second] = 0, 1 + silent
     zero, score = np.zeros(count, dtype=np.int64), np.log(1.0 - _HEARD) * silent
     begun = _Beam(mean, covariance, zero + 1 + silent, second, zero, score, of_click, zero)
-    return begun.taken(np.flatnonzero((half < _LONGEST) & (times[second] - times[first] > _SHORTEST)))
+    return begun.selected(np.flatnonzero((half < _LONGEST) & (times[second] - times[first] > _SHORTEST)))
 
 
 def _advanced(beam: _Beam) -> _Beam:
-    """To the next impact, of those that can still be told apart."""
+    """Return the states at the next impact, without intervals that are too short to resolve."""
     y = np.exp(np.minimum(beam.mean[:, 1], np.log(0.9999)))
     scaled, p = 2.0 * np.arctanh(y), np.exp(beam.mean[:, 4])
     step = np.zeros_like(beam.covariance)
@@ -147,15 +153,15 @@ def _advanced(beam: _Beam) -> _Beam:
     mean[:, 0] = beam.mean[:, 0] + scaled / p
     covariance = step @ beam.covariance @ step.transpose(0, 2, 1)
     covariance[:, 1, 1] += _SCATTER**2
-    taken = _Beam(
+    moved = _Beam(
         mean, covariance, beam.number + 1, beam.last, beam.missed, beam.score.copy(), beam.of_click, beam.bounces
     )
     apart = (scaled / p > _SHORTEST) & (scaled / p > 2.5 * np.sqrt(covariance[:, 0, 0]))
-    return taken.taken(np.flatnonzero(apart))
+    return moved.selected(np.flatnonzero(apart))
 
 
 def _updated(beam: _Beam, heard: FloatArray, noise: float) -> _Beam:
-    """With the time of the impact known."""
+    """Return the states after the measured time of the impact."""
     spread = beam.covariance[:, 0, 0] + noise**2
     weight = beam.covariance[:, :, 0] / spread[:, None]
     beam.mean = beam.mean + weight * (heard - beam.mean[:, 0])[:, None]
@@ -164,70 +170,72 @@ def _updated(beam: _Beam, heard: FloatArray, noise: float) -> _Beam:
 
 
 UNKNOWN_NOISE = Noise(3e-4, 1.2)
-"""Of times whose reader does not say how sure they are [s]."""
+"""Prior of the noise of times without a stated standard deviation [s]."""
 
 _USUAL = 0.9
-_FEWEST, _LARGEST_RESIDUAL = 5, 2.2  # times that remain; standardized residual of an impact [-]
+_FEWEST, _LARGEST_RESIDUAL = 5, 2.2  # remaining times; standardized residual of an impact [-]
 _NO_IMPACT = float(np.log((1.0 - _HEARD) * _BOUNCES / _HEARD))
-"""Ln of how much likelier it is a priori, for each second, that an impact was missed and a bounce heard."""
+"""Prior log odds, per second, of a missed impact and a detected bounce."""
 
 
-def fit_times(measurement: ImpactTimes, known: Knowledge) -> tuple[Track, Posterior] | None:
-    """Return the impacts among the times, and what they say; None if no three of them belong together."""
-    sure = np.full(measurement.times.size, 0.98) if measurement.probabilities is None else measurement.probabilities
+def fit_times(measurement: ImpactTimes, prior: Knowledge) -> tuple[Track, Posterior] | None:
+    """Return the impacts among the times, and their posterior; None for fewer than three impacts."""
+    probabilities = (
+        np.full(measurement.times.size, 0.98) if measurement.probabilities is None else measurement.probabilities
+    )
     noise = UNKNOWN_NOISE if measurement.sigma is None else Noise(measurement.sigma)
     guess = max(2.0 * noise.median, 1e-3) if noise.dispersion else noise.median
     tracks = [
         (track, frequency)
-        for frequency in known.frequencies
-        if (track := associate(measurement.times, sure, guess, frequency, known.alternation))
+        for frequency in prior.frequencies
+        if (track := associate(measurement.times, probabilities, guess, frequency, prior.alternation))
     ]
     if not tracks:
         return None
     track, frequency = max(tracks, key=lambda pair: pair[0].score)
-    found, observer = _fitted(track, measurement.times, known, noise, frequency)
-    while found.no_scatter < 0.5 and track.clicks.size > _FEWEST:
-        # r seems to scatter: perhaps only since a bounce was taken for an impact that was missed
-        sizes = np.abs(found.standardized_residuals(observer))[1:]  # the first time fixes the foot: it is kept
+    fit, observer = _fitted(track, measurement.times, prior, noise, frequency)
+    while fit.no_scatter < 0.5 and track.clicks.size > _FEWEST:
+        # an apparent scatter of r may come from a bounce in place of a missed impact
+        sizes = np.abs(fit.standardized_residuals(observer))[1:]  # the first time determines the foot: it remains
         if sizes.max() < _LARGEST_RESIDUAL:
             break
         worst = int(np.argmax(sizes)) + 1
         fewer = replace(track, clicks=np.delete(track.clicks, worst), impacts=np.delete(track.impacts, worst))
-        refitted, fewer_clicks = _fitted(fewer, measurement.times, known, noise, frequency)
-        if refitted.evidence + _NO_IMPACT <= found.evidence:  # Eq. 326
+        refitted, fewer_clicks = _fitted(fewer, measurement.times, prior, noise, frequency)
+        if refitted.evidence + _NO_IMPACT <= fit.evidence:  # Eq. 326
             break
-        track, found, observer = fewer, refitted, fewer_clicks
-    return track, found
+        track, fit, observer = fewer, refitted, fewer_clicks
+    return track, fit
 
 
 def _fitted(
-    track: Track, all_times: FloatArray, known: Knowledge, noise: Noise, frequency: tuple[float, float]
+    track: Track, all_times: FloatArray, prior: Knowledge, noise: Noise, frequency: tuple[float, float]
 ) -> tuple[Posterior, Clicks]:
     times = all_times[track.clicks]
     observer = Clicks(times, track.impacts - track.impacts[0])
-    speeds = speeds_between(times, observer.impacts, known, frequency[0])
-    model = known.model(known.sides(speeds.size), float(times[0]), speeds, frequency)
+    speeds = speeds_between(times, observer.impacts, prior, frequency[0])
+    model = prior.model(prior.sides(speeds.size), float(times[0]), speeds, frequency)
     return posterior(model, observer, None, noise, lambda s: start(model, speeds, s)), observer
 
 
-def speeds_between(times: FloatArray, impacts: IntArray, known: Knowledge, ln_p: float) -> FloatArray:
-    """Return ln of the speed after every impact but the last, roughly; p is the same over both feet."""
-    alpha, p = np.array(known.slenderness_angles), np.exp(ln_p)
+def speeds_between(times: FloatArray, impacts: IntArray, prior: Knowledge, ln_p: float) -> FloatArray:
+    """Return approximate ln of the speed after each impact except the last; p is equal over both feet."""
+    alpha, p = np.array(prior.slenderness_angles), np.exp(ln_p)
     y = np.tanh(np.geomspace(1e-3, 5.0, 400))
-    found: list[FloatArray] = []
+    pieces: list[FloatArray] = []
     for time, gap in zip(np.diff(times), np.diff(impacts), strict=True):
-        # impacts between them were missed, each of which took about as much
-        each = state_space.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
-        shares = np.array([np.interp(time, each.sum(axis=0), one) for one in each])
-        found.append(time * shares / shares.sum())
-    intervals = np.concatenate(found)
-    alphas = alpha[known.sides(intervals.size)]
+        # the missed impacts between them have about the usual coefficient
+        durations = state_space.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
+        lengths = np.array([np.interp(time, durations.sum(axis=0), row) for row in durations])
+        pieces.append(time * lengths / lengths.sum())
+    intervals = np.concatenate(pieces)
+    alphas = alpha[prior.sides(intervals.size)]
     y = np.minimum(state_space.speed(p * intervals, alphas), 0.999)
     return np.asarray(np.log(y * p * state_space.overturning_speed(alphas)))
 
 
 def start(model: Model, speeds: FloatArray, scatters: FloatArray) -> FloatArray:
-    """Return unknowns that lead to such speeds, for each scatter."""
+    """Return unknowns with approximately these speeds, for each scatter."""
     u = np.zeros(model.size)
     changes = np.diff(speeds)
     mean = float(np.median(changes)) if changes.size else float(model.mean[MEAN])

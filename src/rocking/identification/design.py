@@ -1,4 +1,4 @@
-"""How sharply an experiment could tell the coefficient of restitution: bounds of Cramér and Rao, before it is made."""
+"""Expected accuracy of experiments: Cramér-Rao bounds of the coefficient of restitution."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,9 +12,9 @@ from rocking.identification.state_space import MEAN, SHARED, SPEED, START, Click
 
 
 def settling_bound(coefficient: float, ratio: float, impacts: int | None = None) -> float:
-    """Return the least standard deviation of r from the times of small impacts, t_inf - D r^n, n = 0..impacts.
+    """Return the smallest standard deviation of r from times of small impacts, t_inf - D r^n, n = 0..impacts.
 
-    ratio: noise of a time over D. Without `impacts` there are infinitely many, and when it comes to rest is known.
+    ratio: noise of a time over D. Without `impacts` their number is infinite, and the time of rest is known.
     """
     if impacts is None:
         return float(ratio * (1.0 - coefficient**2) ** 1.5)  # Eq. 276
@@ -24,45 +24,53 @@ def settling_bound(coefficient: float, ratio: float, impacts: int | None = None)
 
 
 def one_impact_bound(frequency_parameter: float, before: float, after: float, noise: float) -> float:
-    """Return the least standard deviation of ln r from the times before, at and after one impact; p is known."""
-    a, b = (frequency_parameter / np.sinh(frequency_parameter * each) for each in (after, before))
+    """Return the smallest standard deviation of ln r from three times around one impact; p is known."""
+    a, b = (frequency_parameter / np.sinh(frequency_parameter * duration) for duration in (after, before))
     return float(noise * np.sqrt(2.0 * (a * a + a * b + b * b)))  # Eq. 277
 
 
 def peaks_bound(before: float, after: float, noise: float) -> float:
-    """Return the least standard deviation of ln r from the peaks before and after it, over alpha, and their noise."""
+    """Return the smallest standard deviation of ln r from the peaks before and after an impact.
+
+    Peaks and noise are divided by alpha.
+    """
     parts = [(1.0 - f) / (1.0 - (1.0 - f) ** 2) for f in (before, after)]
     return float(noise * np.hypot(parts[0], parts[1]))  # Eq. 278
 
 
 @dataclass(frozen=True)
 class Design:
-    """What an experiment would tell."""
+    """An experiment with its expected accuracy."""
 
-    release_ratio: float  # rotation from which the body is let go, over its slenderness angle [-]
-    impacts: int  # number of impacts whose times are kept
+    release_ratio: float  # initial rotation / slenderness angle [-]
+    impacts: int  # number of measured impacts
     timing_noise: float  # standard deviation of a time [s]
-    # least standard deviation of the mean coefficient of restitution, with the scatter of impacts in it [-]
+    # smallest standard deviation of the mean coefficient of restitution, including the scatter of impacts [-]
     deviation: float
 
 
 def designs(
     alpha: float, p: float, p_error: float, coefficient: float, scatter: float, noise: float
 ) -> tuple[Design, ...]:
-    """Return experiments with one body, from what is usual to what would tell more: height, impacts, noise."""
-    found = [(peak, impacts, noise) for peak in (0.3, 0.5, 0.7, 0.9) for impacts in (6, 12, 20)]
-    found += [(0.7, 12, 0.1 * noise), (0.7, 12, 10.0 * noise)]
-    made = [
-        Design(*each, bound(alpha, p, p_error, coefficient, scatter, peak=each[0], impacts=each[1], noise=each[2]))
-        for each in found
+    """Return possible experiments with one body, sorted by accuracy: release rotation, impacts, noise."""
+    settings = [(peak, impacts, noise) for peak in (0.3, 0.5, 0.7, 0.9) for impacts in (6, 12, 20)]
+    settings += [(0.7, 12, 0.1 * noise), (0.7, 12, 10.0 * noise)]
+    experiments = [
+        Design(
+            peak,
+            impacts,
+            noise,
+            bound(alpha, p, p_error, coefficient, scatter, peak=peak, impacts=impacts, noise=noise),
+        )
+        for peak, impacts, noise in settings
     ]
-    return tuple(sorted(made, key=lambda each: each.deviation))
+    return tuple(sorted(experiments, key=lambda design: design.deviation))
 
 
 def bound(
     alpha: Any, p: float, p_error: float, coefficient: float, scatter: float, *, peak: float, impacts: int, noise: float
 ) -> float:
-    """Return the least standard deviation of the mean r from times of impacts, of a body let go from a peak."""
+    """Return the smallest standard deviation of the mean r from times of impacts after a release."""
     alpha = checks.within("alpha", alpha, 0.0, 1.5, unit="rad", open_low=True)
     y = np.sqrt(1.0 - (np.sin(0.5 * alpha * (1.0 - peak)) / np.sin(0.5 * alpha)) ** 2) * coefficient
     mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))

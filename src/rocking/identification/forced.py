@@ -1,4 +1,4 @@
-"""What a rotation under a known ground motion says of a body: the answer of `identify` for forced records."""
+"""Identification from a rotation under a known ground motion."""
 
 import math
 from dataclasses import replace
@@ -46,168 +46,180 @@ from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 
 _OF_PULSE = 400
-_GUESS = 0.02  # of the scatter
+_GUESS = 0.02  # first value of the scatter
 _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
 _ENDING, _CALM, _FAR = (
     0.5,
     0.02,
     3.0,
-)  # seconds, over the peak: a record that ends at rest; standard deviations of a clock
+)  # duration [s] and fraction of the peak at the end of a record; standard deviations of a clock
 
 
-def identify_forced(measurement: Any, known: Knowledge, motion: Any, clock: Any) -> Identification | None:
-    """Return what a series says, or None if fewer than three impacts are seen."""
+def identify_forced(measurement: Any, prior: Knowledge, motion: Any, clock: Any) -> Identification | None:
+    """Return the identification of a series, or None with fewer than three detected impacts."""
     if not isinstance(measurement, RotationSeries):
-        what = "times of impacts" if isinstance(measurement, ImpactTimes) else type(measurement).__name__
+        kind = "times of impacts" if isinstance(measurement, ImpactTimes) else type(measurement).__name__
         raise InvalidValueError(
-            "under a motion the {parameter} must be {allowed}, got {type}", parameter="measurement",
-            allowed="a rotation or an angular velocity (RotationSeries)", type=what,
+            "with a ground motion, the {parameter} must be {allowed}, got {type}", parameter="measurement",
+            allowed="a rotation or an angular velocity (RotationSeries)", type=kind,
         )  # fmt: skip
     if measurement.from_acceleration:
         raise InvalidValueError(
-            "under a motion the measurement must be a rotation, an angular velocity or a displacement relative to the "
-            "ground, got an acceleration, to which the ground adds its own"
+            "with a ground motion, the measurement must be a rotation, an angular velocity or a displacement "
+            "relative to the ground, got an acceleration, which includes the ground acceleration"
         )
-    if known.body is None:
-        raise InvalidValueError("under a motion the body must be given: what lifts it is its slenderness angle")
-    if known.damping:
-        raise InvalidValueError("damping must be False under a motion: it is fitted to free rocking only")
-    if whole := isinstance(motion, Pulse):
+    if prior.body is None:
+        raise InvalidValueError("with a ground motion, the body is required: its slenderness angle determines uplift")
+    if prior.damping:
+        raise InvalidValueError("damping must be False with a ground motion: it applies to free rocking only")
+    if is_pulse := isinstance(motion, Pulse):
         motion = motion.sampled(motion.duration / _OF_PULSE)
     checked_motion(motion)
     shift, error = (0.0, clock) if np.ndim(clock) == 0 else clock
     clock = checks.number("clock", shift, "s"), checks.within("standard deviation of clock", error, 0.0, 10.0, unit="s")
-    found = fit_forced(measurement, known, motion, clock)
-    if found is None:
+    posterior = fit_forced(measurement, prior, motion, clock)
+    if posterior is None:
         return None
-    said = answer(*forced_friction.with_sliding(found), found)
-    return replace(said, doubts=(*said.doubts, *_of_clocks(said, motion, clock, whole=whole)))
+    identification = answer(*forced_friction.with_sliding(posterior), posterior)
+    return replace(
+        identification,
+        doubts=(*identification.doubts, *_clock_doubts(identification, motion, clock, is_pulse=is_pulse)),
+    )
 
 
-def _of_clocks(said: Identification, motion: GroundMotion, clock: tuple[float, float], *, whole: bool) -> list[str]:
-    """Return doubts about when it was measured: after the record, or by another clock than was said."""
-    assert said.forced is not None
-    assert isinstance(said.measurement, RotationSeries)
-    doubts, ahead, last = [], said.forced.clock.value, float(motion.time[-1])
-    measured = float(said.measurement.time[-1]) - ahead
+def _clock_doubts(
+    identification: Identification, motion: GroundMotion, clock: tuple[float, float], *, is_pulse: bool
+) -> list[str]:
+    """Return doubts about the times: a measurement after the end of the record, or an unexpected clock."""
+    assert identification.forced is not None
+    assert isinstance(identification.measurement, RotationSeries)
+    doubts, ahead, last = [], identification.forced.clock.value, float(motion.time[-1])
+    measured = float(identification.measurement.time[-1]) - ahead
     ends = np.abs(motion.acceleration[motion.time >= last - _ENDING]).max()
-    if not whole and measured > last + _ENDING and ends > _CALM * motion.peak:
+    if not is_pulse and measured > last + _ENDING and ends > _CALM * motion.peak:
         doubts.append(
-            f"The motion ends at {last:.3g} s while it still shakes, the measurement at {measured:.3g} s of its time: "
-            "the ground is taken to stand still between; perhaps the record was cut off."
+            f"The ground motion ends at {last:.3g} s with strong shaking, the measurement ends at {measured:.3g} s. "
+            "The ground is assumed at rest between these times. Check that the record is complete."
         )
     if abs(ahead - clock[0]) > _FAR * clock[1] > 0.0:
         doubts.append(
-            f"The clock of the measurement is found to be ahead by {ahead:.3g} s, though {clock[0]:g} +- {clock[1]:g} "
-            "s was said: perhaps half cycles are matched with the wrong shaking."
+            f"The clock of the measurement is ahead by {ahead:.3g} s, but {clock[0]:g} +- {clock[1]:g} s was stated."
+            " Half cycles may be matched with wrong parts of the record: check the clock."
         )
     return doubts
 
 
 def fit_forced(
-    series: RotationSeries, known: Knowledge, motion: GroundMotion, clock: tuple[float, float]
+    series: RotationSeries, prior: Knowledge, motion: GroundMotion, clock: tuple[float, float]
 ) -> ForcedPosterior | None:
-    """Return the posterior, or None if fewer than three impacts are seen."""
-    problem = forced_start.problem_of(series, known, motion, clock)
+    """Return the posterior, or None with fewer than three detected impacts."""
+    problem = forced_start.problem_of(series, prior, motion, clock)
     if clock[1] > forced_start.SURE:
-        near = forced_start.sought(problem, clock), forced_start.SURE / 3.0
-        problem = forced_start.problem_of(series, known, motion, near)
+        near = forced_start.best_clock(problem, clock), forced_start.SURE / 3.0
+        problem = forced_start.problem_of(series, prior, motion, near)
     shared = problem.mean
-    for _ in range(2):  # the second one knows offset and drift
+    for _ in range(2):  # the second pass uses the fitted offset and drift
         first = forced_start.first_fit(problem, shared)
         if first is None:
             return None
         problem, fit, noise = first
         shared = fit.x[:SIZE]
-    problem = replace(problem, middle=float(np.median(fit.x[SIZE + 1 :: 2][problem.seen.joined])))
+    problem = replace(problem, middle=float(np.median(fit.x[SIZE + 1 :: 2][problem.excursions.joined])))
     guess = _GUESS
     for _ in range(2):
         fit = fitted(problem, fit.x, noise, guess, SAME_TIME)
         noise = forced_start.deviations(problem, fit)
-        found = ForcedPosterior(problem, fit, noise)
-        guess = max(found.likely_scatter.value, 1e-3)
-    return found
+        posterior = ForcedPosterior(problem, fit, noise)
+        guess = max(posterior.likely_scatter.value, 1e-3)
+    return posterior
 
 
 def answer(
-    found: ForcedPosterior, friction: IntervalEstimate, also: tuple[str, ...], held: ForcedPosterior
+    posterior: ForcedPosterior, friction: IntervalEstimate, sliding_doubts: tuple[str, ...], holding: ForcedPosterior
 ) -> Identification:
-    """Return what a posterior says, with the friction and doubts of it; held: the one with feet that hold."""
-    problem, fit, noise = found.problem, found.fit, found.noise
-    known, body, series = problem.known, problem.known.body, problem.series
+    """Return the identification from a posterior; holding: the posterior without sliding."""
+    problem, fit, noise = posterior.problem, posterior.fit, posterior.noise
+    prior, body, series = problem.prior, problem.prior.body, problem.series
     assert body is not None
-    by_side = {foot: found.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
-    mean = found.shared((MEAN, 1.0))
-    r, scatter = estimated(mean, 1.0), found.likely_scatter
-    coefficients = {foot: estimated(each, 1.0) for foot, each in by_side.items()}
-    shaken, rest = held.problem, replace(held.problem, motion=problem.motion.scaled(0.0))
-    still, alone = (fitted(each, held.fit.x, held.noise, 1.0, None).objective for each in (rest, shaken))
-    advantage = 0.5 * (still - alone)
-    refused, doubts = [], [*series.doubts, *also]
+    by_side = {foot: posterior.shared((MEAN, 1.0), (HALF, 1.0 if foot == "right" else -1.0)) for foot in FEET}
+    mean = posterior.shared((MEAN, 1.0))
+    r, scatter = estimated(mean, 1.0), posterior.likely_scatter
+    coefficients = {foot: estimated(mixture, 1.0) for foot, mixture in by_side.items()}
+    shaken, resting = holding.problem, replace(holding.problem, motion=problem.motion.scaled(0.0))
+    objective_at_rest, objective_under_motion = (
+        fitted(forced, holding.fit.x, holding.noise, 1.0, None).objective for forced in (resting, shaken)
+    )
+    advantage = 0.5 * (objective_at_rest - objective_under_motion)
+    refused, doubts = [], [*series.doubts, *sliding_doubts]
     if advantage < _ADVANTAGE:
-        refused.append("the motion of the ground explains the rotation no better than ground at rest; another clock?")
+        refused.append("the ground motion explains the rotation no better than ground at rest: check the clock")
     if mean.below(0.0) < 0.975:
-        refused.append(Message("impacts take no energy: r is {coefficient}", {"coefficient": r}))
+        refused.append(Message("the impacts lose no energy: r is {coefficient}", {"coefficient": r}))
     if scatter.value > _MOST_SCATTER:
-        refused.append(Message("what impacts take scatters by {share:.0f} %", {"share": 100.0 * scatter.value}))
-    if problem.odd:
-        doubts.append(f"{problem.odd} half cycles are none of rocking alone under this motion, and are left out.")
+        refused.append(
+            Message("the coefficient of restitution scatters by {share:.0f} %", {"share": 100.0 * scatter.value})
+        )
+    if problem.excluded:
+        doubts.append(
+            f"{problem.excluded} half cycles are excluded: rocking under this ground motion does not explain them."
+        )
     if not fit.converged:
-        doubts.append("The maximum of the posterior was not found: intervals may be wrong.")
+        doubts.append("The maximum of the posterior was not found. The intervals may be wrong.")
     sides = [body.side(foot) for foot in FEET]
     p = math.sqrt(math.prod(side.frequency_parameter for side in sides))
     half = 0.5 * float(np.mean([math.sin(side.slenderness_angle) ** 2 for side in sides]))
-    at = np.concatenate([problem.samples[0], problem.rest])
+    at = np.concatenate([problem.samples[0], problem.rest_samples])
     order = np.argsort(at)
     residuals = np.concatenate([residual[order] for residual, _ in fit.terms.samples])
-    one = float(noise[0])
+    noise_deviation = float(noise[0])
     return Identification(
         source=series.source, refused=tuple(refused), doubts=tuple(doubts), mean=r, coefficients=coefficients,
-        scatter=scatter, no_scatter=found.no_scatter,
-        frequency_parameter=estimated(found.shared((WIDTH, -half), (HEIGHT, half - 0.5)), p),
-        tilt=estimated(found.shared((TILT, 1.0))),
-        trend=estimated(found.shared((TREND, 1.0))) if known.trend else None, damping=None,
-        impacts=_impacts(found), residuals=residuals, noise=IntervalEstimate(one, one, one),
+        scatter=scatter, no_scatter=posterior.no_scatter,
+        frequency_parameter=estimated(posterior.shared((WIDTH, -half), (HEIGHT, half - 0.5)), p),
+        tilt=estimated(posterior.shared((TILT, 1.0))),
+        trend=estimated(posterior.shared((TREND, 1.0))) if prior.trend else None, damping=None,
+        impacts=_impacts(posterior), residuals=residuals,
+        noise=IntervalEstimate(noise_deviation, noise_deviation, noise_deviation),
         independent=float(residuals.size), p_value=math.nan, advantage=advantage, converged=fit.converged,
         impulse={} if refused else impulses(body, coefficients), models=() if refused else compared(body, r),
-        designs=(), _next={foot: next_impact(each, found.scatter) for foot, each in by_side.items()},
+        designs=(), _next={foot: next_impact(mixture, posterior.scatter) for foot, mixture in by_side.items()},
         measurement=series, residual_times=np.tile(series.time[at[order]], len(problem.kinds)),
-        quantiles=next_impact(mean, 0.0), forced=_forced(found, friction),
-        _common=found.explained(MEAN, (WIDTH, HEIGHT)),
+        quantiles=next_impact(mean, 0.0), forced=_forced(posterior, friction),
+        _common=posterior.explained(MEAN, (WIDTH, HEIGHT)),
     )  # fmt: skip
 
 
-def _impacts(found: ForcedPosterior) -> tuple[Impact, ...]:
-    """Return what every impact took."""
-    problem, fit = found.problem, found.fit
+def _impacts(posterior: ForcedPosterior) -> tuple[Impact, ...]:
+    """Return the coefficient of each impact."""
+    problem, fit = posterior.problem, posterior.fit
     drawn, by = fit.terms.draws
-    states, x, made = fit.x[SIZE:].reshape(-1, 2), fit.x, []
-    for n, k in enumerate(np.flatnonzero(problem.seen.joined)):
-        sign = problem.seen.sign[k]
+    states, x, impacts = fit.x[SIZE:].reshape(-1, 2), fit.x, []
+    for n, k in enumerate(np.flatnonzero(problem.excursions.joined)):
+        sign = problem.excursions.sign[k]
         slopes = -by[n].copy()
         slopes[[MEAN, HALF]] = 0.0
-        each = estimated(found.of(slopes, float(drawn[n] + x[MEAN] + sign * x[HALF])), 1.0)
+        coefficient = estimated(posterior.distribution(slopes, float(drawn[n] + x[MEAN] + sign * x[HALF])), 1.0)
         foot: Foot = "right" if sign > 0.0 else "left"
-        before = math.exp(states[k, 1]) / each.value
-        made.append(Impact(n, float(states[k, 0]), foot, before, each))
-    return tuple(made)
+        before = math.exp(states[k, 1]) / coefficient.value
+        impacts.append(Impact(n, float(states[k, 0]), foot, before, coefficient))
+    return tuple(impacts)
 
 
-def _forced(found: ForcedPosterior, friction: IntervalEstimate) -> ForcedRocking:
-    problem, fit = found.problem, found.fit
-    seen, kind = problem.seen, problem.kinds[0]
+def _forced(posterior: ForcedPosterior, friction: IntervalEstimate) -> ForcedRocking:
+    problem, fit = posterior.problem, posterior.fit
+    excursions, kind = problem.excursions, problem.kinds[0]
     return ForcedRocking(
-        clock=estimated(found.shared((CLOCK, 1.0))), gain=estimated(found.shared((GAIN + kind, 1.0)), 1.0),
-        friction=friction, stretches=int(np.sum(~seen.joined)), half_cycles_left_out=problem.odd,
-        used=float(np.sum(seen.end - seen.begin)), measured=float(np.ptp(problem.series.time)),
-        predictable=_foreseen(problem, fit.x),
+        clock=estimated(posterior.shared((CLOCK, 1.0))), gain=estimated(posterior.shared((GAIN + kind, 1.0)), 1.0),
+        friction=friction, stretches=int(np.sum(~excursions.joined)), half_cycles_left_out=problem.excluded,
+        used=float(np.sum(excursions.end - excursions.begin)), measured=float(np.ptp(problem.series.time)),
+        predictable=_predictable_time(problem, fit.x),
     )  # fmt: skip
 
 
-def _foreseen(problem: Forced, x: FloatArray) -> float:
-    """Return until when a motion that begins at rest is told by r, though it differed by a ten-thousandth [s]."""
-    body = problem.known.body
+def _predictable_time(problem: Forced, x: FloatArray) -> float:
+    """Return the time after which a change of r by 1e-4 changes the response by 10 % of its peak [s]; NaN if never."""
+    body = problem.prior.body
     parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), PlaneSettings().gravity)
     sides = {}
     for foot, sign in (("right", 1.0), ("left", -1.0)):
@@ -218,8 +230,8 @@ def _foreseen(problem: Forced, x: FloatArray) -> float:
         )  # fmt: skip
     segments, rotations = problem.motion.segments(), []
     for factor in (1.0, 1.0 - _DIFFERENCE):
-        both = {foot: replace(side, coefficient=side.coefficient * factor) for foot, side in sides.items()}
-        made = RockingParameters(both["right"], both["left"], ConstantRestitution(), "")
-        rotations.append(np.nan_to_num(run(made, segments, PlaneSettings()).rotation, nan=0.5 * math.pi))
+        changed_sides = {foot: replace(side, coefficient=side.coefficient * factor) for foot, side in sides.items()}
+        changed = RockingParameters(changed_sides["right"], changed_sides["left"], ConstantRestitution(), "")
+        rotations.append(np.nan_to_num(run(changed, segments, PlaneSettings()).rotation, nan=0.5 * math.pi))
     apart = np.flatnonzero(np.abs(rotations[0] - rotations[1]) > _CLOSE * np.abs(rotations[0]).max())
     return float(segments.step * apart[0]) if apart.size else math.nan

@@ -1,6 +1,6 @@
-"""Half cycles of a body that the ground shakes, many at once, each integrated from a state of its own.
+"""Half cycles of a body under ground motion, many together, each integrated from its own state.
 
-All are mirrored, so that rotations are positive; the ground is given by its acceleration [m/s2].
+All half cycles are mirrored, so that rotations are positive; the ground acceleration is in m/s2.
 """
 
 from dataclasses import dataclass, replace
@@ -14,26 +14,26 @@ from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.identification.measurement import white_noise
 from rocking.motions.motion import GroundMotion
 
-_LONGEST = 0.03  # step, as p times time
+_LONGEST = 0.03  # largest time step, times p
 Sliding = tuple[FloatArray, FloatArray, FloatArray]
-"""Of each half cycle: coefficient of friction, speed of the foot at the beginning [m/s], and sine of the floor's tilt.
+"""Per half cycle: coefficient of friction, start velocity of the foot [m/s], and sine of the tilt of the floor.
 
-A body whose feet hold rocks on a tilted floor as one that leans, by its alpha; friction acts along the floor.
+Without sliding, a tilted floor changes alpha only; friction acts along the floor.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class Flights:
-    """Rotations at equal steps, each from its beginning."""
+    """Rotations at equal time steps, each from its own start."""
 
     step: FloatArray  # k [s]
     rotation: FloatArray  # n, k [rad]
     velocity: FloatArray  # n, k [rad/s]
     slip: FloatArray  # n, k: speed of the foot along the ground [m/s]
-    asked: tuple[FloatArray, FloatArray, FloatArray]  # of the engine: bodies; a_x and g + a_z as steps begin and end
+    engine_input: tuple[FloatArray, FloatArray, FloatArray]  # bodies; a_x and g + a_z at start and end of time steps
 
     @classmethod
-    def of(
+    def integrated(
         cls,
         motion: GroundMotion,
         state: tuple[FloatArray, FloatArray, FloatArray],
@@ -42,7 +42,7 @@ class Flights:
         length: FloatArray,
         sliding: Sliding | None = None,
     ) -> "Flights":
-        """Follow them; state: when [s], rotation and angular velocity; body: alpha [rad], p [rad/s] and R [m]."""
+        """Return the half cycles; state: time [s], rotation, angular velocity; body: alpha [rad], p [rad/s], R [m]."""
         start, first, turning = state
         alpha, p, size = body
         count = max(4, int(np.ceil(float((length * p).max()) / _LONGEST)))
@@ -54,28 +54,32 @@ class Flights:
             weight = 1.0 + _within_steps(motion.vertical, motion.time_step, times, step) / g
         friction, slip, lean = sliding or (NEVER_SLIDES, np.zeros_like(p), np.zeros_like(p))
         bodies = np.stack(np.broadcast_arrays(alpha + np.arcsin(lean), p, size, friction, step))
-        ends = (np.broadcast_to(g * each, push.shape)[:, ::2] for each in (push - lean, weight))
-        push, weight = (np.ascontiguousarray(each) for each in ends)
-        none = np.zeros((count + 1, start.size))
-        return cls(step, none + first, none, none, (bodies, push, weight)).begun(turning, slip)
+        ends = (np.broadcast_to(g * acceleration, push.shape)[:, ::2] for acceleration in (push - lean, weight))
+        push, weight = (np.ascontiguousarray(acceleration) for acceleration in ends)
+        zeros = np.zeros((count + 1, start.size))
+        return cls(step, zeros + first, zeros, zeros, (bodies, push, weight)).restarted(turning, slip)
 
-    def begun(self, turning: FloatArray, slip: FloatArray) -> "Flights":
-        """Follow them anew, from other velocities and speeds of feet."""
+    def restarted(self, turning: FloatArray, slip: FloatArray) -> "Flights":
+        """Return the half cycles from other start velocities of bodies and feet."""
         states = np.zeros((3, *self.rotation.shape))
         states[:, 0] = self.rotation[0], turning, slip
-        module().slide(*self.asked, states, g)
+        module().slide(*self.engine_input, states, g)
         return replace(self, rotation=states[0], velocity=states[1], slip=states[2])
 
     @property
     def demand(self) -> FloatArray:
-        """Friction that holds the feet at the begins of steps [-], shape n - 1, k."""
-        (alpha, p, size, _, _), push, weight = self.asked[0], self.asked[1][:, 0], self.asked[2][:, 0]
+        """Friction demand at the start of time steps [-], shape n - 1, k."""
+        (alpha, p, size, _, _), push, weight = (
+            self.engine_input[0],
+            self.engine_input[1][:, 0],
+            self.engine_input[2][:, 0],
+        )
         turning = angular_acceleration(self.rotation[:-1], 1.0, alpha, p, push / g, weight / g)
         along, across = reactions(self.rotation[:-1], self.velocity[:-1], turning, 1.0, alpha, size, push, weight)
         return np.asarray(np.abs(along) / np.maximum(across, 1e-9))
 
     def at(self, since: FloatArray, which: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return rotation and angular velocity at times since the beginnings of some of them."""
+        """Return rotation and angular velocity of some half cycles at times since their start."""
         step = self.step[which]
         n = np.clip((since / step).astype(np.int64), 0, len(self.rotation) - 2)
         x = since / step - n
@@ -85,7 +89,7 @@ class Flights:
         return y0 + x * (v0 + x * (c2 + x * c3)), (v0 + x * (2.0 * c2 + x * 3.0 * c3)) / step
 
     def ends(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return how long they last, and the speeds with which they and their feet end; NaN of one that goes on."""
+        """Return durations, and end velocities of bodies and feet; NaN without an impact."""
         below = (self.rotation[1:] <= 0.0) & (self.velocity[1:] < 0.0)
         ended, which = below.any(axis=0), np.arange(self.step.size)
         n = np.where(ended, below.argmax(axis=0), 0)
@@ -102,9 +106,9 @@ class Flights:
 
 
 def _within_steps(acceleration: FloatArray, time_step: float, times: FloatArray, step: FloatArray) -> FloatArray:
-    """Return the acceleration at beginning, middle and end of steps: a straight line with its first two moments.
+    """Return the acceleration at start, middle and end of time steps, a line with its first two moments.
 
-    Straight lines between samples have corners, which would take two orders from a method of order 4.
+    The lines between samples have corners. Without this approximation, a method of order 4 would lose two orders.
     """
     slope = np.diff(acceleration) / time_step
     gained = np.concatenate([[0.0], np.cumsum(0.5 * time_step * (acceleration[1:] + acceleration[:-1]))])
@@ -124,60 +128,60 @@ def _within_steps(acceleration: FloatArray, time_step: float, times: FloatArray,
 def struck(
     before: FloatArray, after: FloatArray, slip: FloatArray, body: tuple[FloatArray, ...], friction: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the angular velocity after an impact, and how fast the new foot slides then [m/s].
+    """Return the angular velocity after an impact, and the sliding velocity of the new foot [m/s].
 
-    before, after: angular velocity before it, and after it if no foot slid; slip: speed of the old foot [m/s]; body:
-    levers of the old foot and the new one, height, and moment of inertia about the centre over the mass [m, m2].
+    before, after: angular velocity before the impact, and after it without sliding; slip: velocity of the old foot
+    [m/s]; body: levers of both feet, height, and moment of inertia about the centre over the mass [m, m2].
     """
     old, new, height, inertia = body
-    ratio, width, whole = after / before, old + new, inertia + height**2
-    stuck = after - height * slip * (old + ratio * new) / (whole * width)  # Eq. 74
+    ratio, width, foot_inertia = after / before, old + new, inertia + height**2
+    stuck = after - height * slip * (old + ratio * new) / (foot_inertia * width)  # Eq. 74
     along = height * (before - stuck) - slip
     slides = np.abs(along) > friction * (old * before + new * stuck)
     pull = -friction * np.sign(along)
-    turn = (pull * height + (1.0 - ratio) * whole / (old + ratio * new)) / inertia
+    turn = (pull * height + (1.0 - ratio) * foot_inertia / (old + ratio * new)) / inertia
     normal = width * before / (1.0 + new * turn)  # Eq. 75
     slid = before - turn * normal
     return np.where(slides, slid, stuck), np.where(slides, height * (before - slid) - slip + pull * normal, 0.0)
 
 
-_NOISES = 6.0  # least rotation over the noise
+_NOISES = 6.0  # smallest rotation over the noise
 _FEWEST = 7  # samples
-_STEEP = 0.6  # of the speed before: slower across zero it rested in between
+_STEEP = 0.6  # smallest ratio of speeds across zero; the body rests between slower ones
 
 
 @dataclass(frozen=True, eq=False)
 class Excursions:
-    """Where the rotation is beyond its noise."""
+    """Parts of a rotation beyond its noise."""
 
     first: IntArray  # sample
     last: IntArray
     sign: FloatArray  # 1 on the right foot, -1 on the left
-    begin: FloatArray  # when the impact before it is [s], or its first sample
-    end: FloatArray  # when the impact after it is [s], or its last sample
-    joined: BoolArray  # to the one before, by an impact
+    begin: FloatArray  # time of the impact before it, or of its first sample [s]
+    end: FloatArray  # time of the impact after it, or of its last sample [s]
+    joined: BoolArray  # True if an impact connects it to the previous one
 
-    def kept(self, which: BoolArray) -> "Excursions":
-        """Return some of them: what was joined to one that is not kept begins by itself."""
+    def subset(self, which: BoolArray) -> "Excursions":
+        """Return some of the parts; a part without its predecessor begins with its own state."""
         joined = self.joined & np.concatenate([[False], which[:-1]])
-        kept = {name: values[which] for name, values in vars(self).items()}
-        return Excursions(**(kept | {"joined": joined[which]}))
+        selected = {name: values[which] for name, values in vars(self).items()}
+        return Excursions(**(selected | {"joined": joined[which]}))
 
-    def parted(self, which: BoolArray, time: FloatArray) -> "Excursions":
-        """Return them with some no longer joined to the one before."""
+    def separated(self, which: BoolArray, time: FloatArray) -> "Excursions":
+        """Return the parts, some of them without the connection to their predecessor."""
         begin, end = np.where(which, time[self.first], self.begin), self.end.copy()
         end[np.flatnonzero(which) - 1] = time[self.last[np.flatnonzero(which) - 1]]
         return replace(self, begin=begin, end=end, joined=self.joined & ~which)
 
-    def alone(self) -> BoolArray:
-        """Return which are joined to none."""
+    def is_isolated(self) -> BoolArray:
+        """Return True for parts without a connection to another part."""
         return np.asarray(~(self.joined | np.append(self.joined[1:], False)))
 
 
-def excursions_of(time: FloatArray, rotation: FloatArray, share: float) -> Excursions:
-    """Return them of a rotation that is zero at rest; share: least rotation over the range."""
-    least = max(_NOISES * white_noise(rotation), share * float(np.ptp(rotation)))
-    side = np.where(np.abs(rotation) > least, np.sign(rotation), 0.0)
+def excursions_of(time: FloatArray, rotation: FloatArray, fraction: float) -> Excursions:
+    """Return the parts of a rotation beyond its noise; fraction: smallest rotation over the range."""
+    min_rotation = max(_NOISES * white_noise(rotation), fraction * float(np.ptp(rotation)))
+    side = np.where(np.abs(rotation) > min_rotation, np.sign(rotation), 0.0)
     cuts = np.flatnonzero(np.diff(side) != 0.0) + 1
     first, last = np.concatenate([[0], cuts]), np.concatenate([cuts, [side.size]]) - 1
     long = (side[first] != 0.0) & (last - first + 1 >= _FEWEST)

@@ -1,4 +1,4 @@
-"""The posterior of what rocking under a known ground motion says: normal distributions, one for each scatter."""
+"""The posterior of rocking under a known ground motion: one normal distribution per scatter."""
 
 import math
 
@@ -13,7 +13,7 @@ _GRID = 61
 
 
 class ForcedPosterior:
-    """Normal distributions of the unknowns, one for each scatter, with weights: all about one linearisation."""
+    """Weighted normal distributions of the unknowns, one per scatter, about one linearisation."""
 
     def __init__(self, problem: Forced, fit: Fit, noise: FloatArray) -> None:
         self.problem, self.fit, self.noise = problem, fit, noise
@@ -27,7 +27,7 @@ class ForcedPosterior:
         scale = 1.0 / np.sqrt(np.diag(fixed))
         self._root = np.linalg.inv(np.linalg.cholesky(fixed * scale[:, None] * scale)) * scale
         self._pull = self._root @ (pull - by.T @ drawn - precision * away)[self.free]
-        # what impacts took is told in so many directions: no scatter needs a matrix of its own
+        # singular directions of the coefficients: no scatter needs its own matrix
         self._modes, size, turn = np.linalg.svd(self._root @ by[:, self.free].T, full_matrices=False)
         missed = turn @ drawn - size * (self._modes.T @ self._pull)
         total = self.scatter[:, None] ** 2 + size**2
@@ -35,32 +35,32 @@ class ForcedPosterior:
         ln = prior - 0.5 * (missed**2 / total + np.log(total)).sum(axis=1)  # Eq. 284
         weights = np.exp(ln - ln.max())
         self.weights = weights / weights.sum()
-        rest = fit.terms.value(noise, 1.0, SAME_TIME) - float(drawn @ drawn) + float(precision @ away**2)
-        told = float(self._pull @ self._pull) - rest
+        misfit = fit.terms.value(noise, 1.0, SAME_TIME) - float(drawn @ drawn) + float(precision @ away**2)
+        exponent = float(self._pull @ self._pull) - misfit
         self.ln_evidence = float(
-            ln.max() + math.log(weights.sum()) + 0.5 * told + np.log(np.diag(self._root)).sum()
+            ln.max() + math.log(weights.sum()) + 0.5 * exponent + np.log(np.diag(self._root)).sum()
         )  # over all scatters
 
-    def of(self, slopes: FloatArray, value: float) -> Mixture:
-        """Return the distribution of what has a value at the linearisation, and slopes by the unknowns."""
+    def distribution(self, slopes: FloatArray, value: float) -> Mixture:
+        """Return the distribution of a quantity from its value and slopes at the linearisation."""
         by = self._root @ slopes[self.free]
         along = self._modes.T @ by
         means = value + float(by @ self._pull) + self._steps @ along
         return Mixture(self.weights, means, np.sqrt(np.maximum(float(by @ by) - self._held @ along**2, 0.0)))
 
     def shared(self, *terms: tuple[int, float]) -> Mixture:
-        """Return the distribution of a sum of what all half cycles share, each times a factor."""
+        """Return the distribution of a weighted sum of the parameters shared by all half cycles."""
         slopes = np.zeros(self.fit.x.size)
         for which, factor in terms:
             slopes[which] = factor
-        return self.of(slopes, float(slopes @ self.fit.x))
+        return self.distribution(slopes, float(slopes @ self.fit.x))
 
     def explained(self, which: int, by: tuple[int, ...]) -> float:
-        """Return the standard deviation of what all share that falls away where others of it are known."""
-        place, held = np.cumsum(self.free) - 1, self._held[int(np.argmax(self.weights))]
-        root = self._root - self._modes @ ((1.0 - np.sqrt(1.0 - held))[:, None] * (self._modes.T @ self._root))
-        one, others = root[:, place[which]], root[:, [place[each] for each in by if self.free[each]]]
-        return float(np.linalg.norm(np.linalg.qr(others)[0].T @ one)) if others.size else 0.0
+        """Return the part of the standard deviation of a shared parameter that others of them explain."""
+        column, held_fraction = np.cumsum(self.free) - 1, self._held[int(np.argmax(self.weights))]
+        root = self._root - self._modes @ ((1.0 - np.sqrt(1.0 - held_fraction))[:, None] * (self._modes.T @ self._root))
+        target, others = root[:, column[which]], root[:, [column[index] for index in by if self.free[index]]]
+        return float(np.linalg.norm(np.linalg.qr(others)[0].T @ target)) if others.size else 0.0
 
     @property
     def no_scatter(self) -> float:
@@ -69,5 +69,5 @@ class ForcedPosterior:
 
     @property
     def likely_scatter(self) -> IntervalEstimate:
-        """The scatter."""
+        """Median and 95 % interval of the scatter."""
         return IntervalEstimate(*interval_of_nodes(self.scatter, self.weights))

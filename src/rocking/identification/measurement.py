@@ -1,4 +1,4 @@
-"""What was measured of a body that rocks: when it hit the ground, or how it turned."""
+"""Measurements of a rocking body: times of impacts, rotations, angular velocities."""
 
 import math
 from dataclasses import dataclass
@@ -14,22 +14,22 @@ _FEWEST, _MOST = 4, 2000
 
 @dataclass(frozen=True, eq=False)
 class ImpactTimes:
-    """When a body that rocks freely hit the ground, impacts after each other.
+    """Times of the impacts of a freely rocking body.
 
     Parameters
     ----------
     times : ndarray
-        At least 4 times that increase; some may be no impacts, and impacts may be missing [s].
+        At least 4 increasing times; some may be false, and impacts may be missing [s].
     sigma : float, optional
-        Standard deviation of a time, if it is known; otherwise it is fitted [s].
+        Standard deviation of a time; fitted by default [s].
     probabilities : ndarray, optional
-        How sure the reader is that each is an impact, above 0 and at most 1 [-].
+        Probability of each time to be an impact, above 0 and at most 1 [-].
     source : str
-        Where they come from.
+        Source of the measurement.
     doubts : tuple of str
-        What the reader has to say against them.
+        Doubts of the reader.
     loudness : ndarray, optional
-        Of a sound, for pictures: times [s] in its first column, amplitudes in its second [-].
+        For pictures of a sound: times [s] in the first column, amplitudes in the second [-].
 
     Raises
     ------
@@ -73,27 +73,27 @@ class ImpactTimes:
 
 @dataclass(frozen=True, eq=False)
 class RotationSeries:
-    """How a body that rocks turned: its rotation, its angular velocity, or both, against time.
+    """Measured time history of the rotation, of the angular velocity, or of both.
 
     Parameters
     ----------
     time : ndarray
-        Times that increase [s].
+        Increasing times [s].
     rotation : ndarray, optional
         Positive on the right foot; an offset and a drift are fitted [rad].
     angular_velocity : ndarray, optional
         Positive clockwise; an offset and a drift are fitted [rad/s].
     source : str
-        Where they come from.
+        Source of the measurement.
     doubts : tuple of str
-        What the reader has to say against them.
+        Doubts of the reader.
     from_acceleration : bool
-        Whether the rotation comes from an acceleration, to which a moving ground adds its own.
+        True if the rotation comes from an acceleration, which includes the ground acceleration.
 
     Raises
     ------
     InvalidValueError
-        If neither is given, or a row is not of finite numbers, as many as the times.
+        If both are missing, or a row differs in length from the times or is not finite.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What is known before a measurement, and after it: normal for each scatter and noise, mixed over a grid of both."""
+"""Prior and posterior of an identification: a mixture of normal distributions over a grid of scatter and noise."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,13 +16,13 @@ from rocking.identification import state_space
 from rocking.identification.state_space import SHARED, Laplace, Model, Observer, laplace
 
 SCATTERS: Final = (1e-4, 0.3)
-"""Smallest and largest standard deviation of ln r at an impact, where ln r scatters at all [-]."""
+"""Smallest and largest standard deviation of ln r at an impact, if ln r scatters [-]."""
 
 NO_SCATTER: Final = 0.2
 """Prior probability that ln r does not scatter [-]."""
 
 _SMALL_SCATTER = 0.02
-"""Below it the prior is flat in the scatter, above in its logarithm: impacts usually scatter by 1 to 3 % [-]."""
+"""The prior is flat in a smaller scatter, and in the logarithm of a larger one; the usual scatter is 1 to 3 % [-]."""
 
 _COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
 
@@ -32,7 +32,7 @@ Nodes = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class Noise:
-    """What is known of the noise: its median, and the standard deviation of its logarithm, 0 if it is known."""
+    """Prior of the noise: its median, and the standard deviation of its logarithm, 0 if it is known."""
 
     median: float
     dispersion: float = 0.0
@@ -49,7 +49,7 @@ class Posterior:
     u: FloatArray  # g, d
     covariance: FloatArray  # g, d, d
     residuals: FloatArray  # g, m
-    evidence: float  # ln of the probability density of what was measured
+    evidence: float  # ln of the probability density of the measurement
     converged: bool
 
     def normal(self, slopes: FloatArray, offset: float = 0.0) -> "Mixture":
@@ -59,17 +59,17 @@ class Posterior:
         return Mixture(self.weights, offset + (slopes * self.u).sum(axis=1), spread)
 
     def shared(self, *terms: tuple[int, float]) -> "Mixture":
-        """Return the distribution of a sum of what all impacts share, each times a factor."""
+        """Return the distribution of a weighted sum of the parameters shared by all impacts."""
         slopes = np.zeros(self.model.size)
         for which, factor in terms:
             slopes[which] = factor * self.model.deviation[which]
         return self.normal(slopes, sum(factor * float(self.model.mean[which]) for which, factor in terms))
 
     def explained(self, which: int, by: Sequence[int]) -> float:
-        """Return the standard deviation of what all impacts share that falls away where others of it are known."""
+        """Return the part of the standard deviation of a shared parameter that others of them explain."""
         across, among = self.covariance[:, which, by], self.covariance[:, by][:, :, by]
-        part = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
-        return float(self.model.deviation[which] * np.sqrt(self.weights @ part))
+        variance = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
+        return float(self.model.deviation[which] * np.sqrt(self.weights @ variance))
 
     def standardized_residuals(self, observer: Observer) -> FloatArray:
         """Return the residual of each measured value over the standard deviation of that residual [-]."""
@@ -99,26 +99,26 @@ class Mixture:
 
     @property
     def mean(self) -> float:
-        """Its mean."""
+        """Mean."""
         return float(self.weights @ self.means)
 
     @property
     def deviation(self) -> float:
-        """Its standard deviation."""
+        """Standard deviation."""
         return float(np.sqrt(self.weights @ (self.deviations**2 + (self.means - self.mean) ** 2)))
 
     def below(self, value: float) -> float:
-        """Return the probability of less."""
+        """Return the probability of values below `value`."""
         return float(self.weights @ ndtr((value - self.means) / np.maximum(self.deviations, 1e-300)))
 
     def quantiles(self, *levels: float) -> tuple[float, ...]:
-        """Return what is not exceeded with probabilities."""
+        """Return the quantiles at some levels."""
         low = np.full(len(levels), (self.means - 9.0 * self.deviations).min())
         high = np.full(len(levels), (self.means + 9.0 * self.deviations).max())
         for _ in range(60):
             middle = 0.5 * (low + high)
-            each = (middle[:, None] - self.means) / np.maximum(self.deviations, 1e-300)
-            under = ndtr(each) @ self.weights < np.array(levels)
+            z = (middle[:, None] - self.means) / np.maximum(self.deviations, 1e-300)
+            under = ndtr(z) @ self.weights < np.array(levels)
             low, high = np.where(under, middle, low), np.where(under, high, middle)
         return tuple((0.5 * (low + high)).tolist())
 
@@ -126,7 +126,7 @@ class Mixture:
 def posterior(
     model: Model, observer: Observer, scatter: float | None, noise: Noise, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
-    """Return the posterior; scatter: of ln r if it is known; start: unknowns to begin with, for scatters."""
+    """Return the posterior; scatter: of ln r if it is known; start: first unknowns for given scatters."""
     scatters = _first_nodes(_COARSE[0]) if scatter is None else (np.array([scatter]), np.zeros(1))
     noise_ends = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
     coarse = _on_grid(model, observer, scatters, _noise_nodes(noise, noise_ends, _COARSE[1]), start)
@@ -145,7 +145,7 @@ def posterior(
 
 
 def rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
-    """Return unknowns with the same impacts in units of other scatters; without scatter there are no draws."""
+    """Return unknowns of the same impacts in units of other scatters; without scatter the draws are zero."""
     rows = np.repeat(u[None, :], scatters.size, axis=0)
     rows[:, len(SHARED) :] *= np.divide(at, scatters, out=np.zeros_like(scatters), where=scatters > 0.0)[:, None]
     return rows
@@ -159,14 +159,14 @@ def scatter_nodes(ends: FloatArray, count: int) -> Nodes:
 
 
 def _first_nodes(count: int) -> Nodes:
-    """Return scatters to begin with: the smallest stands for no scatter, to which no start of a search is near."""
+    """Return the scatters of the first grid; its smallest scatter includes the probability of no scatter."""
     values, ln = scatter_nodes(np.log(SCATTERS), count)
     return values[1:], np.concatenate([[np.logaddexp(ln[0], ln[1])], ln[2:]])
 
 
 def _ln_scatter_density(scatters: FloatArray) -> FloatArray:
-    """Return ln of the density of ln of a scatter: flat in the scatter where that is small, in its logarithm else."""
-    low, high = (np.log(each + _SMALL_SCATTER) for each in SCATTERS)
+    """Return ln of the density of ln of a scatter: flat in small scatters, in the logarithm of large ones."""
+    low, high = (np.log(limit + _SMALL_SCATTER) for limit in SCATTERS)
     return np.asarray(np.log(scatters / (scatters + _SMALL_SCATTER) / (high - low)))  # Eq. 273
 
 
@@ -182,8 +182,8 @@ def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
 def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
     """Return median, 2.5 % and 97.5 % quantile of a scatter or a noise with weights on a grid.
 
-    The median and the lower quantile are zero where zero has at least that probability. The upper quantile is that of
-    the values above zero: it bounds a scatter that is not found.
+    The median and the lower quantile are zero if zero has at least that probability. The upper quantile is the one of
+    the positive values: it limits an undetected scatter.
     """
     nodes = np.unique(values)
     mass = np.array([weights[values == node].sum() for node in nodes])
@@ -198,7 +198,7 @@ def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, f
 
 
 def _narrowed(ends: FloatArray, values: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return the ends, as logarithms, between which nodes above zero weigh something."""
+    """Return the ends, as logarithms, of the nodes above zero with relevant weight."""
     levels = np.unique(values[values > 0.0])
     mass = np.array([weights[values == level].sum() for level in levels])
     kept = np.flatnonzero(mass >= _NEGLIGIBLE * mass.max())
@@ -210,46 +210,46 @@ def _narrowed(ends: FloatArray, values: FloatArray, weights: FloatArray) -> Floa
 def _on_grid(
     model: Model, observer: Observer, scatter: Nodes, noise: Nodes, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
-    scatters, noises = (each.ravel() for each in np.meshgrid(scatter[0], noise[0], indexing="ij"))
-    found: Laplace = laplace(model, observer, scatters, noises, start(scatters))
+    scatters, noises = (grid.ravel() for grid in np.meshgrid(scatter[0], noise[0], indexing="ij"))
+    approximation: Laplace = laplace(model, observer, scatters, noises, start(scatters))
     prior = np.add.outer(scatter[1], noise[1]).ravel()
-    ln = np.where(np.isfinite(found.evidence), found.evidence + prior, -np.inf)
+    ln = np.where(np.isfinite(approximation.evidence), approximation.evidence + prior, -np.inf)
     top = ln.max()
     weights = np.exp(ln - top)
     total = weights.sum()
     return Posterior(
-        model, weights / total, scatters, noises, found.u, found.covariance, found.residuals,
-        float(top + np.log(total)), bool(found.converged[weights > 0.05].all()),
+        model, weights / total, scatters, noises, approximation.u, approximation.covariance, approximation.residuals,
+        float(top + np.log(total)), bool(approximation.converged[weights > 0.05].all()),
     )  # fmt: skip
 
 
 LEVEL: Final = math.radians(0.3)
-"""Standard deviation of the tilt of a floor that nobody levelled [rad]."""
+"""Standard deviation of the tilt of an ordinary floor [rad]."""
 
 UNKNOWN_FREQUENCIES: Final = (1.3, 2.0, 3.1, 4.8, 7.4, 11.5)
-"""Frequency parameters with which a body of which nothing is known is tried [rad/s]."""
+"""Tried frequency parameters of an unknown body [rad/s]."""
 
-_UNKNOWN = (0.25, 0.22, 0.5)  # deviation of ln p about one of these; slenderness angle, deviation of its logarithm
+_UNKNOWN = (0.25, 0.22, 0.5)  # deviation of ln p; slenderness angle; deviation of its logarithm
 
 
 @dataclass(frozen=True)
 class Knowledge:
-    """What is known; deviations are standard deviations, zero where something is certain."""
+    """Prior knowledge; a standard deviation of zero means a certain value."""
 
     body: Body | None
     size_error: float  # of a length of the body, relative
     tilt: float  # [rad]
     tilt_error: float
-    asymmetry: float  # deviation of ln r landing right less ln r landing left
+    asymmetry: float  # deviation of the difference of ln r between both feet
     trend: bool
     damping: bool
-    first: Foot  # on which the body stands after the first impact
+    first: Foot  # in contact after the first impact
 
     @classmethod
-    def of(
+    def checked(
         cls, body: Any, size_error: Any, tilt: Any, asymmetry: Any, *, trend: bool, damping: bool, first: Any
     ) -> "Knowledge":
-        """Return what was said, checked."""
+        """Return the checked input of the user."""
         if body is not None and not isinstance(body, Body):
             raise InvalidValueError(
                 parameter="body", allowed="a Block, Section or MassPoints", value=body, hint="in_plane() of a solid"
@@ -268,7 +268,7 @@ class Knowledge:
 
     @property
     def frequencies(self) -> tuple[tuple[float, float], ...]:
-        """Means and standard deviations of ln p from which to begin."""
+        """First means of ln p, with their standard deviations."""
         if self.body is None:
             return tuple((math.log(p), _UNKNOWN[0]) for p in UNKNOWN_FREQUENCIES)
         return ((0.5 * math.log(self._p[0] * self._p[1]), 0.5 * self.size_error),)
@@ -282,27 +282,27 @@ class Knowledge:
 
     @property
     def alternation(self) -> tuple[float, float]:
-        """By how much ln y changes onto the first side because the sides differ, and its standard deviation."""
+        """Change of ln y onto the first side due to unequal sides, and its standard deviation."""
         right, left = self.slenderness_angles
         floor = math.hypot(self.tilt, self.tilt_error) / min(right, left)
-        # of bodies that are not symmetric, the change of the overturning speed from the second side to the first
+        # change of the overturning speed from the second side to the first, for asymmetric bodies
         speeds = [math.log(p * 2.0 * math.sin(0.5 * alpha)) for p, alpha in zip(self._p, (right, left), strict=True)]
         change = speeds[1] - speeds[0]
         return change if self.first == "right" else -change, max(math.hypot(0.5 * self.asymmetry, floor), 0.01)
 
     @property
     def _p(self) -> tuple[float, float]:
-        """Frequency parameters over the right and the left foot, or any of a body of which nothing is known [rad/s]."""
+        """Frequency parameters over the right and the left foot; 1 for an unknown body [rad/s]."""
         if self.body is None:
             return 1.0, 1.0
         return self.body.side("right").frequency_parameter, self.body.side("left").frequency_parameter
 
     def sides(self, count: int) -> IntArray:
-        """Return on which side the body stands in each half cycle: 0 right, 1 left."""
+        """Return the side of each half cycle: 0 right, 1 left."""
         return (np.arange(count) + (self.first == "left")) % 2
 
     def model(self, sides: IntArray, start: float, speeds: FloatArray, frequency: tuple[float, float]) -> Model:
-        """Return the model of a path; start, speeds: about when it begins, and ln of its speeds; frequency: of ln p."""
+        """Return the model of a path; start, speeds: first time, ln of speeds; frequency: mean, deviation of ln p."""
         mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
         p = np.array([math.exp(frequency[0])] * 2)
         slender = math.sqrt(2.0) * self.size_error
@@ -320,5 +320,5 @@ class Knowledge:
         deviation[state_space.SLENDERNESS] = slender
         deviation[state_space.TREND] = 0.05 if self.trend else 0.0
         deviation[state_space.DAMPING] = 0.02 if self.damping else 0.0
-        middle = float(speeds[:-1].mean())  # of the impacts: their mean is that of the coefficient with a trend too
+        middle = float(speeds[:-1].mean())  # mean over the impacts: the mean coefficient with a trend refers to it
         return Model(sides, self.slenderness_angles, (float(p[0]), float(p[1])), mean, deviation, middle)

@@ -1,4 +1,4 @@
-"""What a measurement says: coefficients with intervals, what each impact took, what it agrees with, how sure it is."""
+"""Results of an identification: coefficients with intervals, impacts, comparison with models."""
 
 import math
 from dataclasses import dataclass, field
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
     from rocking.tables import Table
 
 LEVELS = (0.5, 0.025, 0.975)
-"""Of an estimate and its interval."""
+"""Probabilities of an estimate and its interval."""
 
 _NOISES = {"times": "s", "rotation": "rad", "angular_velocity": "rad/s"}  # units of residuals
 _SCATTERS = (
-    "The coefficient of restitution is {mean}, from {count} impacts; from impact to impact it scatters by "
-    "{scatter:.2g} %."
+    "The coefficient of restitution is {mean}, from {count} impacts. It scatters by {scatter:.2g} % from impact to "
+    "impact."
 )
 _SCATTERS_BELOW = (
-    "The coefficient of restitution is {mean}, from {count} impacts; from impact to impact it scatters by less than "
-    "{scatter:.2g} %."
+    "The coefficient of restitution is {mean}, from {count} impacts. It scatters by less than {scatter:.2g} % from "
+    "impact to impact."
 )
-_ENDS = (("value", "", ""), ("low", "_low", ", 2.5 % of it"), ("high", "_high", ", 97.5 % of it"))
+_ENDS = (("value", "", ""), ("low", "_low", ", 2.5 % quantile"), ("high", "_high", ", 97.5 % quantile"))
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class IntervalEstimate:
     high: float
 
     def __str__(self) -> str:
-        """Return value and interval, in as many digits as its width asks for."""
+        """Return value and interval; the width of the interval determines the digits."""
         width = self.high - self.low
         how = f".{max(0, 1 - math.floor(math.log10(width)))}f" if 0.0 < width < math.inf else ".4g"
         return f"{self.value:{how}} ({self.low:{how}} to {self.high:{how}})"
@@ -72,35 +72,35 @@ def _ends(estimate: IntervalEstimate | None) -> dict[str, float] | None:
 
 def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate:
     """Return the estimate of a distribution, or of factor times its exponential."""
-    found = mixture.quantiles(*LEVELS)
-    return IntervalEstimate(*(found if factor is None else (factor * math.exp(each) for each in found)))
+    quantiles = mixture.quantiles(*LEVELS)
+    return IntervalEstimate(*(quantiles if factor is None else (factor * math.exp(quantile) for quantile in quantiles)))
 
 
 @dataclass(frozen=True)
 class Impact:
-    """What one impact took."""
+    """One impact with its coefficient of restitution."""
 
-    number: int  # from zero; nothing is known of what the first one took
-    time: float  # when it was, as it is computed [s]
-    foot: Foot  # the foot on which the body lands
-    speed: float  # angular velocity before it, without sign [rad/s]
+    number: int  # from zero; the coefficient of the first one is unknown
+    time: float  # computed time [s]
+    foot: Foot  # foot in contact after the impact
+    speed: float  # absolute angular velocity before the impact [rad/s]
     coefficient: IntervalEstimate  # theta_dot_after / theta_dot_before [-]
 
 
 @dataclass(frozen=True)
 class ModelComparison:
-    """A model of restitution beside what was measured.
+    """A restitution model compared with the measurement.
 
     Parameters
     ----------
     model : str
-        Its name.
+        Name.
     coefficient : float
-        What it says, as the geometric mean of both sides [-].
+        Coefficient of the model, the geometric mean of both sides [-].
     within : bool
-        Whether that is within the interval of the measured mean.
+        True if the coefficient is within the interval of the measured mean.
     bias : float
-        What it says less what was measured [-].
+        Coefficient of the model minus measured coefficient [-].
     """
 
     model: str
@@ -111,21 +111,21 @@ class ModelComparison:
 
 @dataclass(frozen=True)
 class ForcedRocking:
-    """What else a rotation under a known ground motion says, and how far it says anything."""
+    """Additional results from a rotation under a known ground motion."""
 
-    clock: IntervalEstimate  # by how much the clock of the measurement is ahead of that of the motion [s]
+    clock: IntervalEstimate  # lead of the clock of the measurement over the clock of the motion [s]
     gain: IntervalEstimate  # measured over true rotation [-]
-    # coefficient of friction; where it is not identified only the low end is a number, a bound at 95 % [-]
+    # coefficient of friction; if it is not identified, only the low end is a number, a bound at 95 % [-]
     friction: IntervalEstimate
-    stretches: int  # how often the half cycles begin anew, in a state that was measured and with no impact before them
-    half_cycles_left_out: int  # half cycles that were left out, since rocking alone does not explain them
-    used: float  # used, measured: duration of the half cycles that were used, and of the measurement [s]
+    stretches: int  # number of sequences of half cycles that begin with a measured state
+    half_cycles_left_out: int  # excluded half cycles, which rocking alone does not explain
+    used: float  # used, measured: duration of the used half cycles, and of the measurement [s]
     measured: float
-    # when a difference of 1e-4 in r changes what follows from rest by a tenth of its peak; NaN if never [s]
+    # time after which a difference of 1e-4 in r changes the response from rest by 10 % of its peak; NaN if never [s]
     predictable: float
 
     def answer(self) -> Answer:
-        """Return what is shown of it."""
+        """Return the result for display."""
         return Answer({
             "clock": vars(self.clock), "gain": vars(self.gain), "friction": vars(self.friction),
             "stretches": self.stretches, "half_cycles_left_out": self.half_cycles_left_out, "used": self.used,
@@ -133,84 +133,84 @@ class ForcedRocking:
         })  # fmt: skip
 
     def __str__(self) -> str:
-        """Return it in sentences."""
+        """Return the result as sentences."""
         friction = (
-            "Friction is not identified: feet that slid would explain what was measured no better than feet that held; "
-            f"it is {self.friction.low:.2g} at least."
+            "Friction is not identified: sliding does not improve the fit. The coefficient of friction is at least "
+            "{self.friction.low:.2g}."
         )
         if math.isfinite(self.friction.value):
-            friction = f"The feet slid; the coefficient of friction is {self.friction}. r is told without the slip."
-        told = "From rest a difference of 1e-4 in r changes the motion nowhere by a tenth of its peak."
+            friction = f"The feet slid. The coefficient of friction is {self.friction}. r excludes the slip."
+        prediction = "A difference of 1e-4 in r changes the response from rest by less than 10 % of its peak."
         if math.isfinite(self.predictable):
-            told = (
-                f"From rest the motion is told up to {self.predictable:.3g} s only: beyond, a difference of 1e-4 in r "
-                "changes it by more than a tenth of its peak."
+            prediction = (
+                f"The response from rest is predictable up to {self.predictable:.3g} s. Later, a difference of 1e-4 "
+                "in r changes it by more than 10 % of its peak."
             )
         return (
-            f"Identified from {self.used:.3g} s of half cycles out of {self.measured:.3g} s, begun anew in "
-            f"{self.stretches} measured states. {told} {friction}"
+            f"Identified from {self.used:.3g} s of half cycles out of {self.measured:.3g} s, in {self.stretches} "
+            f"sequences with a measured first state. {prediction} {friction}"
         )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Identification(Exported):
-    """What a measurement of rocking says about restitution.
+    """Coefficients of restitution identified from a measurement of rocking.
 
     Parameters
     ----------
     source : str
-        Where the measurement comes from.
+        Source of the measurement.
     refused : tuple of str or Message
-        Why it is no rocking, or none that this model knows; numbers of a measurement that is refused mean nothing.
+        Reasons for a refusal, if any. The numbers of a refused measurement are meaningless.
     doubts : tuple of str or Message
-        What else there is to say against it.
+        Other doubts.
     mean : IntervalEstimate
         Coefficient of restitution, the geometric mean of both sides [-].
     coefficients : dict of str to IntervalEstimate
-        Mean coefficient by the foot on which the body lands [-].
+        Mean coefficient by foot in contact after the impact [-].
     scatter : IntervalEstimate
-        Standard deviation of ln r from impact to impact. Value and lower end are 0 where the measurement agrees with a
-        coefficient that does not scatter; the upper end is that of one that does [-].
+        Standard deviation of ln r from impact to impact. Value and lower end are 0 if the measurement agrees with a
+        coefficient without scatter; the upper end assumes scatter [-].
     no_scatter : float
         Probability that the coefficient does not scatter; 0.2 before the measurement [-].
     frequency_parameter : IntervalEstimate
         p, the mean of both sides [rad/s].
     tilt : IntervalEstimate
-        Of the floor, clockwise [rad].
+        Tilt of the floor, clockwise [rad].
     trend, damping : IntervalEstimate or None
-        Slope of ln r over ln of the speed, and damping ratio, if they were asked for [-].
+        Slope of ln r over ln of the speed, and damping ratio, if requested [-].
     impacts : tuple of Impact
-        What each impact took.
+        Coefficient of each impact.
     residuals : ndarray
-        Measured less computed values [s, rad or rad/s].
+        Measured minus computed values [s, rad or rad/s].
     noise : IntervalEstimate
-        Standard deviation of these.
+        Standard deviation of the residuals.
     independent : float
-        Number of measured values that count.
+        Number of independent measured values.
     p_value : float
-        Posterior predictive: how often impacts of the model change as steadily with their number as these [-].
+        Posterior predictive probability of an equally steady change with the impact number [-].
     advantage : float
-        ln of how much likelier the measurement is than as times with a constant mean interval; NaN of a series [-].
+        Log likelihood ratio to times with a constant mean interval; NaN for a series [-].
     converged : bool
-        Whether the maximum of the posterior was found.
+        True if the maximum of the posterior was found.
     impulse : dict of str to IntervalEstimate
-        Position k of the impulse that the mean coefficients imply, by foot, 1 Housner's; empty without a body [-].
+        Impulse position k of the mean coefficients, by foot; 1 for Housner; empty without a body [-].
     models : tuple of ModelComparison
-        Every model of restitution beside it, the closest first; empty without a body.
+        Comparison with every restitution model, the closest first; empty without a body.
     designs : tuple of Design
-        Experiments with this body, the most telling first.
+        Experiments with this body, the most accurate first.
     _next : dict of str to ndarray
-        Quantiles of what the next impact takes, by foot, for `law` [-].
+        Quantiles of the coefficient of the next impact, by foot, for `law` [-].
     measurement : ImpactTimes or RotationSeries
-        What was measured.
+        The measurement.
     residual_times : ndarray
-        When what `residuals` are of was measured [s].
+        Times of the residuals [s].
     quantiles : ndarray
         Quantiles of the mean coefficient of restitution, at equal steps of its probability [-].
     forced : ForcedRocking or None
-        What else there is of a measurement under a known ground motion.
+        Additional results under a known ground motion.
     _common : float
-        Standard deviation of ln of the mean that comes from the size of the body, common to all its trials [-].
+        Standard deviation of ln of the mean due to the size of the body, common to all its trials [-].
     """
 
     source: str
@@ -243,12 +243,12 @@ class Identification(Exported):
 
     @property
     def refusal(self) -> Message:
-        """Why there is no coefficient."""
+        """Reason for the missing coefficient."""
         return Message("No coefficient of restitution: {reasons}.", {"reasons": self.refused})
 
     @property
     def verdict(self) -> str:
-        """What was found, in a sentence."""
+        """The result as one sentence."""
         if self.refused:
             return self.refusal
         facts = {"mean": str(self.mean), "count": len(self.impacts)}
@@ -258,7 +258,7 @@ class Identification(Exported):
 
     @property
     def scatter_text(self) -> str:
-        """The scatter as text: a verb and a percentage; an upper bound where no scatter is more likely than some."""
+        """The scatter as text: a verb and a percentage, or an upper bound."""
         if self.scatter.value == 0.0:
             return f"scatters by less than {100.0 * self.scatter.high:.2g} %"
         return f"scatters by {100.0 * self.scatter.value:.2g} %"
@@ -272,12 +272,12 @@ class Identification(Exported):
     __repr__ = __str__
 
     def law(self, *, seed: int = 0) -> RandomRestitution:
-        """Return what the next impacts of this body will take, with the scatter and with what is not known.
+        """Return the random coefficients of the next impacts, with scatter and uncertainty.
 
         Parameters
         ----------
         seed : int
-            Seed of the draws.
+            Random seed.
 
         Returns
         -------
@@ -290,52 +290,50 @@ class Identification(Exported):
             If the measurement was refused.
         """
         if self.refused:
-            raise InvalidValueError(
-                "there is no law of a measurement that was refused: {reason}", reason=self.refused[0]
-            )
+            raise InvalidValueError("no law without an identification: {reason}", reason=self.refused[0])
         return RandomRestitution(self._next, seed)
 
     def answer(self) -> Answer:
-        """Return what is shown of the measurement.
+        """Return the result of the measurement for display.
 
         Returns
         -------
         Answer
-            Coefficients, impacts, models and designs; of a refused measurement the reasons alone.
+            Coefficients, impacts, models and designs; for a refused measurement only the reasons.
         """
-        words = {
+        texts = {
             "source": self.source, "verdict": self.verdict, "refused": self.refused, "doubts": self.doubts,
         }  # fmt: skip
         if self.refused:
-            return Answer(words)
+            return Answer(texts)
         estimates = ("mean", "scatter", "frequency_parameter", "tilt", "trend", "noise")
         numbers = ("no_scatter", "independent", "p_value", "advantage", "residuals", "residual_times", "quantiles")
         unit = next(unit for name, unit in _NOISES.items() if getattr(self.measurement, name, None) is not None)
         own = (
             Quantity("mean", "1", "mean coefficient of restitution"),
             Quantity("noise", unit, "standard deviation of the residuals"),
-            Quantity("residuals", unit, "measured less computed values"),
+            Quantity("residuals", unit, "measured minus computed values"),
             Quantity("quantiles", "1", "quantiles of the mean coefficient of restitution"),
         )
         return Answer({
-            **words, **{name: _ends(getattr(self, name)) for name in estimates},
+            **texts, **{name: _ends(getattr(self, name)) for name in estimates},
             "damping_ratio": _ends(self.damping), **{name: getattr(self, name) for name in numbers},
-            "coefficient": {foot: vars(each) for foot, each in self.coefficients.items()},
-            "impulse_ratio": {foot: vars(each) for foot, each in self.impulse.items()},
+            "coefficient": {foot: vars(estimate) for foot, estimate in self.coefficients.items()},
+            "impulse_ratio": {foot: vars(estimate) for foot, estimate in self.impulse.items()},
             "converged": self.converged,
-            "impacts": [{**vars(each), "coefficient": vars(each.coefficient)} for each in self.impacts],
-            "models": [vars(each) for each in self.models],
-            "designs": [vars(each) for each in self.designs],
+            "impacts": [{**vars(impact), "coefficient": vars(impact.coefficient)} for impact in self.impacts],
+            "models": [vars(model) for model in self.models],
+            "designs": [vars(design) for design in self.designs],
             "forced": self.forced and self.forced.answer(),
-        }, {each.name: each for each in own})  # fmt: skip
+        }, {quantity.name: quantity for quantity in own})  # fmt: skip
 
     def plot(self, path: str | Path | None = None) -> "Figure":
-        """Draw what was measured, the fit, what is left over, and the coefficient with the models beside it.
+        """Draw the measurement, the fit, the residuals, and the coefficient with the models.
 
         Parameters
         ----------
         path : str or Path, optional
-            Where to write the picture, too: .png, .svg or .pdf.
+            File for the picture: .png, .svg or .pdf.
 
         Returns
         -------
@@ -355,16 +353,16 @@ class Identification(Exported):
         return figure
 
     def report(self, path: str | Path, *, name: str = "", date: str = "") -> Path:
-        """Write a report: verdict, picture, what each impact took, the models, and how it was found.
+        """Write a report: result, picture, impacts, models, and method.
 
         Parameters
         ----------
         path : str or Path
             A document (.pdf), or a web page of one file (.html).
         name : str
-            What the body is called.
+            Name of the body.
         date : str
-            Day of the report, as it should be printed.
+            Printed date of the report.
 
         Returns
         -------
@@ -376,26 +374,30 @@ class Identification(Exported):
         return report(self, path, name=name, date=date)
 
     def exported(self) -> "Table":
-        """Return one row an impact, the models and what is left over beside them."""
+        """Return a table with one row per impact, and tables of the models and the residuals."""
         from rocking.tables import Column, Table, text_array
 
-        of = self.impacts
+        impacts = self.impacts
         columns = {
-            "time": Column(np.array([each.time for each in of]), "s", "when it was, as computed"),
-            "foot": Column(text_array([each.foot for each in of]), "", "foot on which the body lands"),
-            "speed": Column(np.array([each.speed for each in of]), "rad/s", "angular velocity before it"),
+            "time": Column(np.array([impact.time for impact in impacts]), "s", "computed time of the impact"),
+            "foot": Column(text_array([impact.foot for impact in impacts]), "", "foot in contact after the impact"),
+            "speed": Column(
+                np.array([impact.speed for impact in impacts]), "rad/s", "angular velocity before the impact"
+            ),
         }
         for key, end, meaning in _ENDS:
-            values = np.array([getattr(each.coefficient, key) for each in of])
+            values = np.array([getattr(impact.coefficient, key) for impact in impacts])
             columns[f"coefficient{end}"] = Column(values, "1", f"coefficient of restitution{meaning}")
         compared = {
-            "model": Column(text_array([each.model for each in self.models]), "", "model of restitution"),
-            "model_coefficient": Column(np.array([each.coefficient for each in self.models]), "1", "by the model"),
+            "model": Column(text_array([model.model for model in self.models]), "", "model of restitution"),
+            "model_coefficient": Column(
+                np.array([model.coefficient for model in self.models]), "1", "coefficient of the model"
+            ),
         }
         unit = "s" if isinstance(self.measurement, ImpactTimes) else ""
         left = {
-            "measured_at": Column(self.residual_times, "s", "when it was measured"),
-            "left_over": Column(self.residuals, unit, "measured less computed"),
+            "measured_at": Column(self.residual_times, "s", "time of the measurement"),
+            "left_over": Column(self.residuals, unit, "measured minus computed"),
         }
         provenance: dict[str, Any] = {
             "source": self.source,
@@ -409,30 +411,32 @@ class Identification(Exported):
 
 
 def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:
-    """Where the impulse acts that coefficients imply; the larger the coefficient, the smaller k."""
-    found: dict[Foot, IntervalEstimate] = {}
-    for foot, each in coefficients.items():
-        value, high, low = (implied(body, r, foot=foot).impulse_ratio for r in (each.value, each.low, each.high))
-        found[foot] = IntervalEstimate(value, low, high)
-    return found
+    """Return the impulse position k of each foot from the coefficients; a larger coefficient has a smaller k."""
+    ratios: dict[Foot, IntervalEstimate] = {}
+    for foot, estimate in coefficients.items():
+        value, high, low = (
+            implied(body, r, foot=foot).impulse_ratio for r in (estimate.value, estimate.low, estimate.high)
+        )
+        ratios[foot] = IntervalEstimate(value, low, high)
+    return ratios
 
 
 def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
-    """Every model that needs no number beside what was measured, the closest first."""
-    found = []
+    """Return all restitution models without parameters, compared with the mean, the closest first."""
+    comparisons = []
     for name, kind in models().items():
         try:
             model: RestitutionModel = kind()
             sides = [model.evaluate(body, foot=foot).coefficient for foot in FEET]
-        except (TypeError, RockingError):  # it takes a number, or does not hold for this body
+        except (TypeError, RockingError):  # the model requires a number, or excludes this body
             continue
         value = math.sqrt(sides[0] * sides[1])
-        found.append(ModelComparison(name, value, mean.low <= value <= mean.high, value - mean.value))
-    return tuple(sorted(found, key=lambda each: abs(each.bias)))
+        comparisons.append(ModelComparison(name, value, mean.low <= value <= mean.high, value - mean.value))
+    return tuple(sorted(comparisons, key=lambda comparison: abs(comparison.bias)))
 
 
 def next_impact(mean: Mixture, scatter: FloatArray | float) -> FloatArray:
-    """Quantiles of the coefficient of another impact; without scatter, of the mean."""
+    """Return quantiles of the coefficient of another impact; without scatter, of the mean."""
     spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
     levels = (np.arange(65) + 0.5) / 65.0
     return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274

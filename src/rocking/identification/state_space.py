@@ -1,11 +1,11 @@
-"""A body that rocks freely as a state-space model: its speed after each impact, and what an observer sees of it.
+"""A freely rocking body as a state-space model: its speed after each impact, and the measured quantities.
 
-The unknowns are standard normal a priori: the numbers that all impacts share, and one draw for each impact, which
-scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed side by side;
-arrays begin with that axis, called g below. All angles of the left side are mirrored.
+The unknowns are standard normal a priori: the parameters shared by all impacts, and one draw for each impact. A draw
+scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed together: they are
+the first axis of all arrays, called g below. All angles of the left side are mirrored.
 
-`y` is the speed after an impact over the one that would just overturn the body, `alpha` the slenderness angle over the
-foot on which it stands; times are multiplied by the frequency parameter p.
+`y` is the speed after an impact over the speed that just overturns the body. `alpha` is the slenderness angle over the
+foot in contact. Times are multiplied by the frequency parameter p.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 
 
 def overturning_speed(alpha: FloatArray) -> FloatArray:
-    """Return the angular velocity over p from which a body just overturns [-]."""
+    """Return the smallest angular velocity over p with overturning [-]."""
     return np.asarray(2.0 * np.sin(0.5 * alpha))  # Eq. 264
 
 
@@ -32,24 +32,24 @@ def duration(y: FloatArray, alpha: FloatArray) -> FloatArray:
 
 
 def duration_and_slopes(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return p T, its derivative by ln y at the same alpha, and that by alpha at the same y."""
+    """Return p T, its derivative by ln y at constant alpha, and by alpha at constant y."""
     a, b, c = _arguments(y, alpha)
     q, s2 = 1.0 - y * y, np.sin(0.5 * alpha) ** 2
     by_a, by_b, by_c = -elliprd(b, c, a) / 6.0, -elliprd(a, c, b) / 6.0, -elliprd(a, b, c) / 6.0
-    found = 2.0 * y * elliprf(a, b, c)
+    scaled = 2.0 * y * elliprf(a, b, c)
     by_y = (s2 - 1.0) * by_a + (s2 * q - c) * by_b + s2 * by_c  # over 2 y
     by_s2 = -q * (by_a + q * by_b + by_c)
-    return found, found + 4.0 * y**3 * by_y, y * np.sin(alpha) * by_s2
+    return scaled, scaled + 4.0 * y**3 * by_y, y * np.sin(alpha) * by_s2
 
 
-def speed(taken: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return y, from p T: the inverse of `duration`."""
-    goal = np.log(np.asarray(taken, dtype=np.float64))
+def speed(scaled_duration: FloatArray, alpha: FloatArray) -> FloatArray:
+    """Return y from p T: the inverse of `duration`."""
+    goal = np.log(np.asarray(scaled_duration, dtype=np.float64))
     y = np.tanh(0.5 * np.exp(goal))
     for _ in range(30):
-        found, slope, _ = duration_and_slopes(y, alpha)
-        # in ln T over atanh y, in which it is nearly straight
-        step = (np.log(found) - goal) * found / slope * y / (1.0 - y * y)
+        trial, slope, _ = duration_and_slopes(y, alpha)
+        # ln T is nearly linear in ln atanh y
+        step = (np.log(trial) - goal) * trial / slope * y / (1.0 - y * y)
         y = np.tanh(np.maximum(np.arctanh(y) - step, 0.5 * np.arctanh(y)))
         if np.all(np.abs(step) <= 1e-14 * np.arctanh(y)):
             break
@@ -57,7 +57,7 @@ def speed(taken: FloatArray, alpha: FloatArray) -> FloatArray:
 
 
 def peak(y: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return the largest rotation until the next impact [rad]."""
+    """Return the peak rotation until the next impact [rad]."""
     s = np.sin(0.5 * alpha)
     return np.asarray(alpha - 2.0 * np.arcsin(s * np.sqrt(1.0 - y * y)))  # Eq. 266
 
@@ -65,17 +65,17 @@ def peak(y: FloatArray, alpha: FloatArray) -> FloatArray:
 def rotation(
     since: FloatArray, y: FloatArray, alpha: FloatArray, until: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return rotation [rad] and angular velocity over p [-]; p times the time since the impact, and until the next."""
-    low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # of half the angle at the highest point
+    """Return rotation [rad] and angular velocity over p [-]; since, until: p times the time since and to an impact."""
+    low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # sine of half the angle at the peak
     m = 1.0 - low * low
     sn, _, dn, _ = ellipj(since - 0.5 * (duration(y, alpha) if until is None else until), m)
     return alpha - 2.0 * np.arcsin(np.minimum(low / dn, 1.0)), -2.0 * low * np.sqrt(m) * sn / dn  # Eq. 267
 
 
 def viscous_loss(y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return by how much ln y falls until the next impact for each unit of the damping ratio, of slender bodies.
+    """Return the decrease of ln y until the next impact per damping ratio, for slender bodies.
 
-    Also its derivative by ln y; y is the geometric mean of those at both ends.
+    The second result is its derivative by ln y; y is the geometric mean of the values at both ends.
     """
     small = y < 0.05
     z = np.where(small, 0.5, y)
@@ -91,44 +91,47 @@ def _arguments(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray
 
 
 SHARED = (START, SPEED, MEAN, HALF, FREQUENCY, TILT, SLENDERNESS, TREND, DAMPING) = tuple(range(9))
-"""When the first impact was [s]; ln of the speed after it, ln of the mean coefficient, half the difference of ln r
-between landing right and left, ln of p and of the slenderness angle over those of the body, tilt of the floor,
+"""Time of the first impact [s]; ln of the speed after it, ln of the mean coefficient, half the difference of ln r
+between the right and the left foot, ln of p and of the slenderness angle over their nominal values, tilt of the floor,
 clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
 
 _BELOW_OVERTURNING = 1.0 - 1e-9
 _ROUNDING = 1e-14
 _STEEPEST = 1.5  # slenderness angle [rad]
-_PART = 128  # rows of a product small enough that a library of linear algebra starts no threads, which wait and burn
-_STEPS, _PATIENCE, _FAR_BEHIND = 40, 12, 100.0  # at most; steps, ln of the probability density
-_CLOSE = 1e-3  # change of minus twice the logarithm of the posterior
+_PART = 128  # rows of a small product, for which the linear algebra starts no threads
+_STEPS, _PATIENCE, _FAR_BEHIND = 40, 12, 100.0  # largest number of steps; steps; ln of the probability density
+_CLOSE = 1e-3  # change of -2 ln of the posterior
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """Where the unknowns lead: impacts n = 0..N, half cycles k = 0..N-1; slopes are by the unknowns, the last axis."""
+    """Path of the body for given unknowns: impacts n = 0..N, half cycles k = 0..N-1.
+
+    Slopes are derivatives by the unknowns, the last axis.
+    """
 
     times: FloatArray  # g, n [s]
     speeds: FloatArray  # g, k: ln of the angular velocity after the impact
-    y: FloatArray  # g, k: over the speed that would overturn it
+    y: FloatArray  # g, k: over the overturning speed
     alpha: FloatArray  # g, k [rad]
     p: FloatArray  # g, k [rad/s]
     time_slopes: FloatArray  # g, n, d
     y_slopes: FloatArray  # g, k, d: of ln y
     alpha_slopes: FloatArray  # g, k, d
     p_slopes: FloatArray  # d: of ln p
-    feasible: BoolArray  # g: whether it never overturns
+    feasible: BoolArray  # g: True without overturning
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """What is known before a measurement: the body, on which side it stands in each half cycle, priors."""
+    """Prior of a measurement: the body, its side in each half cycle, and the prior distributions."""
 
     sides: IntArray  # k: 0 right, 1 left
     alpha: tuple[float, float]  # right, left [rad]
     p: tuple[float, float]  # [rad/s]
-    mean: FloatArray  # of what all impacts share
-    deviation: FloatArray  # zero of what is known
-    middle: float = 0.0  # ln of the speed at which the coefficient has its mean, if there is a trend
+    mean: FloatArray  # of the shared parameters
+    deviation: FloatArray  # zero for known parameters
+    middle: float = 0.0  # ln of the reference speed of a trend
 
     @property
     def size(self) -> int:
@@ -136,11 +139,11 @@ class Model:
         return len(SHARED) + self.sides.size - 1
 
     def shared(self, u: FloatArray) -> FloatArray:
-        """Return what all impacts share, from the unknowns."""
+        """Return the parameters shared by all impacts, from the unknowns."""
         return np.asarray(self.mean + self.deviation * u[..., : len(SHARED)])
 
     def path(self, u: FloatArray, scatter: FloatArray) -> Path:
-        """Follow the body from impact to impact; u: g, d; scatter: standard deviation of ln r at an impact, g."""
+        """Return the path from impact to impact; u: g, d; scatter: standard deviation of ln r at an impact, g."""
         count, size = self.sides.size, self.size
         z = self.shared(u)
         unit = np.zeros((len(SHARED), size))
@@ -151,7 +154,7 @@ class Model:
         feasible = np.ones(len(u), dtype=np.bool_)
         trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
         for k, side in enumerate(self.sides):
-            sign = 1.0 - 2.0 * side  # a floor that falls to the right makes a body on its right foot less slender
+            sign = 1.0 - 2.0 * side  # a fall to the right reduces the slenderness angle over the right foot
             alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
             alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
             da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
@@ -181,7 +184,7 @@ class Model:
                 change = change + z[:, TREND] * off
                 dc += off[:, None] * unit[TREND] + z[:, TREND, None] * dx
             speed, dx = speed + change, dx + dc
-        columns: list[Any] = [np.stack(each, axis=1) for each in zip(*kept, strict=True)]
+        columns: list[Any] = [np.stack(column, axis=1) for column in zip(*kept, strict=True)]
         times = np.concatenate([columns[0], time[:, None]], axis=1)
         slopes = np.concatenate([columns[5], dt[:, None]], axis=1)
         kept_of = dict(
@@ -189,9 +192,9 @@ class Model:
         )
         return Path(times=times, time_slopes=slopes, p_slopes=unit[FREQUENCY], feasible=feasible, **kept_of)
 
-    def reached(self, u: FloatArray, scatter: FloatArray, times: FloatArray) -> FloatArray:
-        """Return unknowns with which impacts come at such times, what all impacts share being that of u."""
-        z, found = self.shared(u), u.copy()
+    def unknowns_at_times(self, u: FloatArray, scatter: FloatArray, times: FloatArray) -> FloatArray:
+        """Return unknowns with impacts at given times and the shared parameters of u."""
+        z, unknowns = self.shared(u), u.copy()
         sign = 1.0 - 2.0 * self.sides
         alone = np.array(self.alpha)[self.sides] * np.exp(z[:, SLENDERNESS, None])
         alpha = np.clip(alone - sign * z[:, TILT, None], 1e-3, _STEEPEST)
@@ -201,42 +204,42 @@ class Model:
         speeds = np.log(y * p * overturning_speed(alpha)) + 0.5 * loss
         mean = z[:, MEAN, None] - sign[:-1] * z[:, HALF, None] + z[:, TREND, None] * (speeds[:, :-1] - self.middle)
         draws = np.diff(speeds) - mean + loss[:, :-1]
-        found[:, len(SHARED) :] = draws / np.maximum(scatter, 1e-300)[:, None]
-        found[:, START] = (times[:, 0] - self.mean[START]) / self.deviation[START]
-        found[:, SPEED] = (speeds[:, 0] - self.mean[SPEED]) / self.deviation[SPEED]
-        return found
+        unknowns[:, len(SHARED) :] = draws / np.maximum(scatter, 1e-300)[:, None]
+        unknowns[:, START] = (times[:, 0] - self.mean[START]) / self.deviation[START]
+        unknowns[:, SPEED] = (speeds[:, 0] - self.mean[SPEED]) / self.deviation[SPEED]
+        return unknowns
 
 
 def _damped(
     y: FloatArray, dy: FloatArray, ratio: FloatArray, unit: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Take y from the beginning to the mean of a half cycle, with the slopes of ln y; and the loss, with its slopes."""
-    each, slope = viscous_loss(y)
-    dy = (1.0 - 0.5 * ratio * slope)[:, None] * dy - 0.5 * each[:, None] * unit
-    y = y * np.exp(-0.5 * ratio * each)
-    each, slope = viscous_loss(y)
-    return y, dy, ratio * each, each[:, None] * unit + (ratio * slope)[:, None] * dy
+    """Return y at the middle of a half cycle with the slopes of ln y, and the loss with its slopes."""
+    loss, slope = viscous_loss(y)
+    dy = (1.0 - 0.5 * ratio * slope)[:, None] * dy - 0.5 * loss[:, None] * unit
+    y = y * np.exp(-0.5 * ratio * loss)
+    loss, slope = viscous_loss(y)
+    return y, dy, ratio * loss, loss[:, None] * unit + (ratio * slope)[:, None] * dy
 
 
 class Observer(Protocol):
-    """What is seen of a path."""
+    """Measured quantities of a path."""
 
     @property
     def count(self) -> int:
-        """Independent numbers."""
+        """Number of independent values."""
         ...
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
-        """Return measured less computed values, g, m, and slopes of the computed ones, g, m, d."""
+        """Return measured minus computed values, g, m, and slopes of the computed ones, g, m, d."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class Clicks:
-    """Times of impacts, of which some may be missing."""
+    """Times of impacts; some impacts may be missing."""
 
     measured: FloatArray
-    impacts: IntArray  # which impact each of them is
+    impacts: IntArray  # impact number of each time
 
     @property
     def count(self) -> int:
@@ -244,7 +247,7 @@ class Clicks:
         return self.measured.size
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
-        """Measured less computed times."""
+        """Return measured minus computed times, with slopes of the computed ones."""
         return self.measured - path.times[:, self.impacts], path.time_slopes[:, self.impacts]
 
 
@@ -252,9 +255,9 @@ class Clicks:
 class Laplace:
     """The posterior for each pair of scatter and noise, as a normal distribution of the unknowns."""
 
-    u: FloatArray  # g, d: where it is largest
+    u: FloatArray  # g, d: at the maximum
     covariance: FloatArray  # g, d, d
-    evidence: FloatArray  # g: ln of the probability density of what was measured
+    evidence: FloatArray  # g: ln of the probability density of the measurement
     residuals: FloatArray  # g, m
     converged: BoolArray  # g
 
@@ -264,19 +267,19 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
     u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
     damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
-    for taken in range(_STEPS):
-        if taken == _PATIENCE:  # what is far behind by then weighs nothing
+    for iteration in range(_STEPS):
+        if iteration == _PATIENCE:  # unlikely nodes have a negligible weight
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
-        state = (u[active], *(part[active] for part in best))
-        tried, found = _stepped(model, observer, scatter[active], noise[active], state, damping[active])
+        state = (u[active], *(values[active] for values in best))
+        tried, stepped = _stepped(model, observer, scatter[active], noise[active], state, damping[active])
         value = best[0][active]
-        better = found[0] <= value
-        for old, new in zip(best, found, strict=True):
+        better = stepped[0] <= value
+        for old, new in zip(best, stepped, strict=True):
             old[active[better]] = new[better]
         u[active[better]] = tried[better]
-        # a damped step hardly moves what the prior alone determines
-        done = (np.abs(value - found[0]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
+        # a damped step hardly changes parameters without data
+        done = (np.abs(value - stepped[0]) < _CLOSE * (1.0 + _CLOSE * value)) & (damping[active] == 0.0)
         eased = np.where(damping[active] > 0.1, 0.1 * damping[active], 0.0)
         damping[active] = np.where(better, eased, np.maximum(10.0 * damping[active], 0.1))
         converged[active[done]] = True
@@ -284,7 +287,7 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
         if not active.size:
             break
     value, residual, slopes, *_ = best
-    # of the matrix whose square the Hessian is: what the prior alone determines keeps its digits
+    # root of the Hessian: parameters without data keep their digits
     eye = np.broadcast_to(np.eye(model.size), (len(u), model.size, model.size))
     root = np.linalg.qr(np.concatenate([slopes, eye], axis=1), mode="r")
     half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
@@ -301,41 +304,39 @@ def _stepped(
     state: tuple[FloatArray, ...],
     damping: FloatArray,
 ) -> tuple[FloatArray, tuple[FloatArray, ...]]:
-    """Return the better of a straight and a bent step for each node, and the objective there."""
+    """Return the better of a straight and a curved step for each node, and the objective at its end."""
     u, value, residual, slopes, times, time_slopes = state
     turned, eye = slopes.transpose(0, 2, 1), np.eye(model.size)
-    parts = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
-    hessian = eye + sum(turned[:, :, part] @ slopes[:, part] for part in parts)  # Eq. 271
+    blocks = [slice(k, k + _PART) for k in range(0, residual.shape[1], _PART)]
+    hessian = eye + sum(turned[:, :, block] @ slopes[:, block] for block in blocks)  # Eq. 271
     matrix = hessian + damping[:, None, None] * eye + _ROUNDING * eye * np.einsum("gii->gi", hessian)[:, None, :]
     step = np.linalg.solve(matrix, turned @ residual[..., None] - u[..., None])
     tried = u + step[..., 0]
-    found = _objective(model, observer, scatter, noise, tried)
-    again = np.flatnonzero((scatter > 0.0) | (found[0] > value))
+    straight = _objective(model, observer, scatter, noise, tried)
+    again = np.flatnonzero((scatter > 0.0) | (straight[0] > value))
     bent, has_draws = tried[again], scatter[again] > 0.0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        # times are known far better than speeds: what changes along the step is either linear in u or in them
+        # times are far more accurate than speeds: the change along the step is linear in u or in the times
         goal = (times + (time_slopes @ step)[..., 0])[again][has_draws]
-        bent[has_draws] = model.reached(bent[has_draws], scatter[again][has_draws], goal)
-    # without draws: a second step with the slopes of the first, in its valley
+        bent[has_draws] = model.unknowns_at_times(bent[has_draws], scatter[again][has_draws], goal)
+    # without draws: a second step with the slopes of the first
     fixed = again[~has_draws]
-    bent[~has_draws] += np.linalg.solve(matrix[fixed], (turned @ found[1][..., None])[fixed] - tried[fixed][..., None])[
-        ..., 0
-    ]
+    bent[~has_draws] += np.linalg.solve(
+        matrix[fixed], (turned @ straight[1][..., None])[fixed] - tried[fixed][..., None]
+    )[..., 0]
     at_bent = _objective(model, observer, scatter[again], noise[again], bent)
-    better = at_bent[0] < found[0][again]
+    better = at_bent[0] < straight[0][again]
     tried[again[better]] = bent[better]
-    for straight_part, bent_part in zip(found, at_bent, strict=True):
+    for straight_part, bent_part in zip(straight, at_bent, strict=True):
         straight_part[again[better]] = bent_part[better]
-    return tried, found
+    return tried, straight
 
 
 def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Minus twice ln of the posterior, residuals and slopes over the noise, times of impacts and their slopes."""
-    with np.errstate(
-        over="ignore", invalid="ignore", divide="ignore"
-    ):  # far from the maximum; such a step is not taken
+    """Return -2 ln of the posterior, residuals and slopes over the noise, times of impacts and their slopes."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # far from the maximum; the step is rejected
         path = model.path(u, scatter)
         residual, slopes = observer.residuals(path)
         residual = residual / noise[:, None]

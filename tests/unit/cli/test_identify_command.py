@@ -117,10 +117,10 @@ def test_rotations_need_what_they_say(printed, refuses, tmp_path):
     lines = (f"{t:.4f},{u:.4f},1" for t, u in zip(time, moved, strict=True))
     path.write_text("\n".join(["time [s],top,other", *lines]), "utf-8")
     column = ("--set", "measurement.column=top")
-    refuses((path, *SIZE), "say --set measurement.column= one of")
-    refuses((path, *SIZE, *column), "or give --set measurement.unit=")
+    refuses((path, *SIZE), "add --set measurement.column= with one of")
+    refuses((path, *SIZE, *column), "or use --set measurement.unit=")
     unit = (*column, "--set", "measurement.unit=mm")
-    refuses((path, *SIZE, *unit), "give --set measurement.height= of the sensor [m]")
+    refuses((path, *SIZE, *unit), "--set measurement.height= of the sensor [m] is missing")
     page = printed(path, *SIZE, *unit, "--set", "measurement.height=0.3", "--output", tmp_path / "laser.png")
     low, high = (float(word) for word in page.partition("(")[2].partition(")")[0].split(" to "))
     assert low < 0.9 < high < low + 0.02
@@ -169,8 +169,8 @@ def test_a_bad_file_touches_no_other(answered, printed, folder, rocked):
     found = answered(folder)
     by_name = {row["trial"]: row for row in found["trials"]}
     assert list(by_name) == ["clapping.wav", "damaged.wav", "phone.wav", *(f"times_{k}.csv" for k in range(3))]
-    assert "this is no sound of a rocking body" in by_name["clapping.wav"]["refused"]
-    assert "its header states" in by_name["damaged.wav"]["refused"]
+    assert "not the sound of a rocking body" in by_name["clapping.wav"]["refused"]
+    assert "the header states" in by_name["damaged.wav"]["refused"]
     assert by_name["damaged.wav"]["coefficient"] is None
     alone = identify(read_measurement(folder / "times_1.csv"), BLOCK)
     assert by_name["times_1.csv"]["coefficient_high"] == alone.mean.high
@@ -178,7 +178,7 @@ def test_a_bad_file_touches_no_other(answered, printed, folder, rocked):
     assert found["verdict"].endswith("%.")
     page = printed(folder)
     assert "4 of 6 trials" in page
-    assert "! clapping.wav: this is no sound" in page
+    assert "! clapping.wav: not the sound" in page
 
 
 @pytest.mark.verifies("damage", "a run that is interrupted, and a table that is cut off", room="doors")
@@ -299,7 +299,7 @@ def test_a_video_is_one_command(printed, refuses, tmp_path):
     sizes = ("--width", case["body"].width, "--height", case["body"].height)
     page = printed(path, *sizes, "--set", "measurement.frame_rate=30", "--set", "identify.size_error=0.02")
     assert "The coefficient of restitution is 0." in page
-    assert "rotations 1.5 % too small" in " ".join(page.split())
+    assert "reduces rotations by 1.5 %" in " ".join(page.split())
     refuses((path, *sizes, "--set", "measurement.region=[1,2]"), "region must be four numbers")
 
 

@@ -255,7 +255,7 @@ REFUSED = {
         "times.csv --set identify.clock=abc": "identify.clock must be a number, or a value and",
         "times.csv SMALL --set identify.clock=[0,nan]": "a value and its standard deviation, got [0, nan].\n",
         "times.csv SMALL --motion PULSE": "(RotationSeries), got times of impacts\n",
-        "times.csv --width 0.03 --height 0.12": "sizes of the body, then try --set identify.trend=true",
+        "times.csv --width 0.03 --height 0.12": "sizes of the body, then use --set identify.trend=true",
         "times.csv SMALL --set identify.tlt=0": "did you mean tilt",
         "times.csv SMALL --set measurement.kind=smell": "kind must be",
         "times.csv --width 1": "No complete body",

@@ -20,7 +20,7 @@ from rocking.identification.series import _peaks
 
 pytestmark = pytest.mark.verifies(room="evidence")
 BODY = rk.Block(width=0.2, height=1.0, mass=300.0, centre=(0.106, 0.48))
-KNOWN = Knowledge.of(BODY, 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
+KNOWN = Knowledge.checked(BODY, 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
 
 
 def lawful(count, ln_r=(-0.12, -0.12), y=0.8, p=3.0):
@@ -88,7 +88,7 @@ def test_unknowns_lead_to_the_times_from_which_they_were_found():
     start = u.copy()
     start[:, len(state_space.SHARED) :] = 0.0
     start[:, [state_space.START, state_space.SPEED]] = 0.0
-    np.testing.assert_allclose(model.reached(start, scatter, times), u, atol=1e-7)
+    np.testing.assert_allclose(model.unknowns_at_times(start, scatter, times), u, atol=1e-7)
 
 
 def test_the_bound_of_two_peaks_is_error_propagation():
@@ -127,7 +127,7 @@ def test_an_impact_loses_energy_a_priori():
 def shaken():
     """What is known of a body that rocks under a strong motion, and the first fit of its half cycles."""
     case = identification_forced.shaken(0)
-    known = Knowledge.of(case["body"], 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
+    known = Knowledge.checked(case["body"], 0.02, (0.002, 0.004), 0.05, trend=True, damping=False, first="right")
     problem = forced_start.problem_of(case["series"], known, case["motion"], (case["clock"], 0.01))
     problem, fit, _ = forced_start.first_fit(problem, problem.mean)
     return replace(problem, middle=-0.5), fit.x
@@ -162,7 +162,7 @@ def test_slopes_of_a_shaken_body_are_its_differences(shaken, friction, within):
         problem, x = forced_friction.sliding(problem, math.log(friction), 0.5), x.copy()
         x[forced_friction.FRICTION] = math.log(friction)
     slopes, step = dense(problem, problem.terms(x))[1], 1e-7
-    assert problem.seen.joined.sum() > 5
+    assert problem.excursions.joined.sum() > 5
     for n in range(x.size):
         ends = []
         for moved in (x.copy(), x.copy()):
@@ -176,7 +176,7 @@ def test_slopes_of_a_shaken_body_are_its_differences(shaken, friction, within):
 def test_the_frequency_parameter_is_that_of_the_sizes_that_were_found():
     """p of widths and heights at the fit, by R over each foot: p falls as 1 / sqrt(R) where the body is larger."""
     case = identification_forced.shaken(0)
-    known = Knowledge.of(case["body"], 0.02, (0.002, 0.004), 0.05, trend=False, damping=False, first="right")
+    known = Knowledge.checked(case["body"], 0.02, (0.002, 0.004), 0.05, trend=False, damping=False, first="right")
     found = forced.fit_forced(case["series"], known, case["motion"], (case["clock"], 0.01))
     unknown = IntervalEstimate(math.nan, math.nan, math.nan)
     answer = forced.answer(found, unknown, (), found)
@@ -195,7 +195,7 @@ def test_between_steps_the_energy_is_kept():
     motion = rk.GroundMotion(np.zeros(400), 0.01)
     state = np.zeros(1), np.zeros(1), np.array([0.5])
     body = np.array([0.2]), np.array([3.5]), np.array([0.55])
-    coarse = Flights.of(motion, state, body, np.ones(1), np.array([0.6]))
+    coarse = Flights.integrated(motion, state, body, np.ones(1), np.array([0.6]))
     count, which = len(coarse.rotation) - 1, np.zeros(len(coarse.rotation) - 1, dtype=np.int64)
     h = coarse.step[0]
     rotation, velocity = coarse.at(h * np.arange(1, count + 1) * (1.0 - 1e-12), which)
@@ -223,7 +223,7 @@ def test_noise_about_a_fit_has_its_degrees_of_freedom():
     """Lines through 15 samples of each of 4 half cycles take 8 of 60 degrees: the variance is the sum over 52."""
     random, line = np.random.default_rng(4), np.column_stack([np.ones(15), np.arange(15.0)])
     off = np.eye(15) - line @ np.linalg.pinv(line)
-    problem = SimpleNamespace(kinds=(0,), seen=SimpleNamespace(sign=np.ones(4)))
+    problem = SimpleNamespace(kinds=(0,), excursions=SimpleNamespace(sign=np.ones(4)))
     found = []
     for _ in range(4000):
         rest = (random.normal(size=(4, 15)) @ off).ravel()

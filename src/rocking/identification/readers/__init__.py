@@ -1,4 +1,4 @@
-"""Reading measurements of free rocking: sounds, and tables of what a sensor or a list of times holds."""
+"""Readers of measurements of free rocking: sounds, videos, and tables of sensors or times."""
 
 from rocking.identification.readers.reader import KINDS, read_measurement
 

@@ -1,4 +1,4 @@
-"""Clicks in a sound: where its power rises suddenly, in the frequencies in which clicks stand out of the noise."""
+"""Clicks in a sound: sudden increases of its power, in the frequencies with the best contrast to the noise."""
 
 from dataclasses import dataclass
 
@@ -15,10 +15,10 @@ _BLOCK = 2.0
 
 
 def without_hum(sound: FloatArray, rate: float) -> FloatArray:
-    """Return a sound less the multiples of 50 or 60 Hz that fit it best, block by block.
+    """Return a sound without the best-fitting multiples of 50 or 60 Hz, block by block.
 
-    A comb filter would repeat every click, and narrow filters would ring for a second; a least-squares fit of some
-    fifty sines to two seconds takes less than one part in a hundred of a click.
+    A comb filter repeats every click, and narrow filters ring for a second. A least-squares fit of about fifty sines to
+    two seconds removes less than 1 % of a click.
     """
     size = next_fast_len(sound.size, real=True)
     spectrum = rfft(sound, size)
@@ -41,14 +41,14 @@ def _hum(sound: FloatArray, rate: float) -> FloatArray:
     window = np.hanning(size + 2)[1:-1]
     hum, weight = np.zeros(sound.size), np.zeros(sound.size)
     for first in [*range(0, sound.size - size, size // 2), sound.size - size]:
-        part = slice(first, first + size)
-        hum[part] += window * (sines @ (sines.T @ sound[part]))
-        weight[part] += window
+        block = slice(first, first + size)
+        hum[block] += window * (sines @ (sines.T @ sound[block]))
+        weight[block] += window
     return np.asarray(hum / weight)
 
 
 def _base(sound: FloatArray, rate: float) -> float:
-    """Return the frequency near 50 or 60 Hz whose multiples stand out most [Hz]."""
+    """Return the frequency near 50 or 60 Hz with the strongest multiples [Hz]."""
     size = next_fast_len(4 * sound.size, real=True)
     power = np.abs(rfft(sound * np.hanning(sound.size), size)) ** 2
     width = rate / size
@@ -60,7 +60,7 @@ def _base(sound: FloatArray, rate: float) -> float:
 
 
 STEP = 5e-4
-"""Step at which the power of a sound is looked at [s]."""
+"""Time step of the power of a sound [s]."""
 
 _SPECTRUM = 0.023
 _AFTER, _BEFORE, _GAP = 8, (12, 40), 2
@@ -74,21 +74,21 @@ _LOWEST = 150.0
 class HeardClicks:
     """Clicks of a sound, in their order."""
 
-    times: FloatArray  # roughly, to some milliseconds [s]
-    contrasts: FloatArray  # power behind over power before
-    strengths: FloatArray  # power behind less power before, over that of the noise
-    sound: FloatArray  # less its hum
+    times: FloatArray  # accurate to some milliseconds [s]
+    contrasts: FloatArray  # power after over power before
+    strengths: FloatArray  # power after minus power before, over the noise power
+    sound: FloatArray  # without hum
 
 
 def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
-    """Return the clicks of a sound, faint ones too."""
+    """Return the clicks of a sound, including faint ones."""
     sound = without_hum(sound, rate)
     filtered = emphasised(sound, rate)
     hop = max(1, round(rate * STEP))
     power = (filtered[: filtered.size // hop * hop].reshape(-1, hop) ** 2).mean(axis=1)
     floor = np.median(power) + np.finfo(float).tiny
     behind = _means(power, 0, _AFTER)
-    # what went before fades, so the louder of a short and a longer while masks echoes and not only noise
+    # the preceding sound decays: the larger mean of a short and a long interval also masks echoes
     before = np.maximum(_means(power, -_BEFORE[0], -_GAP), _means(power, -_BEFORE[1], -_GAP))
     contrast = behind / np.maximum(before, floor)
     at = _peaks(contrast, int(_DEAD / STEP))
@@ -96,10 +96,10 @@ def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
 
 
 def emphasised(sound: FloatArray, rate: float) -> FloatArray:
-    """Return a sound through the filter that shows bursts in noise best: Eckart, Scripps Report 52-11 (1952).
+    """Return a sound after the optimal filter for bursts in noise: Eckart, Scripps Report 52-11 (1952).
 
-    Its gain is sqrt(S) / N by frequency, N the power of the noise, S what is there beyond it. The noise is that of the
-    quietest quarter of the moments: a variable of two degrees of freedom lies below .288 of its mean for so long.
+    Its gain is sqrt(S) / N by frequency, N the power of the noise, S the power beyond it. The noise is that of the
+    quietest quarter of the windows: a variable with two degrees of freedom is below 0.288 of its mean there.
     """
     size, noise, power = spectra(sound, rate)
     beyond = smooth(np.maximum(power.mean(axis=0) - noise, 0.0), 9)
@@ -107,7 +107,7 @@ def emphasised(sound: FloatArray, rate: float) -> FloatArray:
 
 
 def spectra(sound: FloatArray, rate: float) -> tuple[int, FloatArray, FloatArray]:
-    """Return the size of windows, the power of noise by frequency, and that of all windows, half over each other."""
+    """Return the size of windows, the noise power by frequency, and the power of windows with 50 % overlap."""
     size = max(64, round(_SPECTRUM * rate))
     windows = sliding_window_view(sound, size)[:: size // 2]
     power = np.abs(rfft(windows * np.hanning(size))) ** 2
@@ -116,9 +116,9 @@ def spectra(sound: FloatArray, rate: float) -> tuple[int, FloatArray, FloatArray
 
 
 def causal(gain: FloatArray, rate: float, size: int) -> FloatArray:
-    """Return the impulse response of a gain that begins at once: of minimum phase, by the cepstrum; rumble is left out.
+    """Return the impulse response of a gain with minimum phase, by the cepstrum, without low frequencies.
 
-    Nothing comes before its cause then, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal Processing.
+    Nothing precedes its cause then, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal Processing.
     """
     frequency = np.arange(gain.size) * rate / size
     gain = gain / (1.0 + (_LOWEST / np.maximum(frequency, 1e-9)) ** 8)
@@ -146,13 +146,13 @@ def smooth(values: FloatArray, width: int) -> FloatArray:
 
 
 def _peaks(contrast: FloatArray, apart: int) -> IntArray:
-    """Return where the contrast peaks, the higher of any two that are too close together."""
+    """Return the peaks of the contrast; of two close peaks the higher one."""
     inner = (contrast[1:-1] > contrast[:-2]) & (contrast[1:-1] >= contrast[2:]) & (contrast[1:-1] > _FAINTEST)
-    found = np.flatnonzero(inner) + 1
-    taken = np.zeros(contrast.size, dtype=bool)
+    peaks = np.flatnonzero(inner) + 1
+    is_near_peak = np.zeros(contrast.size, dtype=bool)
     kept = []
-    for place in found[np.argsort(-contrast[found])][:_MOST]:
-        if not taken[place]:
-            kept.append(place)
-            taken[max(0, place - apart) : place + apart + 1] = True
+    for peak in peaks[np.argsort(-contrast[peaks])][:_MOST]:
+        if not is_near_peak[peak]:
+            kept.append(peak)
+            is_near_peak[max(0, peak - apart) : peak + apart + 1] = True
     return np.sort(np.array(kept, dtype=np.int64))

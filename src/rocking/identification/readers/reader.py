@@ -1,4 +1,4 @@
-"""Read a measurement from a file: the suffix says what it is, and columns and units are never guessed."""
+"""The function `read_measurement`: the extension determines the kind of file; columns and units are never guessed."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -8,8 +8,8 @@ from rocking.errors import MeasurementError, RecordError, RockingError
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.readers.columns import ReaderOptions, impact_list, motion_series
 from rocking.identification.readers.recording import COMPRESSED, read_compressed, read_wav
-from rocking.identification.readers.sound import impacts_heard, refuse_sound
-from rocking.identification.readers.video import VIDEOS, rotation_seen
+from rocking.identification.readers.sound import impacts_from_sound, undecoded_sound
+from rocking.identification.readers.video import VIDEOS, rotation_from_video
 from rocking.messages import Option
 from rocking.motions.formats.record import Source
 
@@ -22,13 +22,13 @@ _TABLES = (*TEXTS, ".xlsx")
 
 SOUNDS = (".wav", *COMPRESSED, *_NOT_DECODED)
 ENDINGS = (*SOUNDS, *VIDEOS, *_TABLES)
-"""Of files that hold a sound, or any measurement, or seem to."""
+"""Extensions of measurement files."""
 
 KINDS = ("sound", "video", "times", "rotation", "displacement", "angular velocity", "acceleration")
-"""What a file may hold."""
+"""Kinds of measurements in a file."""
 
 
-def read_measurement(  # noqa: PLR0913 - what may be said of a file
+def read_measurement(  # noqa: PLR0913 - options of a file
     path: str | Path,
     *,
     kind: str | None = None,
@@ -40,7 +40,7 @@ def read_measurement(  # noqa: PLR0913 - what may be said of a file
     region: Sequence[float] | None = None,
     frame_rate: float | None = None,
 ) -> Measurement:
-    r"""Return what was measured of a body that rocks freely: the times of its impacts, or how it turned.
+    r"""Return the measurement of a freely rocking body: times of its impacts, or its rotation.
 
     Parameters
     ----------
@@ -48,34 +48,34 @@ def read_measurement(  # noqa: PLR0913 - what may be said of a file
         A sound (.wav; .flac, .ogg, .mp3 with soundfile), a video (.mp4, .mov, .avi, .mkv, .webm with OpenCV), or a
         table with a line of names (.csv, .tsv, .txt, .xlsx).
     kind : str, optional
-        One of `KINDS`: what the file holds. A sound or a video needs none, nor does a table whose column says so by its
-        unit: rad and deg are a rotation, rad/s and deg/s an angular velocity, lengths a displacement, g and m/s2 an
-        acceleration; the times of impacts are asked for by "times".
+        One of `KINDS`. Default for a table: from the unit of its column. The units rad and deg are a rotation, rad/s
+        and deg/s an angular velocity, lengths a displacement, g and m/s2 an acceleration. "times" selects times of
+        impacts.
     column, unit : str, optional
-        Name of the column and its unit, where the table has several beside the time or states no unit in brackets.
+        Name of the column and its unit, if the table has several columns or contains no unit in brackets.
     time_column, time_unit : str, optional
-        The same for the times, "s" or "ms"; if not given, the column that is called time, with its unit.
+        Name of the column of times and its unit, "s" or "ms". Default: the column named time.
     height : float, optional
         Height of the sensor above the base, for a displacement or an acceleration, both positive to the right [m].
     region : sequence of float, optional
-        Of a video, where the body is at rest: left, top, width, height; if not given, what moves is followed [pixels].
+        For a video, the body at rest: left, top, width, height. Default: the moving region [pixels].
     frame_rate : float, optional
-        Of a video that is played more slowly than it was taken, with which it was taken [1/s].
+        Frame rate of the camera, for a video in slow motion [1/s].
 
     Returns
     -------
     ImpactTimes or RotationSeries
-        With its source, and a sentence for each doubt.
+        The measurement, with source and doubts.
 
     Raises
     ------
     MeasurementError
-        If the file is missing, damaged or of another kind, a column or unit must be named, or what it holds is no
-        rocking.
+        If the file is missing, damaged or of another kind, if a column or unit must be named, or if the measurement
+        contains no rocking.
     InvalidValueError
-        If there is no kind or unit of that name, or a value is outside its range.
+        If a kind or unit is unknown, or a value is outside its range.
     MissingExtraError
-        If soundfile, OpenCV or openpyxl is needed and not installed.
+        If soundfile, OpenCV or openpyxl is required and not installed.
 
     Examples
     --------
@@ -92,59 +92,62 @@ def read_measurement(  # noqa: PLR0913 - what may be said of a file
     options = ReaderOptions(kind, column, unit, time_column, time_unit, height, region, frame_rate)
     try:
         if path.suffix.lower() in VIDEOS:
-            return _filmed(path, options)
+            return _read_video(path, options)
         if (region, frame_rate) != (None, None):
             raise MeasurementError(
-                "is no video, and takes no {region} or {rate}",
+                "is not a video: {region} and {rate} do not apply",
                 region=Option("measurement.region"), rate=Option("measurement.frame_rate"),
             ).at(path.name)  # fmt: skip
         source = Source.of_path(path)
         return _reader(path, kind)(source, options)
-    except RecordError as error:  # from what reads the columns of ground motions too
+    except RecordError as error:  # the reader of columns also reads ground motions
         raise error.copied(MeasurementError) from error
     except RockingError:
         raise
-    except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
+    except Exception as error:  # any error of a reader is a refusal; the original error stays chained
         raise MeasurementError(
-            "cannot be read ({type}: {reason:.120})", type=type(error).__name__, reason=str(error), hint="damaged?"
+            "cannot be read ({type}: {reason:.120})",
+            type=type(error).__name__,
+            reason=str(error),
+            hint="the file may be damaged",
         ).at(path.name) from error
 
 
 def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], Measurement]:
     suffix = path.suffix.lower()
     if suffix in _NOT_DECODED:
-        raise refuse_sound(path.name, suffix)
+        raise undecoded_sound(path.name, suffix)
     sound = suffix == ".wav" or suffix in COMPRESSED
     if sound != (kind == "sound") and kind is not None:
         raise MeasurementError(
-            "is a sound by its ending, kind={kind!r} was asked for"
+            "has the extension of a sound, but kind={kind!r}"
             if sound
-            else "is no sound by its ending, kind={kind!r} was asked for",
+            else "does not have the extension of a sound, but kind={kind!r}",
             kind=kind,
         ).at(path.name)
     if sound:
-        return _heard
+        return _read_sound
     if suffix not in _TABLES:
         raise MeasurementError(
             "the name must end in .wav, {extensions}", extensions=", ".join((*COMPRESSED, *VIDEOS, *_TABLES))
         ).at(path.name)
     if kind == "video":
-        raise MeasurementError("is no video by its ending, kind='video' was asked for").at(path.name)
+        raise MeasurementError("does not have the extension of a video, but kind='video'").at(path.name)
     return impact_list if kind == "times" else motion_series
 
 
-def _filmed(path: Path, options: ReaderOptions) -> RotationSeries:
+def _read_video(path: Path, options: ReaderOptions) -> RotationSeries:
     if options.kind not in (None, "video"):
         raise MeasurementError(
-            "is a video by its ending, kind={kind!r} was asked for", kind=options.kind, hint="save its sound as WAV"
+            "has the extension of a video, but kind={kind!r}", kind=options.kind, hint="save its sound as WAV"
         ).at(path.name)
-    if given := options.names("region", "frame_rate"):
-        raise MeasurementError("a video takes no {options}: these are for tables", options=given).at(path.name)
-    return rotation_seen(path, options.region, options.frame_rate)
+    if stated := options.names("region", "frame_rate"):
+        raise MeasurementError("{options}: for tables only, not for a video", options=stated).at(path.name)
+    return rotation_from_video(path, options.region, options.frame_rate)
 
 
-def _heard(source: Source, options: ReaderOptions) -> ImpactTimes:
-    if given := options.names():
-        raise MeasurementError("a sound takes no {options}: these are for tables", options=given).at(source.name)
+def _read_sound(source: Source, options: ReaderOptions) -> ImpactTimes:
+    if stated := options.names():
+        raise MeasurementError("{options}: for tables only, not for a sound", options=stated).at(source.name)
     wav = source.name.lower().endswith(".wav")
-    return impacts_heard((read_wav if wav else read_compressed)(source.content, source.name))
+    return impacts_from_sound((read_wav if wav else read_compressed)(source.content, source.name))

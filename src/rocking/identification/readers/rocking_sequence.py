@@ -1,8 +1,8 @@
-"""Which of many clicks are the impacts of one rocking body: the physics of their times, and the search for them.
+"""Detection of the impacts of one rocking body among many clicks, by the law of their times.
 
-Of a slender body the time between impacts is T_n = (2/p) atanh y_n, and y_n falls by the coefficient of restitution at
-each: y_(n+1) = r y_n (Housner 1963). Two sides that differ and a tilted floor make y_n alternate, but not its ratio to
-the last interval on the same side: y_(n+2) = r_left r_right y_n.
+The time between impacts of a slender body is T_n = (2/p) atanh y_n, and y_n decreases by the coefficient of
+restitution: y_(n+1) = r y_n (Housner 1963). With unequal sides or a tilted floor y_n alternates, but its ratio to the
+last interval on the same side does not: y_(n+2) = r_left r_right y_n.
 """
 
 from dataclasses import dataclass, field
@@ -12,35 +12,35 @@ import numpy as np
 from rocking.conventions import BoolArray, FloatArray, IntArray
 
 _MODERATE = 0.6
-"""Value of y of the longest interval where p is not known."""
+"""Value of y of the longest interval for an unknown p."""
 
 _FIRST_FALLS = (0.2, 0.45, 0.65, 0.8, 0.9, 0.96)
-"""Values of y of the first interval that are tried: .2 is the limit of small rotations."""
+"""Tried values of y of the first interval: 0.2 is the limit of small rotations."""
 
 _FALL, _FALL_SPREAD = -0.22, 0.12
-"""Mean and standard deviation of ln(r_left r_right) before anything is known: r from .8 to .99."""
+"""Prior mean and standard deviation of ln(r_left r_right): r from 0.8 to 0.99."""
 
 SCATTER = 0.035
-"""Standard deviation of ln(y_(n+2) / y_n) about its mean: each impact takes its own share, 1 to 3 %."""
+"""Standard deviation of ln(y_(n+2) / y_n) about its mean: the coefficient scatters by 1 to 3 %."""
 
 _LAW_SCATTER = 0.015
-"""Standard deviation of ln(y_(n+1) / y_n), where sequences are compared."""
+"""Standard deviation of ln(y_(n+1) / y_n) in the comparison of sequences."""
 
 _FADING_SCATTER = 1.0
-"""Standard deviation of the logarithm of the power of a click about that of the last one on the same side, faded."""
+"""Standard deviation of the log power of a click about the decayed one of the last click on the same side."""
 
 _INTERVALS = (0.02, 3.0)
 _RATIOS = (0.5, 1.25)
 _SEEDS, _CLICKS, _MOST = 24, 80, 60
 
 MISSED = -3.0
-"""Logarithm of how likely it is that an impact is not heard."""
+"""Log probability of a missed impact."""
 
 _FEWEST, _SHRUNK, _SHARE = 7, 0.9, 0.7
 _ECHO = 0.1
-"""Power of an echo over that of its impact, at most."""
+"""Largest power of an echo over the power of its impact."""
 _CHANCE = 23.0
-"""Between the scores of seven impacts in quiet rooms, 25.9 at least, and of rain taken for seven, 20.6."""
+"""Between the scores of seven impacts in quiet rooms (at least 25.9) and of rain (20.6)."""
 _LARGEST_SCATTER, _LARGEST_ALTERNATION, _SLOWEST_FALL = 0.05, 0.25, 0.985
 
 
@@ -48,9 +48,9 @@ _LARGEST_SCATTER, _LARGEST_ALTERNATION, _SLOWEST_FALL = 0.05, 0.25, 0.985
 class RockingSequence:
     """Impacts among clicks."""
 
-    members: IntArray  # which of the clicks
-    orders: IntArray  # the number of each in the sequence; a number that is left out was missed
-    score: float  # natural logarithm of how much likelier than chance
+    members: IntArray  # indices of the clicks
+    orders: IntArray  # number of each in the sequence; an absent number is a missed impact
+    score: float  # log likelihood ratio to chance
 
 
 def half_cycle_fall(intervals: FloatArray, half_p: FloatArray) -> FloatArray:
@@ -66,14 +66,14 @@ def half_cycle(fall: FloatArray, half_p: FloatArray) -> FloatArray:
 def find_sequence(
     times: FloatArray, evidence: FloatArray, strengths: FloatArray, length: float
 ) -> RockingSequence | None:
-    """Return the likeliest sequence of impacts among clicks; None if there are no three that could begin one.
+    """Return the most likely sequence of impacts among clicks; None without three clicks that can begin one.
 
-    `evidence` is the logarithm of how much likelier each is as an impact than as noise, times aside; `strengths` are
-    their powers, which fade as the square of y.
+    `evidence` is the log likelihood ratio of impact and noise for each click, without its time. `strengths` are the
+    powers, which decrease as the square of y.
     """
     kept = np.sort(np.argsort(-evidence)[:_CLICKS])
     strongest = np.sort(np.argsort(-evidence[kept])[:_SEEDS])
-    begun = _Beams.of(times[kept], evidence[kept], np.log(strengths[kept]), strongest, kept.size / length)
+    begun = _Beams.started(times[kept], evidence[kept], np.log(strengths[kept]), strongest, kept.size / length)
     if begun is None:
         return None
     for order in range(3, _MOST):
@@ -87,17 +87,17 @@ def find_sequence(
 
 @dataclass(eq=False)
 class _Beams:
-    """Sequences under way, a row each: every three of the strongest clicks, with several y of the first interval."""
+    """Partial sequences in rows: every three of the strongest clicks, with several y of the first interval."""
 
     times: FloatArray
     evidence: FloatArray
-    powers: FloatArray  # their logarithms
+    powers: FloatArray  # log powers
     rate: float
     half_p: FloatArray
     last: FloatArray  # time of the last impact
-    falls: FloatArray  # ln y of the last two intervals
+    falls: FloatArray  # of the last two intervals: ln y
     faded: FloatArray  # logarithm of the power of the last two impacts
-    mean: FloatArray  # of ln(r_left r_right), and its variance
+    mean: FloatArray  # mean of ln(r_left r_right); its variance follows
     variance: FloatArray
     score: FloatArray
     chains: IntArray
@@ -106,10 +106,10 @@ class _Beams:
     missed: IntArray = field(init=False)
 
     @classmethod
-    def of(
+    def started(
         cls, times: FloatArray, evidence: FloatArray, powers: FloatArray, strongest: IntArray, rate: float
     ) -> "_Beams | None":
-        """Begin with every three clicks whose intervals could follow each other."""
+        """Return the sequences of three clicks with possible successive intervals."""
         first, second, third = (
             strongest[places] for places in np.array(np.meshgrid(*3 * [np.arange(strongest.size)])).reshape(3, -1)
         )
@@ -137,12 +137,12 @@ class _Beams:
         )  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Take what is there for the best so far."""
+        """Store the first scores as the best ones."""
         self.best, self.best_order = self.score.copy(), np.full(self.score.size, 2)
         self.missed = np.zeros(self.score.size, dtype=np.int64)
 
     def step(self, order: int) -> bool:
-        """Look for the next impact of every sequence; return whether any goes on."""
+        """Search the next impact of every sequence; return True if any sequence continues."""
         going = self.missed < 2
         if not going.any():
             return False
@@ -152,7 +152,7 @@ class _Beams:
         later = interval > 0.3 * half_cycle(expected, self.half_p)[:, None]
         safe = np.where(later, interval, 1.0)
         fall = half_cycle_fall(safe, self.half_p[:, None])
-        # density of the times at which the next impact is expected, over that of clicks by chance
+        # density of the expected time of the next impact over the density of random clicks
         slope = 2.0 * self.half_p[:, None] / np.sinh(np.minimum(2.0 * self.half_p[:, None] * safe, 50.0))
         surprise = (fall - expected[:, None]) ** 2 / variance[:, None]
         fading = (self.powers - self.faded[:, :1] - 2.0 * self.mean[:, None]) / _FADING_SCATTER
@@ -184,38 +184,38 @@ class _Beams:
 
 @dataclass(frozen=True)
 class Regularity:
-    """How lawful the intervals of a sequence are."""
+    """Deviation of the intervals of a sequence from the law of rocking."""
 
-    fall: float  # coefficient of restitution of both sides together, by the law [-]
+    fall: float  # ratio of successive y, the mean coefficient of both sides [-]
     scatter: float  # of ln y about the law [-]
-    alternation: float  # by how much ln y of the sides differs from their mean [-]
+    alternation: float  # deviation of ln y of each side from the mean [-]
 
 
 def regularity(times: FloatArray, orders: IntArray) -> Regularity:
-    """Return the law that fits intervals best: p and the fall are free, and so are two sides."""
-    whole = np.flatnonzero(np.diff(orders) == 1)
-    intervals, at = np.diff(times)[whole], orders[:-1][whole]
+    """Return the best-fitting law of the intervals; p, the decrease and both sides are free."""
+    adjacent = np.flatnonzero(np.diff(orders) == 1)
+    intervals, at = np.diff(times)[adjacent], orders[:-1][adjacent]
     design = np.column_stack([np.ones(at.size), at, 1.0 - 2.0 * (at % 2)])
     best = Regularity(1.0, np.inf, 0.0)
     for y in np.linspace(0.1, 0.98, 45):
         fall = half_cycle_fall(intervals, np.arctanh(y) / intervals.max())
         terms, *_ = np.linalg.lstsq(design, fall, rcond=None)
-        rest = fall - design @ terms
-        scatter = float(np.sqrt((rest**2).sum() / max(1, at.size - 4)))
+        residuals = fall - design @ terms
+        scatter = float(np.sqrt((residuals**2).sum() / max(1, at.size - 4)))
         if scatter < best.scatter:
             best = Regularity(float(np.exp(terms[1])), scatter, float(abs(terms[2])))
     return best
 
 
 def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return when an impact is expected after others, and the interval before it, by the law at a moderate p.
+    """Return the expected time of an impact after others, and the interval before it, at a moderate p.
 
-    y falls by what the last falls of both sides were, their median. Nan if too few are known.
+    y decreases by the median of the last decreases of both sides. NaN with too few intervals.
     """
-    whole = np.flatnonzero(np.diff(orders) == 1)
-    intervals = np.diff(times)[whole]
-    half_p = np.asarray(np.arctanh(_MODERATE) / intervals.max() if whole.size else np.nan)
-    fall = dict(zip(orders[1:][whole].tolist(), half_cycle_fall(intervals, half_p).tolist(), strict=True))
+    adjacent = np.flatnonzero(np.diff(orders) == 1)
+    intervals = np.diff(times)[adjacent]
+    half_p = np.asarray(np.arctanh(_MODERATE) / intervals.max() if adjacent.size else np.nan)
+    fall = dict(zip(orders[1:][adjacent].tolist(), half_cycle_fall(intervals, half_p).tolist(), strict=True))
     falls = [fall[n] - fall[n - 2] for n in fall if n - 2 in fall]
     at, span = float(times[-1]), np.nan
     for n in range(int(orders[-2:].min()) + 1, order + 1):
@@ -229,14 +229,14 @@ def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float,
 
 
 def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> FloatArray:
-    """Return the squares by which ln(y_(n+1) / y_n) of either side scatters over the usual ones, of times in rows.
+    """Return the squared deviations of ln(y_(n+1) / y_n) over the usual ones, for times in rows.
 
-    Offsets of one side change all its intervals as much; sides that differ and tilts change long ones more than short
-    ones. With `loose` one side may be later or earlier by about that much [s], at no other cost.
+    An offset of one side changes all its intervals equally; unequal sides and tilts change long intervals more than
+    short ones. With `loose` one side may be shifted by about that time [s].
     """
-    whole = np.flatnonzero(np.diff(orders) == 1)
-    pairs = np.flatnonzero(np.diff(whole) == 1)
-    intervals, sign = np.maximum(np.diff(times)[:, whole], 1e-3), 1.0 - 2.0 * (orders[whole] % 2)
+    adjacent = np.flatnonzero(np.diff(orders) == 1)
+    pairs = np.flatnonzero(np.diff(adjacent) == 1)
+    intervals, sign = np.maximum(np.diff(times)[:, adjacent], 1e-3), 1.0 - 2.0 * (orders[adjacent] % 2)
     best = np.full(len(times), np.inf)
     for y in np.linspace(0.1, 0.98, 23):
         half_p = np.arctanh(y) / intervals.max(axis=1, keepdims=True)
@@ -246,35 +246,41 @@ def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> Float
         design[:-1, 0], design[:-1, 1] = 1.0, sign[pairs]
         if loose:
             design[:, 2] = np.append(later, _LAW_SCATTER / loose)
-        rest = change @ (np.eye(pairs.size + 1) - design @ np.linalg.pinv(design))
-        best = np.minimum(best, ((rest / _LAW_SCATTER) ** 2).sum(axis=1))
+        residuals = change @ (np.eye(pairs.size + 1) - design @ np.linalg.pinv(design))
+        best = np.minimum(best, ((residuals / _LAW_SCATTER) ** 2).sum(axis=1))
     return best
 
 
-def why_no_rocking(
-    times: FloatArray, found: RockingSequence, contrasts: FloatArray, strengths: FloatArray
+def rejection_reason(
+    times: FloatArray, sequence: RockingSequence, contrasts: FloatArray, strengths: FloatArray
 ) -> str | None:
-    """Return why a sequence of clicks among others is not that of a rocking body; None if it may be one."""
+    """Return the reason to reject a sequence of clicks; None if it may be the sequence of a rocking body."""
     if times.size < _FEWEST:
-        return f"the longest lawful sequence of clicks has {times.size}, at least {_FEWEST} are needed"
-    lawful = regularity(times, found.orders)
-    if lawful.scatter > _LARGEST_SCATTER:
-        return f"its intervals scatter by {lawful.scatter:.3f} about the law of rocking, more than {_LARGEST_SCATTER}"
-    if lawful.alternation > _LARGEST_ALTERNATION:
         return (
-            f"its intervals alternate by {lawful.alternation:.2f}, more than {_LARGEST_ALTERNATION} that tilts explain"
+            f"the longest sequence of clicks that obeys the law of rocking has {times.size}; at least {_FEWEST} are "
+            "required"
         )
+    lawful = regularity(times, sequence.orders)
+    if lawful.scatter > _LARGEST_SCATTER:
+        return (
+            f"the intervals scatter by {lawful.scatter:.3f} about the law of rocking; at most {_LARGEST_SCATTER} is "
+            "allowed"
+        )
+    if lawful.alternation > _LARGEST_ALTERNATION:
+        return f"the intervals alternate by {lawful.alternation:.2f}; tilts explain at most {_LARGEST_ALTERNATION}"
     if lawful.fall > _SLOWEST_FALL or times[-1] - times[-2] > _SHRUNK * (times[1] - times[0]):
-        return f"its intervals do not shrink (by {lawful.fall:.3f} from one to the next)"
-    mine = strengths[found.members]
-    as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[found.members], 0.25))
-    before = np.searchsorted(found.members, np.arange(strengths.size), side="right")[:, None] - [1, 2]
+        return f"the intervals do not decrease (ratio {lawful.fall:.3f})"
+    mine = strengths[sequence.members]
+    as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[sequence.members], 0.25))
+    before = np.searchsorted(sequence.members, np.arange(strengths.size), side="right")[:, None] - [1, 2]
     last = np.where(before >= 0, mine[np.maximum(before, 0)], 0.0).max(axis=1)
-    as_loud &= strengths >= _ECHO * last  # of the louder foot, if feet are not as loud
-    own = as_loud[found.members].sum()
-    why = None
+    as_loud &= strengths >= _ECHO * last  # of the louder foot
+    own = as_loud[sequence.members].sum()
+    reason = None
     if own < _SHARE * as_loud.sum():
-        why = f"of {as_loud.sum()} clicks as loud as its own a lawful sequence holds {own}"
-    elif found.score < _CHANCE:
-        why = f"its clicks may follow each other by chance (ln {found.score:.1f} against that, at least {_CHANCE:g})"
-    return why
+        reason = f"the sequence contains only {own} of {as_loud.sum()} equally loud clicks"
+    elif sequence.score < _CHANCE:
+        reason = (
+            f"the sequence may be random (log likelihood ratio {sequence.score:.1f}; at least {_CHANCE:g} is required)"
+        )
+    return reason

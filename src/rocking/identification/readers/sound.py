@@ -1,8 +1,8 @@
-"""Times of impacts from their sound; of one foot clicks are alike, so they are laid over each other and picked.
+"""Times of impacts from their sound: clicks of one foot are similar, so they are aligned and averaged.
 
-A faint click alone would be picked late, once it has grown beyond the noise; the mean of all clicks on a foot stands
-out more, and the lags between them come from cross-correlation, to a part of a sample. Clicks of the two feet are not
-alike, but the same modes of the body ring in both, with real factors: see `_agreement`.
+The onset of a single faint click would be detected late, after its growth beyond the noise. The mean of all clicks of a
+foot has a better contrast, and cross-correlation gives the lags to a fraction of a sample. Clicks of both feet differ,
+but they contain the same modes with real factors: see `_agreement`.
 """
 
 from itertools import product
@@ -23,44 +23,44 @@ from rocking.identification.readers.rocking_sequence import (
     find_sequence,
     law_misfit,
     next_impact,
-    why_no_rocking,
+    rejection_reason,
 )
 
 _BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
 _QUIET, _RINGING = 0.012, 0.100
 _SILENT, _FROM, _EARLIEST, _LATEST, _UNTIL, _RING = -0.026, -0.014, -0.010, 0.004, 0.006, 0.030
-"""Where noise is measured, what is looked at, where a click may begin, how far it rings, about its place [s]."""
+"""Windows relative to the place of a click [s]: noise, analysis, possible onset, decay."""
 
 _PICK_STEP, _PAST, _FAILED = 9e-5, 6, 0.05
-"""Step of that [s]; samples from which noise is foretold; density of beginnings if that fails, one of a thousand."""
+"""Time step of onsets [s]; order of the prediction of noise; density of onsets if the prediction fails."""
 
 _RISES, _LOUD = (3e-4, 8e-4), np.geomspace(0.5, 500.0, 6)
-"""How long an impact pushes [s]; power of a click over that of the noise."""
+"""Duration of the push of an impact [s]; power of a click over the noise."""
 
 _ROUNDS, _PEAKS, _APART, _RIVAL, _FAR = 6, 10, 5e-4, 0.25, 2e-3
 _EQUALISED = 0.1
 _FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
 _NUMBERS, _MOST_NUMBERS, _FAILS, _LOOSE = 25.0, 60.0, 10.0, 3e-3
-"""Independent numbers of a click, at least and at most; degrees of freedom of how the law fails; how well feet are tied
-before that is looked at [s]."""
+"""Smallest and largest number of independent values of a click; degrees of freedom of the misfit of the law; first
+tolerance of the tie between feet [s]."""
 
 _AGREED, _MOST = 30.0, 30.0
-"""Weight of modes that agree, with which the right tie of 207 rooms at 8 dB is likeliest; most that the law says."""
+"""Weight of agreeing modes, fitted to 207 rooms at 8 dB; largest misfit of the law."""
 
 _LEAST, _SEARCHED, _AROUND = 5, 0.15, 0.040
 _FADED, _FADES, _TAIL = 0.75, 0.25, 8.0
-"""How loud an impact is over the last one on its foot, of 119 rooms, and the deviation of that over it; degrees of
-freedom of noise and echoes."""
+"""Loudness of an impact over the last one on its foot, from 119 rooms, and its relative deviation; degrees of freedom
+of noise and echoes."""
 
 _BAND = (150.0, 9_000.0)
 
 
 def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a sound in which the clicks at about some times are short, and one whose noise is white."""
+    """Return a sound with short clicks near given times, and a sound with white noise."""
     size, noise, power = spectra(sound, rate)
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
-    # filters of minimum phase: nothing comes before its cause; the mean spectrum of clicks is made flat where it can be
+    # filters of minimum phase are causal; the mean spectrum of clicks becomes flat as far as possible
     gains = (np.sqrt(clicks) / (noise + _EQUALISED * clicks), 1.0 / np.sqrt(noise))
     sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
     return sharp, white
@@ -69,80 +69,80 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
 def onsets(
     sharp: FloatArray, white: FloatArray, rate: float, times: FloatArray, orders: IntArray
 ) -> tuple[FloatArray, FloatArray, float, float]:
-    """Return when impacts at about some times began [s], how sure places are, how alike clicks are, how sure the tie.
+    """Return onset times of impacts [s], certainty of places, similarity of clicks, error of the tie between feet.
 
-    Places by how much less likely others are, in logarithms; alike is the median correlation of a click with the sum of
-    the others on its foot, 1 at most; the tie is the standard deviation of the time between the two feet [s].
+    The certainty is the log likelihood ratio to other places. The similarity is the median correlation of a click with
+    the sum of the others on its foot, at most 1. The error is the standard deviation of the time between both feet [s].
     """
-    found, alike, begun, clicks = times.copy(), np.ones(times.size), [], []
-    all_places, sure = _chosen(sharp, rate, times, orders)
+    onset_times, likenesses, begun, clicks = times.copy(), np.ones(times.size), [], []
+    all_places, certainties = _best_places(sharp, rate, times, orders)
     for here in _feet(orders):
         places = all_places[here]
-        alike[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
-        after, share = _begun(white, rate, places)
+        likenesses[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
+        after, share = _onset_density(white, rate, places)
         begun.append(share)
-        found[here] = (places + _parts(sharp, rate, places)) / rate + after @ share
+        onset_times[here] = (places + _subsample_offsets(sharp, rate, places)) / rate + after @ share
         clicks.append(_mean(sharp, rate, places, _QUIET, _RINGING))
     if len(begun) < 2:
-        return found, sure, float(np.median(alike)), 0.0
+        return onset_times, certainties, float(np.median(likenesses)), 0.0
     off = np.arange(-_FARTHEST, _FARTHEST, _STEP)
-    one, two = begun
+    first, second = begun
     step = after[1] - after[0]
-    apart = float(after @ (two - one))
-    ties = np.convolve(two, one[::-1]) / step
+    apart = float(after @ (second - first))
+    ties = np.convolve(second, first[::-1]) / step
     picked = np.interp(off + apart, (np.arange(ties.size) - after.size + 1) * step, ties, left=0.0, right=0.0)
-    law = law_misfit(found + np.outer(off, orders % 2), orders)
+    law = law_misfit(onset_times + np.outer(off, orders % 2), orders)
     likely = _AGREED * _agreement(clicks[0], clicks[1], rate, off + apart) - 0.5 * np.minimum(law - law.min(), _MOST)
     likely += np.log(picked + _FAILED)
     share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
-    later = float(share @ off)  # the mean has the least square error where several ties are likely
-    found += later * (orders % 2 - 0.5)
-    return found, sure, float(np.median(alike)), float(np.sqrt(share @ (off - later) ** 2))
+    later = float(share @ off)  # the mean has the smallest square error among several likely ties
+    onset_times += later * (orders % 2 - 0.5)
+    return onset_times, certainties, float(np.median(likenesses)), float(np.sqrt(share @ (off - later) ** 2))
 
 
 def _feet(orders: IntArray) -> list[IntArray]:
-    """Return which impacts are on each of two feet, where there are some."""
+    """Return the impacts on each of two feet, if there are any."""
     return [here for foot in (0, 1) if (here := np.flatnonzero(orders % 2 == foot)).size]
 
 
 def revised(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return impacts less those that are none, and with those that were missed, whose member is -1.
+    """Return impacts without false ones, and with missed ones, whose member is -1.
 
-    An impact is like those before it on the same foot, nearly as loud, and when the law says: see `_impact`.
+    An impact is similar to earlier ones on its foot, nearly as loud, and near its expected time: see `_impact`.
     """
     for order in range(_LEAST, int(orders[-1])):
-        times, orders, members = _with(sharp, rate, times, orders, members, order)
-    # what should be heard and is not speaks against all behind it
-    asked = range(int(orders[-1]) + 1)
-    sure = np.nan_to_num([_impact(sharp, rate, times, orders, n)[1] if n >= _LEAST else 0.0 for n in asked])
-    last = asked[-1] - int(np.cumsum(sure)[::-1].argmax())
-    kept = (orders <= last) & (sure[orders] > MISSED)
+        times, orders, members = _with_missed_impact(sharp, rate, times, orders, members, order)
+    # a missing audible impact is evidence against all later ones
+    numbers = range(int(orders[-1]) + 1)
+    certainties = np.nan_to_num([_impact(sharp, rate, times, orders, n)[1] if n >= _LEAST else 0.0 for n in numbers])
+    last = numbers[-1] - int(np.cumsum(certainties)[::-1].argmax())
+    kept = (orders <= last) & (certainties[orders] > MISSED)
     times, orders, members = times[kept], orders[kept], members[kept]
-    # one behind the last, since a second would rest on one that no click told
-    return _with(sharp, rate, times, orders, members, int(orders[-1]) + 1)
+    # one more impact only: a second one would depend on an undetected one
+    return _with_missed_impact(sharp, rate, times, orders, members, int(orders[-1]) + 1)
 
 
-def _with(
+def _with_missed_impact(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray, order: int
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return impacts with one more, if it was missed and is likelier than none."""
+    """Return impacts with one more, if it was missed and is more likely than none."""
     at, sure = (np.nan, np.nan) if order in orders else _impact(sharp, rate, times, orders, order)
     if not sure > 0.0:
         return times, orders, members
-    place = int(np.searchsorted(orders, order))
-    more = np.insert(times, place, at)
+    index = int(np.searchsorted(orders, order))
+    more = np.insert(times, index, at)
     if np.any(np.diff(more) <= 0.0):
         return times, orders, members
-    return more, np.insert(orders, place, order), np.insert(members, place, -1)
+    return more, np.insert(orders, index, order), np.insert(members, index, -1)
 
 
 def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return when an impact of some order came, from those before it, and how much likelier one is than none.
+    """Return the time of an impact from earlier ones, and the log likelihood ratio to no impact.
 
-    Nan where that cannot be said.
+    NaN without enough earlier impacts.
     """
     about, span = next_impact(times[orders < order], orders[orders < order], order)
     if np.isnan(about):
@@ -165,7 +165,7 @@ def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray,
     likely -= 0.5 * np.log(spread) + 0.5 * (off / SCATTER) ** 2 + np.log(np.sqrt(2.0 * np.pi) * SCATTER * span * rate)
     likely[np.abs(off) > _SEARCHED] = -np.inf
     peak = int(likely.argmax())
-    # of so many impacts each was followed by one: Laplace's rule of succession
+    # each of these impacts had a successor: Laplace's rule of succession
     sure = float(np.logaddexp.reduce(likely) + np.log(orders[orders < order].size + 1.0))
     return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), sure
 
@@ -177,19 +177,19 @@ def _likeness(cuts: FloatArray) -> FloatArray:
     return np.asarray((cuts * others).sum(axis=1) / scale)
 
 
-def _agreement(one: FloatArray, two: FloatArray, rate: float, lags: FloatArray) -> FloatArray:
-    """Return how well lags of the second of two clicks explain both, each of modes m with factors of its own.
+def _agreement(left: FloatArray, right: FloatArray, rate: float, lags: FloatArray) -> FloatArray:
+    """Return the agreement of each lag of two clicks with common modes of independent real factors.
 
-    The factors a_m, b_m are real, so near a mode the cross-spectrum has the phase of a_m b_m exp(-i w d), and its
-    square that of exp(-2 i w d) whatever their signs: of all lags d only the true one suits all modes.
+    The factors a_m, b_m are real, so near a mode the cross-spectrum has the phase of a_m b_m exp(-i w d). Its square
+    has the phase of exp(-2 i w d) for any sign. Only the true lag d agrees with all modes.
     """
-    size = next_fast_len(2 * one.size, real=True)
+    size = next_fast_len(2 * left.size, real=True)
     quiet = int(0.75 * _QUIET * rate)
     cross, weight = np.ones(size // 2 + 1, dtype=np.complex128), np.ones(size // 2 + 1)
-    for each in (one, two):
-        spectrum = rfft(each, size)
+    for click in (left, right):
+        spectrum = rfft(click, size)
         cross = spectrum * np.conj(cross)
-        noise = float((each[:quiet] ** 2).mean()) * each.size
+        noise = float((click[:quiet] ** 2).mean()) * click.size
         weight *= np.maximum(np.abs(spectrum) ** 2 - _NOISES * noise, 0.0)
     frequency = np.arange(cross.size) * rate / size
     inside = (frequency > _BAND[0]) & (frequency < _BAND[1]) & (weight > 0.0)
@@ -198,12 +198,11 @@ def _agreement(one: FloatArray, two: FloatArray, rate: float, lags: FloatArray) 
     return np.asarray(np.cos(phase) @ (weight / max(float(weight.sum()), np.finfo(float).tiny)))
 
 
-def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> tuple[IntArray, FloatArray]:
-    """Return the samples at which clicks on the same foot match, by the law of rocking where several are as likely.
+def _best_places(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> tuple[IntArray, FloatArray]:
+    """Return the matching samples of clicks on each foot, and their certainty.
 
-    Also by how much, in logarithms, other places of each, milliseconds away, are less likely.
-
-    A mode that rings for long matches a period or two late nearly as well, which the law often tells, loose as it is.
+    The certainty is the log likelihood ratio to other places, milliseconds away. A mode that rings for long matches
+    nearly as well one or two periods later. The law of rocking, with a loose tolerance, often distinguishes them.
     """
     feet = _feet(orders)
 
@@ -220,13 +219,13 @@ def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray)
         alike.append(0.0)
         for here, row in zip(feet, rows, strict=True):
             tried[-1][here] = row
-            alike[-1] += float(_clicked(_matches(sharp, rate, row, 0)[1], _NUMBERS).sum())
+            alike[-1] += float(_lag_log_likelihood(_matches(sharp, rate, row, 0)[1], _NUMBERS).sum())
     places = tried[int(np.argmax(np.array(alike) + law(np.array(tried))))]
     for _ in range(_ROUNDS):
         moves: list[tuple[int, int, float]] = [(0, 0, 0.0)]
         for here in feet:
             correlations = _matches(sharp, rate, places[here], reach)[1]
-            clicks = _clicked(correlations, _numbers(correlations))
+            clicks = _lag_log_likelihood(correlations, _independent_numbers(correlations))
             for which, row, clicked in zip(here, correlations, clicks, strict=True):
                 peaks = np.flatnonzero((row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:])) + 1
                 peaks = peaks[np.abs(peaks - reach) > _APART * rate]
@@ -246,50 +245,52 @@ def _chosen(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray)
     return places, sure
 
 
-def _clicked(correlations: FloatArray, numbers: FloatArray | float) -> FloatArray:
-    """Return the logarithm of how likely lags of clicks are from their correlations, of so many independent numbers."""
+def _lag_log_likelihood(correlations: FloatArray, numbers: FloatArray | float) -> FloatArray:
+    """Return the log likelihood of lags from correlations with some number of independent values."""
     return np.asarray(-0.5 * numbers * np.log1p(-(np.clip(correlations, 0.0, 0.999) ** 2)))
 
 
-def _numbers(correlations: FloatArray) -> FloatArray:
-    """Return how many independent numbers a faint click has, by how it correlates where it does not match, rows."""
+def _independent_numbers(correlations: FloatArray) -> FloatArray:
+    """Return the number of independent values of a click, from its correlations away from the match, in rows."""
     squares = (correlations**2).mean(axis=1, keepdims=True)
     return np.asarray(np.clip(1.0 / (squares + np.finfo(float).tiny), _NUMBERS, _MOST_NUMBERS))
 
 
 def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[IntArray]:
-    """Return the samples at which clicks match the others best, for each that may begin; the loudest comes first.
+    """Return the best matching samples of clicks, for each possible first click, the loudest first.
 
-    Each of the others finds its place by the sum of those that are louder; then all do by all the others.
+    Each other click is placed by the sum of louder ones, then all by the sum of all others.
     """
     start, reach = np.rint(times * rate).astype(np.int64), int(_REACH * rate)
     cuts = _cuts(sound, rate, start, _BEFORE, _LONG)
     size = next_fast_len(cuts.shape[1] + 2 * reach + 1, real=True)
     spectrum, lags, here = rfft(cuts, size), np.arange(-2 * reach, 2 * reach + 1), np.arange(-reach, reach + 1)
-    cross = np.array([irfft(np.conj(each) * spectrum, size)[:, lags] for each in spectrum])
+    cross = np.array([irfft(np.conj(row) * spectrum, size)[:, lags] for row in spectrum])
     cross[np.arange(start.size), np.arange(start.size)] = 0.0
-    likely = np.exp(-0.5 * (here / reach) ** 2)  # far from where the click was heard noise may look like it
+    likely = np.exp(-0.5 * (here / reach) ** 2)  # noise may resemble the click far from its detection
     order = np.argsort(-np.abs(cuts).max(axis=1))
-    found: dict[bytes, IntArray] = {}
+    arrangements: dict[bytes, IntArray] = {}
     for first in order:
-        lag, known = np.zeros(start.size, dtype=np.int64), [first]
+        lag, placed = np.zeros(start.size, dtype=np.int64), [first]
         for turn in range(_ROUNDS):
             before = lag.copy()
             for row in order:
                 if turn == 0 and row == first:
                     continue
-                total = sum(cross[other, row, 2 * reach + here - lag[other]] for other in known)
+                total = sum(cross[other, row, 2 * reach + here - lag[other]] for other in placed)
                 lag[row] = here[np.argmax(total * likely)]
                 if turn == 0:
-                    known.append(row)
+                    placed.append(row)
             if turn and np.array_equal(before, lag):
                 break
-        found.setdefault(np.rint((start + lag - np.median(start + lag)) / (_APART * rate)).tobytes(), start + lag)
-    return list(found.values())
+        arrangements.setdefault(
+            np.rint((start + lag - np.median(start + lag)) / (_APART * rate)).tobytes(), start + lag
+        )
+    return list(arrangements.values())
 
 
 def _matches(sound: FloatArray, rate: float, places: IntArray, reach: int) -> tuple[FloatArray, FloatArray]:
-    """Return how clicks match the sum of the others up to some samples from their places, and the correlations."""
+    """Return the match of clicks with the sum of the others at lags within `reach`, and the correlations."""
     cuts = _cuts(sound, rate, places, _BEFORE, _LONG)
     size = cuts.shape[1]
     wide = _cuts(sound, rate, places, _BEFORE + reach / rate, _LONG + reach / rate)[:, : size + 2 * reach]
@@ -300,13 +301,13 @@ def _matches(sound: FloatArray, rate: float, places: IntArray, reach: int) -> tu
     return match, match / np.sqrt(power + np.finfo(float).tiny)
 
 
-def _parts(sound: FloatArray, rate: float, places: IntArray) -> FloatArray:
-    """Return the rest of places to a part of a sample, where clicks match the sum of the others best."""
+def _subsample_offsets(sound: FloatArray, rate: float, places: IntArray) -> FloatArray:
+    """Return the offsets of places within a sample, from the match with the sum of the others."""
     return np.array([_vertex(match, 1) for match in _matches(sound, rate, places, 1)[0]])
 
 
 def _vertex(values: FloatArray, peak: int) -> float:
-    """Return how far from a peak the parabola through it and its neighbours peaks, in samples."""
+    """Return the offset of the parabola through a peak and its neighbours, in samples."""
     if not 0 < peak < values.size - 1:
         return 0.0
     before, here, after = values[peak - 1 : peak + 2]
@@ -315,7 +316,7 @@ def _vertex(values: FloatArray, peak: int) -> float:
 
 
 def _cuts(sound: FloatArray, rate: float, places: IntArray, before: float, after: float) -> FloatArray:
-    """Return what is around some samples, a row each, with silence beyond the ends."""
+    """Return the sound around some samples, one row each, with zeros beyond the ends."""
     reach = np.arange(-int(before * rate), int(after * rate))
     around = places[:, None] + reach
     inside = (around >= 0) & (around < sound.size)
@@ -326,11 +327,11 @@ def _mean(sound: FloatArray, rate: float, places: IntArray, before: float, after
     return np.asarray(_cuts(sound, rate, places, before, after).mean(axis=0))
 
 
-def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return how long after some samples the clicks on one foot may begin [s], and how likely, 1 together.
+def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return possible delays of the onset of clicks on one foot [s], and their probabilities.
 
-    Their mean is noise first, then a random sound of their spectrum that grows while the impact pushes. Such normal
-    numbers have a likelihood, and what rises slowly, as low modes do, is not picked late.
+    Their mean is noise first, then a random sound of their spectrum, which grows during the impact. The likelihood of
+    these normal values prevents a late onset for low modes.
     """
     step = max(1, round(_PICK_STEP * rate))
     cuts = _cuts(white, rate, places, -_SILENT, _RING)
@@ -339,9 +340,9 @@ def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray
     quiet, first, last, until = (int((at - _SILENT) * rate) for at in (_FROM, _EARLIEST, _LATEST, _UNTIL))
     before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: _PAST + 1]
     before[0] = 1.000001 * before[0] + np.finfo(float).tiny
-    # what noise foretells of itself is taken away: echoes, and what is left of hum
+    # the predictable part of the noise is removed: echoes and hum
     cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), [1.0], cuts, axis=1)
-    noise = np.median(cuts[:, :quiet] ** 2) / 0.4549 + np.finfo(float).tiny  # of the square of a normal number
+    noise = np.median(cuts[:, :quiet] ** 2) / 0.4549 + np.finfo(float).tiny  # median of a squared normal number
     window = np.hanning(cuts.shape[1] - first)
     power = (np.abs(rfft(window * cuts[:, first:], 2 * window.size)) ** 2).mean(axis=0)
     clicks = np.maximum(power - noise * (window @ window), 1e-9 * power.max() + np.finfo(float).tiny)
@@ -355,9 +356,9 @@ def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray
     for rise, loud in product(_RISES, _LOUD):
         grown = 0.5 - 0.5 * np.cos(np.pi * np.minimum((np.arange(mean.size) + 0.5) / (rise * rate), 1.0))
         root = cholesky(loud * np.outer(grown, grown) * alike / alike[0, 0] + np.eye(mean.size), lower=True)
-        # what is behind a later beginning is fewer numbers of the same covariance, whose root is the first part of it
-        rest = np.cumsum(0.5 * solve_triangular(root, behind, lower=True) ** 2 + np.log(np.diag(root))[:, None], axis=0)
-        likely = np.logaddexp(likely, -rest[mean.size - late - 1, np.arange(late.size)])
+        # a later onset has fewer values of the same covariance; the first part of the root applies
+        cost = np.cumsum(0.5 * solve_triangular(root, behind, lower=True) ** 2 + np.log(np.diag(root))[:, None], axis=0)
+        likely = np.logaddexp(likely, -cost[mean.size - late - 1, np.arange(late.size)])
     likely -= 0.5 * np.cumsum(mean**2)[late - 1]
     share = np.exp(likely - likely.max())
     return (late + quiet) / rate + _SILENT, share / share.sum()
@@ -365,74 +366,81 @@ def _begun(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray
 
 _PIECES = 2000
 _UNHEARD = 3.0
-"""Contrast of an impact that only its likeness to others tells."""
+"""Contrast of an impact detected by its similarity only."""
 
 _TIED = 3e-4
-"""Standard deviation of the time between both feet that is told [s]: that of times whose reader states none."""
+"""Standard deviation of the time between both feet that causes a doubt [s]."""
 
 _FEWEST, _LOST = 4, 1.0 / 3.0
-"""Times that identification needs; share of a sound that tells nothing, since hum or noise clips, not clicks alone."""
+"""Smallest number of times; largest clipped fraction of a sound."""
 
 _ALIKE = 0.45
-"""Between what 80 rocking bodies have, .69 at least at 8 dB, and speech taken for one, .24 at most."""
+"""Between the values of 80 rocking bodies (at least 0.69 at 8 dB) and of speech (at most 0.24)."""
 
 
-def impacts_heard(recording: Recording) -> ImpactTimes:
-    """Return when a rocking body struck, or refuse a sound that is no rocking."""
+def impacts_from_sound(recording: Recording) -> ImpactTimes:
+    """Return the times of impacts, or refuse a sound without rocking."""
     channel = recording.channel
     clicks = find_clicks(channel, recording.rate)
     length = recording.samples.shape[0] / recording.rate
-    found = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
-    if found is None:
-        raise recording.error("fewer than three clicks stand out of its noise; nearer to the body, or a quieter room?")
+    sequence = find_sequence(clicks.times, _evidence(clicks.contrasts), np.maximum(clicks.strengths, 0.3), length)
+    if sequence is None:
+        raise recording.error(
+            "fewer than three clicks are above the noise; record closer to the body or in a quieter room"
+        )
     lost = float(((channel >= 0.999 * channel.max()) | (channel <= 0.999 * channel.min())).mean())
     if lost > _LOST:
         raise recording.error(
-            "{clipped:.0f} % of it is clipped, more than {limit:.0f} %: record at a lower level", clipped=100.0 * lost,
-            limit=100.0 * _LOST,
+            "{clipped:.0f} % of the sound is clipped, at most {limit:.0f} % is allowed; record at a lower level",
+            clipped=100.0 * lost, limit=100.0 * _LOST,
         )  # fmt: skip
-    rate, rough, orders, members = recording.rate, clicks.times[found.members], found.orders, found.members
+    rate, rough, orders, members = recording.rate, clicks.times[sequence.members], sequence.orders, sequence.members
     sharp, white = sharpened(clicks.sound, rate, rough)
     times, chosen, alike, tied = onsets(sharp, white, rate, rough, orders)
     grows = bool(np.all(np.diff(times) > 0.0))
     lawful = times if grows and chosen.min() > _RIVAL else rough
-    why = why_no_rocking(lawful, found, clicks.contrasts, clicks.strengths)
-    if not why and alike < _ALIKE:
-        why = f"its clicks are not alike (median correlation {alike:.2f}, at least {_ALIKE}): no two feet made them"
-    if why:
-        raise recording.error("this is no sound of a rocking body: {reason}", reason=why)
+    reason = rejection_reason(lawful, sequence, clicks.contrasts, clicks.strengths)
+    if not reason and alike < _ALIKE:
+        reason = f"the clicks are not similar (median correlation {alike:.2f}; at least {_ALIKE} is required)"
+    if reason:
+        raise recording.error("not the sound of a rocking body: {reason}", reason=reason)
     heard = rough = times if grows else rough
     rough, orders, members = revised(sharp, rate, rough, orders, members)
     if not np.array_equal(rough, heard):
         times, chosen, _, tied = onsets(sharp, white, rate, rough, orders)
-    known = chosen > _RIVAL
-    if known.sum() < _FEWEST:
+    is_timed = chosen > _RIVAL
+    if is_timed.sum() < _FEWEST:
         raise recording.error(
-            "{count} of its {clicks} clicks can be told in time only", count=int(known.sum()), clicks=known.size,
-            hint="nearer to the body?",
+            "only {count} of {clicks} clicks have a certain time", count=int(is_timed.sum()), clicks=is_timed.size,
+            hint="record closer to the body",
         )  # fmt: skip
-    times, rough, orders, members = times[known], rough[known], orders[known] - orders[known][0], members[known]
+    times, rough, orders, members = (
+        times[is_timed],
+        rough[is_timed],
+        orders[is_timed] - orders[is_timed][0],
+        members[is_timed],
+    )
     if np.any(np.diff(times) <= 0.0):
         times = rough
     contrasts = np.where(members < 0, _UNHEARD, clicks.contrasts[members])
-    sure = 1.0 / (1.0 + np.exp(-_evidence(contrasts) - 2.0))
+    probabilities = 1.0 / (1.0 + np.exp(-_evidence(contrasts) - 2.0))
     doubts = _doubts(recording, contrasts, orders, times)
     if tied > _TIED:
-        doubts += (f"how long after impacts on one foot those on the other came is known to {1e3 * tied:.1f} ms only",)
-    return ImpactTimes(times, None, np.clip(sure, 0.01, 1.0), recording.name, doubts, _loudness(channel, rate))
+        doubts += (f"the time between impacts on both feet has an uncertainty of {1e3 * tied:.1f} ms",)
+    return ImpactTimes(times, None, np.clip(probabilities, 0.01, 1.0), recording.name, doubts, _loudness(channel, rate))
 
 
 def _loudness(channel: FloatArray, rate: float) -> FloatArray:
-    """Return times and largest amplitudes of pieces of a sound, as many as a picture shows."""
+    """Return times and largest amplitudes of segments of a sound, for pictures."""
     step = max(1, channel.size // _PIECES)
     loud = np.abs(channel[: channel.size // step * step]).reshape(-1, step).max(axis=1)
     return np.column_stack([(np.arange(loud.size) + 0.5) * step / rate, loud])
 
 
 def _evidence(contrasts: FloatArray) -> FloatArray:
-    """Return the logarithm of how much likelier an impact has such a contrast than noise and echoes have.
+    """Return the log likelihood ratio of impact and noise from contrasts.
 
-    Contrasts of those fall off as the power -5; a click that is louder than what went before by 3.2 may be either.
+    Contrasts of noise and echoes decrease with the power -5; a contrast of 3.2 is neutral.
     """
     return np.clip(5.0 * np.log(contrasts / 3.2), -4.0, 4.0)
 
@@ -443,16 +451,16 @@ def _doubts(recording: Recording, contrasts: FloatArray, orders: IntArray, times
         before = int(np.flatnonzero(orders < order)[-1])
         doubts.append(f"an impact seems to be missing between {times[before]:.3f} and {times[before + 1]:.3f} s")
     if recording.clipped:
-        doubts.append(f"the sound is clipped {recording.clipped} times: record it at a lower level")
+        doubts.append(f"the sound is clipped {recording.clipped} times; record at a lower level")
     faint = contrasts < 3.2
     if faint.any():
-        doubts.append(f"{int(faint.sum())} of {faint.size} impacts hardly stand out of noise and echoes")
+        doubts.append(f"{int(faint.sum())} of {faint.size} impacts are hardly above noise and echoes")
     return tuple(doubts)
 
 
-def refuse_sound(name: str, suffix: str) -> MeasurementError:
-    """Return the refusal of a sound that nobody here can decode, to be raised."""
+def undecoded_sound(name: str, suffix: str) -> MeasurementError:
+    """Return the error for a sound that cannot be decoded."""
     return MeasurementError(
-        "{extension} sounds are not read: save it as WAV or FLAC, with the recorder's own export or an audio editor",
+        "{extension} is not supported. Save the sound as WAV or FLAC, with the recorder or an audio editor",
         extension=suffix,
     ).at(name)

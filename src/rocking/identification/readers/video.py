@@ -1,7 +1,7 @@
-"""How a body turns in a video: the picture of it at rest, followed; what stands still tells how the camera moves.
+"""Rotation of a body from a video, by alignment with its picture at rest; fixed objects show the camera motion.
 
-Inverse compositional alignment of the pixels that show edges (Baker & Matthews 2004,
-doi:10.1023/B:VISI.0000011205.11775.fd), with the weights of Huber.
+Inverse compositional alignment of the pixels at edges (Baker & Matthews 2004, doi:10.1023/B:VISI.0000011205.11775.fd),
+with the weights of Huber.
 """
 
 import math
@@ -25,54 +25,54 @@ from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Source
 
 _PIXELS, _LEAST, _STEPS, _CLOSE = 6000, 40, 20, 2e-3
-_BLUR = 1.0  # before slopes are taken [pixels]
-_SLOPE, _FLAT = 0.16, 0.1  # noise of slopes over that of pixels, after the blur; slopes that are none
-_QUIET = 0.2  # for which the picture at rest is averaged [s]
-_ALIKE, _OUTSIDE = 0.3, 0.05  # below the usual correlation; share of pixels
-_EDGE = 4  # of a frame, which is left as soon as anything moves [pixels]
+_BLUR = 1.0  # before differentiation [pixels]
+_SLOPE, _FLAT = 0.16, 0.1  # noise of slopes over noise of pixels, after the blur; negligible slopes
+_QUIET = 0.2  # duration of the averaged picture at rest [s]
+_ALIKE, _OUTSIDE = 0.3, 0.05  # largest decrease of the correlation; fraction of pixels
+_EDGE = 4  # margin of a frame [pixels]
 _HUBER = 2.0  # times the median
 
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Grey frames, smaller than they were, and when each was taken."""
+    """Grey frames of reduced size, with their times."""
 
     name: str
     frames: NDArray[np.uint8]  # n, rows, columns
     time: FloatArray  # [s]
-    scale: float  # pixels here for each of the video
+    scale: float  # pixels per pixel of the video
 
     def error(self, cause: str, **facts: Any) -> MeasurementError:
-        """Return the error for a cause, to be raised; facts: as of `RockingError`."""
+        """Return the error for a cause; facts: as of `RockingError`."""
         return MeasurementError(cause, **facts).at(self.name)
 
     @cached_property
     def changes(self) -> FloatArray:
-        """How much a pixel changes from frame to frame, in the mean."""
-        some = self.frames[:, ::2, ::2].astype(np.int16)
-        return np.array([float(np.abs(b - a).mean()) for a, b in pairwise(some)])
+        """Mean change of a pixel from frame to frame."""
+        coarse = self.frames[:, ::2, ::2].astype(np.int16)
+        return np.array([float(np.abs(b - a).mean()) for a, b in pairwise(coarse)])
 
     @cached_property
     def quiet(self) -> slice:
-        """Frames while which the least changes: the last ones of those that are as quiet."""
+        """Frames with the smallest changes; the last of several equally quiet intervals."""
         width = min(max(3, round(_QUIET / float(np.median(np.diff(self.time))))), self.changes.size)
         means = np.convolve(self.changes, np.full(width, 1.0 / width), "valid")
         first = int(np.flatnonzero(means <= 1.1 * means.min())[-1])
         return slice(first, first + width + 1)
 
     @cached_property
-    def rest(self) -> FloatArray:
-        """The mean of these frames."""
+    def rest_frame(self) -> FloatArray:
+        """Mean of the quiet frames."""
         return np.asarray(self.frames[self.quiet].mean(axis=0))
 
     @property
     def noise(self) -> float:
-        """Standard deviation of a pixel where nothing moves."""
+        """Standard deviation of a pixel without motion."""
         return float(np.median(self.changes)) * math.sqrt(math.pi / 4.0)
 
 
 class RestPicture:
-    """Pixels of a picture that show edges, and how each changes as the picture turns and shifts, or its light."""
+    """Pixels of a picture at edges, with their derivatives by rotation, shift and light."""
 
     def __init__(self, picture: FloatArray, mask: BoolArray, noise: float) -> None:
         smooth = ndimage.gaussian_filter(picture, _BLUR)
@@ -91,26 +91,26 @@ class RestPicture:
             gy, gx = down.ravel()[order], across.ravel()[order]
             moved = np.column_stack([gy * x - gx * y, gx, gy])
             units = np.array([1.0 / max(math.sqrt((x**2 + y**2).mean()), 1.0), 1.0, 1.0])
-            # along a straight edge nothing tells a shift from noise: such directions are left out
-            told, directions = np.linalg.eigh((moved * units).T @ (moved * units) / order.size)
-            self.free = units[:, None] * directions[:, told > 5.0 * (_SLOPE * noise) ** 2 + _FLAT]
+            # a shift along a straight edge cannot be distinguished from noise: these directions are excluded
+            information, directions = np.linalg.eigh((moved * units).T @ (moved * units) / order.size)
+            self.free = units[:, None] * directions[:, information > 5.0 * (_SLOPE * noise) ** 2 + _FLAT]
             self.slopes = np.column_stack([moved @ self.free, self.values, np.ones(order.size)])
             self.usable = self.free.size > 0
 
-    def seen(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Return its pixels in a frame where it has turned, clockwise, and shifted; and which are inside."""
+    def sampled(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Return the pixels in a frame after rotation, clockwise, and shift, and a mask of those inside."""
         y, x = (self.places - self.centre).T
         c, s = math.cos(pose[0]), math.sin(pose[0])
-        there = np.stack([s * x + c * y + pose[2], c * x - s * y + pose[1]]) + self.centre[:, None]
-        inside = ((there >= 0.0) & (there <= np.array(frame.shape)[:, None] - 1.0)).all(axis=0)
-        return ndimage.map_coordinates(frame, there, order=1, mode="nearest"), inside
+        positions = np.stack([s * x + c * y + pose[2], c * x - s * y + pose[1]]) + self.centre[:, None]
+        inside = ((positions >= 0.0) & (positions <= np.array(frame.shape)[:, None] - 1.0)).all(axis=0)
+        return ndimage.map_coordinates(frame, positions, order=1, mode="nearest"), inside
 
-    def laid(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, FloatArray, float, float]:
-        """Return the pose with which it lies best on a frame, differences, their correlation, and the share outside."""
+    def aligned(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, FloatArray, float, float]:
+        """Return the best pose on a frame, residuals, their correlation, and the fraction outside."""
         light = np.array([1.0, 0.0])
         for _ in range(_STEPS):
-            found, inside = self.seen(frame, pose)
-            missed = found - light[0] * self.values - light[1]  # Eq. 319
+            pixels, inside = self.sampled(frame, pose)
+            missed = pixels - light[0] * self.values - light[1]  # Eq. 319
             weight = inside / np.maximum(1.0, np.abs(missed) / (_HUBER * float(np.median(np.abs(missed))) + 1.0))
             by = weight[:, None] * self.slopes
             step = np.linalg.solve(by.T @ self.slopes + 1e-6 * np.eye(by.shape[1]), by.T @ missed)
@@ -121,23 +121,23 @@ class RestPicture:
             if abs(turn) * 100.0 + abs(right) + abs(down) < _CLOSE:
                 break
         with np.errstate(invalid="ignore"):
-            alike = float(np.corrcoef(found, self.values)[0, 1])
+            alike = float(np.corrcoef(pixels, self.values)[0, 1])
         return pose, missed, alike, 1.0 - float(inside.mean())
 
 
 @dataclass(frozen=True, eq=False)
 class PoseTrack:
-    """How a picture turns and shifts from frame to frame, from the quiet ones in both directions until it is lost."""
+    """Rotation and shift of a picture in each frame, from the quiet frames in both directions until it is lost."""
 
     poses: FloatArray  # n, 3: rotation, clockwise [rad], and shift to the right and down [pixels]
     first: int
-    last: int  # the first frame that has none
-    own: BoolArray  # pixels that go with it rather than stand still
+    last: int  # first frame without a pose
+    own: BoolArray  # moving pixels
 
     @classmethod
-    def of(cls, film: Film, mask: BoolArray) -> "PoseTrack | None":
-        """Return it, or None if the pixels of the mask show too few edges."""
-        picture = RestPicture(film.rest, mask, film.noise)
+    def followed(cls, film: Film, mask: BoolArray) -> "PoseTrack | None":
+        """Return the track, or None if the mask contains too few edges."""
+        picture = RestPicture(film.rest_frame, mask, film.noise)
         if not picture.usable:
             return None
         middle = (film.quiet.start + film.quiet.stop) // 2
@@ -148,15 +148,15 @@ class PoseTrack:
             n = middle
             while 0 <= n < film.time.size:
                 frame = ndimage.gaussian_filter(film.frames[n].astype(np.float32), _BLUR)
-                one, two = (n - step * min(abs(n - middle), back) for back in (1, 2))
-                pose, missed, alike, outside = picture.laid(frame, 2.0 * poses[one] - poses[two])
+                previous, before_previous = (n - step * min(abs(n - middle), back) for back in (1, 2))
+                pose, missed, alike, outside = picture.aligned(frame, 2.0 * poses[previous] - poses[before_previous])
                 usual = [*usual, alike][:20]
                 if not alike > float(np.median(usual)) - _ALIKE or outside > _OUTSIDE:
                     break
                 poses[n] = pose
                 most = 3.0 * float(np.median(np.abs(missed))) + 1.0
                 mine += np.minimum(np.abs(missed), most)
-                still += np.minimum(np.abs(picture.seen(frame, np.zeros(3))[0] - picture.values), most)
+                still += np.minimum(np.abs(picture.sampled(frame, np.zeros(3))[0] - picture.values), most)
                 n += step
             ends.append(n)
         own = np.zeros(mask.shape, np.bool_)
@@ -165,118 +165,124 @@ class PoseTrack:
 
 
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
-"""Suffixes of what is read as a video."""
+"""Extensions of videos."""
 
 LIMITS = {"frames": 20_000, "pixels": 40_000_000, "widest": 640, "bytes": 150_000_000}
-"""Of frames, of pixels of each; frames are made as small as the others ask for."""
+"""Largest number of frames and of pixels of each; width and memory limit the reduced frames."""
 
 _OPENCV = ForeignReader(Path(__file__).with_name("video_frames.py"), "OpenCV", "cv2", seconds=120.0)
 _SIGNATURES = ((0, b"RIFF"), (0, b"\x1a\x45\xdf\xa3"), *((4, kind) for kind in (b"ftyp", b"moov", b"mdat", b"wide")))
 _FEWEST, _ROUNDS = 12, 2
-_ALL, _BASE = 0.7, 0.15  # share of the picture; of the height of what moves
-_SWAYS, _STEADY = 0.3, 1.0  # pixels; over changes from frame to frame, where noise has .7
+_ALL, _BASE = 0.7, 0.15  # fraction of the picture; of the height of the moving region
+_SWAYS, _STEADY = 0.3, 1.0  # pixels; ratio to changes from frame to frame, 0.7 for noise
 
 
-def rotation_seen(path: Path, region: Sequence[float] | None, frame_rate: float | None) -> RotationSeries:
-    """Return how a body turns in a video; region: of the body at rest, left, top, width, height [pixels]."""
+def rotation_from_video(path: Path, region: Sequence[float] | None, frame_rate: float | None) -> RotationSeries:
+    """Return the rotation of a body in a video; region: of the body at rest, left, top, width, height [pixels]."""
     if frame_rate is not None:
         frame_rate = checks.positive("frame_rate", frame_rate, "1/s")
     film = read_film(path)
     moving = _moving(film)
     if region is None and moving.mean() > _ALL:
         raise film.error(
-            "{moving:.0f} % of the picture moves, and so does the camera: put it on a tripod, or say where the body "
-            "is, region= [left, top, width, height] in pixels", moving=100.0 * moving.mean(),
+            "{moving:.0f} % of the picture moves: the camera is not fixed. Use a tripod, or state region= [left, "
+            "top, width, height] of the body in pixels", moving=100.0 * moving.mean(),
         )  # fmt: skip
     body = _above_base(moving) if region is None else _stated(film, region)
-    track = PoseTrack.of(film, body)
+    track = PoseTrack.followed(film, body)
     if track is None:
-        raise film.error("what moves in it shows too few edges; more light, or a marker on the body?")
+        raise film.error("the moving region has too few edges; use more light or a marker on the body")
     for _ in range(_ROUNDS if region is None else 0):
-        track = PoseTrack.of(film, track.own) or track
+        track = PoseTrack.followed(film, track.own) or track
     a, b = track.first, track.last
     if b - a < _FEWEST:
         raise film.error(
-            "the body is followed in {frames} frames only, about {time:.3g} s", frames=max(b - a, 0), time=film.time[a],
-            hint="a swaying camera?",
+            "the body is tracked in only {frames} frames, near {time:.3g} s", frames=max(b - a, 0), time=film.time[a],
+            hint="fix the camera",
         )  # fmt: skip
     rotation, doubts = track.poses[a:b, 0], []
     for lost, when, at in ((a > 0, "before", a), (b < film.time.size, "after", b - 1)):
         if lost:
-            doubts.append(f"the body is lost {when} {film.time[at]:.3g} s: a hand, a cut, or it leaves the picture")
-    turned, said = _camera(film, ~ndimage.binary_dilation(moving | body, iterations=4), a, b)
+            doubts.append(
+                f"the body is lost {when} {film.time[at]:.3g} s: it is hidden, or outside the picture, or "
+                "the video has a cut"
+            )
+    turned, camera_doubts = _camera(film, ~ndimage.binary_dilation(moving | body, iterations=4), a, b)
     time = film.time
-    if frame_rate is not None:  # of a film that is played more slowly than it was taken
+    if frame_rate is not None:  # slow motion
         time = time * (time.size - 1) / (time[-1] - time[0]) / frame_rate
     doubts.append(
-        "a camera 10 degrees off the normal of the body's plane sees rotations 1.5 % too small, which is in no interval"
+        "a camera direction 10 degrees off the normal of the plane reduces rotations by 1.5 %; the intervals "
+        "exclude this error"
     )
-    doubts = [*clock_doubts(time[a:b]), *doubts, *said]
+    doubts = [*clock_doubts(time[a:b]), *doubts, *camera_doubts]
     return RotationSeries(time[a:b], rotation=rotation - turned, source=film.name, doubts=tuple(doubts))  # Eq. 321
 
 
 def _camera(film: Film, around: BoolArray, first: int, last: int) -> tuple[FloatArray, list[str]]:
-    """Return how what stands still turns in the picture, zero if it does not, and what there is to say."""
-    still, none = PoseTrack.of(film, around), np.zeros(last - first)
+    """Return the rotation of the fixed background, zero for a fixed camera, and doubts."""
+    still, no_rotation = PoseTrack.followed(film, around), np.zeros(last - first)
     if still is None:
-        return none, ["nothing but the body shows edges: whether the camera stood still is not known"]
+        return no_rotation, ["only the body has edges: the motion of the camera is unknown"]
     if still.first > first or still.last < last:
         at = film.time[still.first - 1 if still.first > first else still.last]
-        raise film.error("what stands still is lost at {time:.3g} s: the camera was moved, or there is a cut", time=at)
-    moved = still.poses[first:last] * [0.5 * max(film.rest.shape), 1.0, 1.0]
+        raise film.error("the background is lost at {time:.3g} s: the camera moved, or the video has a cut", time=at)
+    moved = still.poses[first:last] * [0.5 * max(film.rest_frame.shape), 1.0, 1.0]
     sways = float(np.abs(moved).max())
     if sways < _SWAYS or moved.std() < _STEADY * np.diff(moved, axis=0).std():
-        return none, []
-    words = f"the camera moves by {sways / film.scale:.2g} pixels; how it turns was taken away"
-    return still.poses[first:last, 0], [words]
+        return no_rotation, []
+    doubt = f"the camera moves by {sways / film.scale:.2g} pixels; its rotation is subtracted"
+    return still.poses[first:last, 0], [doubt]
 
 
 def read_film(path: Path) -> Film:
-    """Return what a file shows."""
+    """Return the frames of a file."""
     if not path.is_file():
         raise MeasurementError("not a plain file" if path.exists() else "no such file").at(str(path))
-    with path.open("rb") as file:  # text that names other files is no video either
+    with path.open("rb") as file:  # a text that names other files is not a video
         head = file.read(12)
     if not any(head[at : at + len(kind)] == kind for at, kind in _SIGNATURES):
-        raise MeasurementError("no video by its first bytes", hint="damaged?").at(path.name)
-    said, (frames, time) = _OPENCV.answer(Source(path.name, b""), LIMITS | {"path": str(path.absolute())})
+        raise MeasurementError("the first bytes are not those of a video", hint="the file may be damaged").at(path.name)
+    reply, (frames, time) = _OPENCV.answer(Source(path.name, b""), LIMITS | {"path": str(path.absolute())})
     if np.any(np.diff(time) <= 0.0):
-        raise MeasurementError("the times of its frames do not increase", hint="damaged, or edited?").at(path.name)
-    return Film(path.name, frames, time, said["scale"])
+        raise MeasurementError("the times of its frames do not increase", hint="the file may be damaged or edited").at(
+            path.name
+        )
+    return Film(path.name, frames, time, reply["scale"])
 
 
 def _moving(film: Film) -> BoolArray:
-    """Return where something moves: the largest piece of it."""
+    """Return the mask of the largest moving region."""
     chosen = np.unique(np.linspace(0, film.time.size - 1, 80).astype(np.int64))
-    blurred = [ndimage.gaussian_filter(each - each.mean(), 2.0) for each in film.frames[chosen].astype(np.float32)]
+    blurred = [ndimage.gaussian_filter(frame - frame.mean(), 2.0) for frame in film.frames[chosen].astype(np.float32)]
     noise = np.median([np.median(np.abs(a - b)) for a, b in zip(blurred[1:], blurred[:-1], strict=True)])
     pieces, count = ndimage.label(np.ptp(blurred, axis=0) > 10.0 * noise + 6.0)
     if not count:
-        raise film.error("nothing moves in it, or all of it does, with a camera that nobody holds still")
+        raise film.error("no moving region: nothing moves, or the camera is not fixed")
     largest = 1 + int(np.argmax(np.bincount(pieces.ravel())[1:]))
     return np.asarray(ndimage.binary_dilation(pieces == largest, iterations=2))
 
 
 def _above_base(moving: BoolArray) -> BoolArray:
-    """Return it without its lowest part, where the ground shows under a base that lifts."""
+    """Return the mask without its lowest part, where the ground is visible during uplift."""
     rows = np.flatnonzero(moving.any(axis=1))
-    found = moving.copy()
-    found[rows[-1] - int(_BASE * rows.size) :] = False
-    return found
+    mask = moving.copy()
+    mask[rows[-1] - int(_BASE * rows.size) :] = False
+    return mask
 
 
 def _stated(film: Film, region: Sequence[float]) -> BoolArray:
-    rows, columns = film.rest.shape
+    rows, columns = film.rest_frame.shape
     if np.shape(region) != (4,):
         raise InvalidValueError(
             parameter="region", allowed="four numbers: left, top, width, height [pixels]", value=region
         )
-    x, y, width, height = (round(film.scale * checks.number("region", each, "pixels")) for each in region)
+    x, y, width, height = (round(film.scale * checks.number("region", number, "pixels")) for number in region)
     if min(x, y) < 0 or min(width, height) < 4 or x + width > columns or y + height > rows:
         raise InvalidValueError(
             "{parameter} must lie within {columns:.0f} x {rows:.0f} pixels, got {value}", parameter="region",
             value=list(region), columns=columns / film.scale, rows=rows / film.scale,
         )  # fmt: skip
-    found = np.zeros((rows, columns), np.bool_)
-    found[y : y + height, x : x + width] = True
-    return found
+    mask = np.zeros((rows, columns), np.bool_)
+    mask[y : y + height, x : x + width] = True
+    return mask

@@ -86,16 +86,16 @@ GOOD = "time [s],angle [rad]\n0,0.1\n0.1,0.2\n0.2,0.1\n0.3,0.0\n"
     [
         (GOOD.replace(" [rad]", ""), {}, "states no unit"),
         (GOOD.replace(" [s]", ""), {}, "states no unit"),
-        (GOOD, {"unit": "deg"}, "is in rad, unit='deg'"),
-        (GOOD, {"height": 1.0}, "takes no height"),
-        (GOOD.replace("rad", "mm"), {}, "give height="),
-        (GOOD.replace("rad", "furlong"), {}, "is none of"),
+        (GOOD, {"unit": "deg"}, "is in rad, but unit='deg'"),
+        (GOOD, {"height": 1.0}, "height= of the sensor does not apply"),
+        (GOOD.replace("rad", "mm"), {}, "height= of the sensor"),
+        (GOOD.replace("rad", "furlong"), {}, "unknown unit"),
         (GOOD, {"kind": "displacement"}, "is a unit of rotation"),
         (GOOD, {"column": "tilt"}, "names 0 of"),
         (GOOD.replace("0.2,0.1", "0.05,0.1"), {}, "must increase"),
         (GOOD.replace("0.1,0.2", "0.1,nan"), {}, "line 3"),
         (GOOD.replace("0.1,0.2", "0.1"), {}, "line 3"),
-        ("0,0.1\n0.1,0.2\n", {}, "names of the columns expected"),
+        ("0,0.1\n0.1,0.2\n", {}, "names of the columns are missing"),
         ("", {}, "empty"),
     ],
 )
@@ -108,10 +108,10 @@ def test_kinds_and_endings(tmp_path):
     path = written(tmp_path, GOOD)
     with pytest.raises(InvalidValueError, match="kind must be one of"):
         read_measurement(path, kind="smell")
-    with pytest.raises(MeasurementError, match="is no sound by its ending"):
+    with pytest.raises(MeasurementError, match="does not have the extension of a sound"):
         read_measurement(path, kind="sound")
     with pytest.raises(MeasurementError, match="no such file"):
         read_measurement(tmp_path / "none.csv")
-    for name, words in (("voice.m4a", "save it as WAV or FLAC"), ("a.pdf", "must end in")):
+    for name, words in (("voice.m4a", "Save the sound as WAV or FLAC"), ("a.pdf", "must end in")):
         with pytest.raises(MeasurementError, match=words):
             read_measurement(written(tmp_path, GOOD, name))

@@ -119,7 +119,7 @@ def test_what_cannot_be_followed_is_refused_or_told(tmp_path):
     ("given", "error", "words"),
     [
         ({"kind": "sound"}, MeasurementError, "save its sound as WAV"),
-        ({"column": "top"}, MeasurementError, "a video takes no column"),
+        ({"column": "top"}, MeasurementError, "column: for tables only"),
         ({"region": [0, 0, 500, 50]}, InvalidValueError, "region must lie within 160 x 120 pixels"),
         ({"region": [1, 2]}, InvalidValueError, "region must be four numbers"),
         ({"region": [60, 30, float("nan"), 20]}, InvalidValueError, "region must be"),
@@ -137,9 +137,9 @@ def test_what_is_no_video(tmp_path):
     (tmp_path / "a.mp4").write_text("#EXTM3U\n/etc/hostname\n")
     (tmp_path / "a.csv").write_text("time [s],x [rad]\n0,1\n1,2\n2,3\n3,4\n")
     for name, given, words in (
-        ("a.mp4", {}, "no video by its first bytes"), ("b.mp4", {}, "no such file"),
-        ("a.csv", {"kind": "video"}, "no video by its ending"),
-        ("a.csv", {"frame_rate": 60.0}, "is no video, and takes no region= or frame_rate="),
+        ("a.mp4", {}, "the first bytes are not those"), ("b.mp4", {}, "no such file"),
+        ("a.csv", {"kind": "video"}, "not have the extension of a video"),
+        ("a.csv", {"frame_rate": 60.0}, "region= and frame_rate= do not apply"),
     ):  # fmt: skip
         with pytest.raises(MeasurementError, match=words):
             read_measurement(tmp_path / name, **given)
@@ -162,7 +162,7 @@ def test_limits(trial, monkeypatch):
     """More frames, or larger ones, are refused by their numbers."""
     from rocking.identification.readers import video
 
-    for name, most, words in (("frames", 20, "more than the 20 frames"), ("pixels", 100, "frames of 160 x 120")):
+    for name, most, words in (("frames", 20, "more than 20 frames"), ("pixels", 100, "frames of 160 x 120")):
         with monkeypatch.context() as patched:
             patched.setitem(video.LIMITS, name, most)
             with pytest.raises(MeasurementError, match=words):

@@ -34,10 +34,10 @@ def test_the_channel_that_stands_out():
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (wav(SINE)[:-100], "cut off, or never finished"),
-        (b"RIFX" + wav(SINE)[4:], "is no WAV file"),
+        (wav(SINE)[:-100], "save the sound again"),
+        (b"RIFX" + wav(SINE)[4:], "not a WAV file"),
         (wav(SINE[:0]), "no samples"),
-        (wav(SINE[:100]), "lasts"),
+        (wav(SINE[:100]), "the duration is"),
         (wav(0.0 * SINE, 8000), "silent"),
         (wav(np.where(np.arange(4410) == 100, np.nan, SINE), 8000, -32), "sample 100 is not finite"),
         (wav(SINE, 100), "rate must be in"),
