@@ -1,4 +1,4 @@
-"""Campaigns: very many histories in chunks that are computed once, whatever dies on the way."""
+"""Campaigns: large numbers of histories, computed once in chunks despite interruptions."""
 
 from rocking.campaigns.campaign import Campaign
 from rocking.campaigns.dask_cluster import DaskExecutor

@@ -1,4 +1,4 @@
-"""A campaign: very many histories, computed once, whatever happens on the way."""
+"""A campaign: a large number of histories, computed once despite interruptions."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -27,19 +27,19 @@ from rocking.studies.histories import Histories
 
 @dataclass(frozen=True)
 class Campaign:
-    """Very many histories in a folder: interrupted, killed or damaged, it goes on where it stood.
+    """A large number of histories in a folder; a run continues after an interruption or a damage.
 
-    Make one with `create`, or go on with `open`; the results are the same to the last bit whatever the workers, the
-    size of the chunks, the order and the interruptions.
+    `create` makes a campaign, `open` continues it. The results are equal to the last bit for any workers, chunk size,
+    order and interruptions.
 
     Parameters
     ----------
     folder : Path
-        Where it is kept.
+        The folder.
     histories : Histories
-        What is computed.
+        The histories.
     identity : Identity
-        What was written when it was created.
+        Plan and description, stored at creation.
     """
 
     folder: Path
@@ -48,27 +48,27 @@ class Campaign:
 
     @classmethod
     def create(cls, folder: str | os.PathLike[str], histories: Histories, chunk: int | None = None) -> "Campaign":
-        """Begin a campaign.
+        """Create a campaign.
 
         Parameters
         ----------
         folder : path
-            Where to keep it: a new folder, or an empty one.
+            A new or empty folder.
         histories : Histories
-            What to compute.
+            The histories.
         chunk : int, optional
-            Histories of a file of results, a chunk; what suits the engine, if not given. One that takes longer than a
-            second is computed in pieces.
+            Histories per file of results (chunk). Default: a number that suits the engine. A chunk that needs more than
+            a second is computed in pieces.
 
         Returns
         -------
         Campaign
-            It is on disk; nothing is computed yet.
+            The campaign on disk, without results.
 
         Raises
         ------
         CampaignMismatchError
-            If the folder holds something already.
+            If the folder is not empty.
         """
         path = Path(folder)
         identity = Identity.of(_histories(histories), chunk)
@@ -82,19 +82,19 @@ class Campaign:
 
     @classmethod
     def open(cls, folder: str | os.PathLike[str], histories: Histories) -> "Campaign":
-        """Go on with a campaign.
+        """Open a campaign to continue it.
 
         Parameters
         ----------
         folder : path
-            Where it is kept.
+            The folder.
         histories : Histories
-            The same as when it was created: they must describe themselves alike.
+            The histories of the creation, with an equal description.
 
         Returns
         -------
         Campaign
-            With all that is finished.
+            The campaign with its finished results.
         """
         path = Path(folder)
         with disk.guarded(path):
@@ -104,19 +104,19 @@ class Campaign:
 
     @staticmethod
     def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> CampaignStatus:
-        """Return how far a campaign is, without its histories and while another process may run it.
+        """Return the progress of a campaign without its histories, also during a run of another process.
 
         Parameters
         ----------
         folder : path
-            Where it is kept; nothing is written there.
+            The folder; nothing is written there.
         verify : bool
-            Whether to read all results: what is damaged does not count. Without it the ledger is believed.
+            Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
 
         Returns
         -------
         CampaignStatus
-            As recorded at this instant.
+            The recorded progress at this instant.
         """
         path = Path(folder)
         with disk.guarded(path):
@@ -140,31 +140,31 @@ class Campaign:
 
     @property
     def plan(self) -> Plan:
-        """How it is cut."""
+        """Division into chunks."""
         return self.identity.plan
 
     def status(self, *, verify: bool = True) -> CampaignStatus:
-        """Return how far it is.
+        """Return the progress.
 
         Parameters
         ----------
         verify : bool
-            Whether to read all results: what is damaged does not count. Without it the ledger is believed.
+            Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
 
         Returns
         -------
         CampaignStatus
-            As recorded at this instant.
+            The recorded progress at this instant.
         """
         return self.status_of(self.folder, verify=verify)
 
     def check(self) -> Forecast:
-        """Look ahead: compute a sample of the histories and compare the room on the disk with what is needed.
+        """Return a forecast from a sample of the histories, with required and free disk space.
 
         Returns
         -------
         Forecast
-            What remains to be done will take this.
+            Remaining time and disk space.
         """
         return forecast(self.status(verify=False), self.plan, self.histories)
 
@@ -177,33 +177,33 @@ class Campaign:
         order_seed: int | None = None,
         progress: Callable[[Progress], object] | None = None,
     ) -> Summary:
-        """Compute what is missing or damaged; a damaged ledger is set aside, and made anew from the shards.
+        """Compute missing and damaged chunks; a damaged ledger is set aside and rebuilt from the shards.
 
         Parameters
         ----------
         executor : {"serial", "processes"} or Executor
-            Who computes: this process, processes of this machine, or what was made before, as a `DaskExecutor`.
+            This process, processes of this machine, or an object such as a `DaskExecutor`.
         workers : int, optional
-            Threads, or processes; as many as the processor has, if not given.
+            Threads or processes. Default: the number of processor cores.
         start_method : {"spawn", "fork", "forkserver"}, optional
-            How processes start; "spawn" if not given.
+            Start method of processes. Default: "spawn".
         order_seed : int, optional
-            Seed of the order of the chunks; that of the histories in every part, if not given. The results do not
-            depend on it.
+            Random seed of the order of the chunks. Default: the order of the histories in each segment. The results
+            are independent of it.
         progress : callable, optional
             Called with a `Progress` at the start and after every recorded chunk, while the next ones are computed.
 
         Returns
         -------
         Summary
-            What was done, and what was found damaged.
+            Computed and damaged chunks.
 
         Raises
         ------
         InvalidValueError
             If an argument is out of range.
         CampaignMismatchError
-            If the histories have changed since the campaign was opened, or this machine computes other last digits.
+            If the histories changed after the opening, or this machine computes other last digits.
         CampaignBusyError
             If another process runs this campaign.
         CampaignStorageError
@@ -213,7 +213,7 @@ class Campaign:
         CampaignWorkerError
             If a chunk cannot be computed.
         CampaignInterrupted
-            If Ctrl-C or SIGTERM asked it to stop.
+            After Ctrl-C or SIGTERM.
         """
         if progress is not None and not callable(progress):
             raise InvalidValueError(parameter="progress", allowed="a function of a Progress, or None", value=progress)
@@ -224,7 +224,7 @@ class Campaign:
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
 
     def pieces(self) -> Iterator[ledger.HistoryRange]:
-        """Return the results in the order of the histories, one chunk in memory at a time.
+        """Return the results in the order of the histories, with one chunk in memory at a time.
 
         Yields
         ------
@@ -235,28 +235,28 @@ class Campaign:
             yield from ledger.pieces(self.folder, self.plan)
 
     def results(self, *names: str) -> Arrays:
-        """Return results of all histories at once: 83 bytes a history, less if only some are wanted.
+        """Return results of all histories, 83 bytes per history, less for selected columns.
 
         Parameters
         ----------
         *names : str
-            Names of results; all of them if none is given.
+            Names of results; all by default.
 
         Returns
         -------
         dict of str to ndarray
-            Those keys, one entry a history.
+            The keys with one entry per history.
         """
         types = self.histories.columns
-        wanted = [checks.one_of("column", name, types) for name in names or types]
-        whole = {name: np.empty(self.plan.count, types[name]) for name in wanted}
+        columns = [checks.one_of("column", name, types) for name in names or types]
+        results = {name: np.empty(self.plan.count, types[name]) for name in columns}
         for piece in self.pieces():
-            for name, values in whole.items():
+            for name, values in results.items():
                 values[piece.first : piece.last] = piece.results[name]
-        return whole
+        return results
 
     def sha256(self) -> str:
-        """Return the hash of all results; it does not depend on the size of the chunks.
+        """Return the hash of all results; it is independent of the chunk size.
 
         Returns
         -------
@@ -266,12 +266,12 @@ class Campaign:
         return ledger.digest(self.pieces())
 
     def verify(self) -> ledger.Verification:
-        """Read every result, and see that all are there once, and are what was written.
+        """Read all results and check that they are complete and unchanged.
 
         Returns
         -------
         Verification
-            What is damaged or missing; a run computes that.
+            Damaged and missing histories; a run computes them.
         """
         return ledger.verified(self.folder)
 

@@ -1,4 +1,4 @@
-"""How a campaign is cut: chunks of histories named by the hash of what they hold; their results as sealed bytes."""
+"""Division of a campaign into chunks with names from hashes; results as sealed bytes."""
 
 import hashlib
 import json
@@ -32,32 +32,32 @@ def _kinds(header: Any) -> dict[str, np.dtype[Any]]:
 
 
 DEFAULT_CHUNK = 65536
-"""Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
+"""Histories of a chunk of the fast engine: about 0.3 s of work; the safe storage needs a few milliseconds."""
 
-REFERENCE_CHUNK = 256  # histories of a chunk of the reference engine, which takes a hundred times as long
+REFERENCE_CHUNK = 256  # histories of a chunk of the reference engine, which is about 100 times slower
 
 
 class Chunk(NamedTuple):
-    """Some histories: from the first up to but not including the last; of a piece of a chunk, with the chunk's name."""
+    """Some histories, from the first to before the last; parent: name of the chunk of a piece."""
 
     number: int
     first: int
     last: int
     name: str
-    of: str = ""
+    parent: str = ""
 
     def piece(self, first: int, last: int) -> "Chunk":
-        """Return a piece of it, which is named by what it holds, too; itself if that is all of it."""
+        """Return a piece with its own name; the chunk itself for all its histories."""
         if (first, last) == (self.first, self.last):
             return self
-        whole = self.of or self.name
-        name = hashlib.sha256(f"{whole} {first} {last}".encode()).hexdigest()
-        return Chunk(self.number, first, last, name, whole)
+        parent = self.parent or self.name
+        name = hashlib.sha256(f"{parent} {first} {last}".encode()).hexdigest()
+        return Chunk(self.number, first, last, name, parent)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What fixes the name of every chunk, and with it the bytes of its shard.
+    """Data that determine the names of all chunks, and the bytes of their shards.
 
     >>> plan = Plan("0" * 64, 100, 40, "fast", "1.0")
     >>> [plan.chunk(k)[1:3] for k in range(plan.chunks)]
@@ -67,7 +67,7 @@ class Plan:
     key: str  # name of the histories
     count: int  # number of histories
     size: int  # histories of a chunk
-    engine: str  # the engine that computes all of them, with the last digits that it gives: "fast, 0123456789abcdef"
+    engine: str  # engine with fingerprint: "fast, 0123456789abcdef"
     software: str  # version of this package
     format: int = FORMAT  # version of the files
 
@@ -87,7 +87,7 @@ class Plan:
         return -(-self.count // self.size)
 
     def chunk(self, number: int) -> Chunk:
-        """Return a chunk, named by the SHA-256 of the plan without its size and of its first and last history."""
+        """Return a chunk; its name is the SHA-256 of the plan without its size and of the first and last history."""
         if not 0 <= number < self.chunks:
             raise InvalidValueError(parameter="chunk", allowed=f"in [0, {self.chunks - 1}]", value=number)
         first = number * self.size
@@ -98,9 +98,9 @@ class Plan:
 
 
 def pack(chunk: Chunk, arrays: Arrays) -> bytes:
-    """Return the bytes of a shard: no time, place or machine is in them, so whoever makes them makes the same.
+    """Return the bytes of a shard; they contain no time, place or machine.
 
-    Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
+    Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all these.
     """
     count = chunk.last - chunk.first
     kinds = {name: values.dtype.newbyteorder("<") for name, values in arrays.items()}
@@ -122,50 +122,50 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
 
 
 def seal(data: bytes) -> str:
-    """Return the seal that a shard bears at its end, 64 hexadecimal digits, without breaking it open."""
+    """Return the seal at the end of a shard, 64 hexadecimal digits, without a check."""
     return data[-_SEAL:].hex()
 
 
 def range_of(data: bytes) -> tuple[int, int]:
-    """Return from which up to but not including which history a shard says that it holds."""
+    """Return the first history of a shard and the history after its last one."""
     header = _read_header(data, _payload_at(data))
     ends = header.get("first"), header.get("last")
-    if not all(isinstance(each, int) for each in ends):
-        raise CampaignDamagedError("its header does not say what it holds")
+    if not all(isinstance(end, int) for end in ends):
+        raise CampaignDamagedError("its header contains no range of histories")
     return ends
 
 
 def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
-    """Return the results that a shard holds, if not a bit of it has changed."""
-    place = _payload_at(data)
+    """Return the results of an unchanged shard."""
+    offset = _payload_at(data)
     if hashlib.sha256(memoryview(data)[:-_SEAL]).digest() != data[-_SEAL:]:
-        raise CampaignDamagedError(_where_broken(data, place))
-    header = _read_header(data, place)
+        raise CampaignDamagedError(_where_broken(data, offset))
+    header = _read_header(data, offset)
     if header.get("name") != chunk.name:
         raise CampaignDamagedError(
             "it holds another chunk, {name}, not {expected}", name=str(header.get("name"))[:12],
             expected=chunk.name[:12],
         )  # fmt: skip
     if sealed is not None and seal(data) != sealed:
-        raise CampaignDamagedError("it is whole, but not the one that the ledger recorded")
-    return _columns(data, place, chunk, header)
+        raise CampaignDamagedError("it is valid, but not the recorded one")
+    return _columns(data, offset, chunk, header)
 
 
-def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
+def _columns(data: bytes, offset: int, chunk: Chunk, header: Any) -> Arrays:
     count, arrays = chunk.last - chunk.first, {}
     if header.get("first") != chunk.first or header.get("last") != chunk.last or not header.get("columns"):
         raise CampaignDamagedError("its header does not fit its name")
     kinds = _kinds(header)
-    if (due := place + count * width(kinds) + _SEAL) != len(data):
+    if (due := offset + count * width(kinds) + _SEAL) != len(data):
         raise CampaignDamagedError("it has {count} bytes, {expected} are due", count=len(data), expected=due)
     for name, kind in kinds.items():
-        arrays[name] = np.frombuffer(data, kind, count, place).astype(kind.newbyteorder("="), copy=False)
-        place += count * kind.itemsize
+        arrays[name] = np.frombuffer(data, kind, count, offset).astype(kind.newbyteorder("="), copy=False)
+        offset += count * kind.itemsize
     return arrays
 
 
 def _payload_at(data: bytes) -> int:
-    """Check the first bytes; where the columns start."""
+    """Check the first bytes; return the offset of the columns."""
     if len(data) < _LENGTHS.size + _SEAL:
         raise CampaignDamagedError("it was cut short: {count} bytes are no shard", count=len(data))
     magic, version, length = _LENGTHS.unpack_from(data)
@@ -174,33 +174,33 @@ def _payload_at(data: bytes) -> int:
     if version != FORMAT:
         raise CampaignDamagedError(
             "it says format {version}, not {expected}", version=version, expected=FORMAT,
-            hint="of another version of this package?",
+            hint="it may be from another version of this package",
         )  # fmt: skip
-    place = _LENGTHS.size + int(length)
-    if place + _SEAL > len(data):
+    offset = _LENGTHS.size + int(length)
+    if offset + _SEAL > len(data):
         raise CampaignDamagedError("it was cut short within its header: {count} bytes", count=len(data))
-    return place
+    return offset
 
 
-def _where_broken(data: bytes, place: int) -> str:
-    """Say which column changed, as far as the header can still tell."""
+def _where_broken(data: bytes, offset: int) -> str:
+    """Return the name of the changed column, as far as the header allows."""
     with suppress(CampaignDamagedError, KeyError, TypeError, ValueError):
-        header = _read_header(data, place)
+        header = _read_header(data, offset)
         count = int(header["last"]) - int(header["first"])
         kinds = _kinds(header)
-        if (due := place + count * width(kinds) + _SEAL) != len(data):
-            return f"it has {len(data)} bytes, {due} are due: cut short?"
+        if (due := offset + count * width(kinds) + _SEAL) != len(data):
+            return f"it has {len(data)} bytes, {due} are due: cut short"
         for name, kind in kinds.items():
-            end = place + count * kind.itemsize
-            if zlib.crc32(memoryview(data)[place:end]) != header["crc32"][name]:
+            end = offset + count * kind.itemsize
+            if zlib.crc32(memoryview(data)[offset:end]) != header["crc32"][name]:
                 return f"column {name} has changed"
-            place = end
+            offset = end
     return "its seal is broken"
 
 
-def _read_header(data: bytes, place: int) -> Any:
+def _read_header(data: bytes, offset: int) -> Any:
     try:
-        header = json.loads(data[_LENGTHS.size : place])
+        header = json.loads(data[_LENGTHS.size : offset])
     except ValueError as error:
         raise CampaignDamagedError("its header cannot be read") from error
     if not isinstance(header, dict):

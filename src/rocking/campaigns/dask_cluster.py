@@ -1,4 +1,4 @@
-"""Workers of a Dask cluster that is there already: they return shards, which are written here."""
+"""Workers of an existing Dask cluster: they return shards, which this process writes."""
 
 import os
 import pickle
@@ -20,21 +20,21 @@ _GRACE = 0.8
 
 
 class DaskExecutor(Executor):
-    """Computes the chunks on a Dask cluster; its workers need this package, but not the campaign's folder.
+    """Computes the chunks on a Dask cluster; its workers need this package, but not the folder.
 
     Parameters
     ----------
     address : str
         Address of the scheduler, as in ``tcp://host:8786``.
     ahead : int
-        Chunks that each thread of the cluster has at hand; the results of no more than these are held in memory.
+        Chunks per thread of the cluster; this limits the results in memory.
     timeout : float
-        How long to look for the scheduler [s].
+        Time limit of the search for the scheduler [s].
 
     Raises
     ------
     InvalidValueError
-        If the address is none.
+        If the address is empty.
     """
 
     def __init__(self, address: str, *, ahead: int = 2, timeout: float = 10.0) -> None:
@@ -46,7 +46,7 @@ class DaskExecutor(Executor):
         self.address, self.ahead, self.timeout = address, checks.whole("ahead", ahead, 1, MOST_WORKERS), timeout
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
-        """Compute chunks; what the cluster lost is tried again, chunks of a worker that dies by the cluster itself."""
+        """Compute chunks; lost chunks are submitted again, chunks of an ended worker by the cluster itself."""
         try:
             dask = import_module("distributed")
         except ImportError as error:
@@ -62,7 +62,7 @@ class DaskExecutor(Executor):
 
 
 class _Window:
-    """Chunks that are on the cluster, never many."""
+    """The few chunks on the cluster."""
 
     def __init__(self, dask: ModuleType, client: Any, job: WorkerTask, executor: DaskExecutor) -> None:
         self._dask, self._client, self._job, self._executor = dask, client, job, executor
@@ -70,7 +70,7 @@ class _Window:
             pickled = pickle.dumps(job)
         except (AttributeError, TypeError, pickle.PicklingError) as error:
             raise CampaignWorkerError(cannot_be_sent(error)) from error
-        # a task and not scattered data: when the worker that holds it dies, another one makes it again
+        # a task instead of scattered data: another worker can repeat it
         self._loaded = client.submit(pickle.loads, pickled, pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
 
@@ -90,7 +90,7 @@ class _Window:
                 if attempts >= 3 or self._client.status != "running":
                     raise CampaignWorkerError(
                         "the Dask cluster lost histories {first} to {last}", first=chunk.first, last=chunk.last - 1,
-                        hint="is it gone?",
+                        hint="check the cluster",
                     )  # fmt: skip
                 retried(chunk, "the cluster lost a chunk; it is computed again")
                 self._submit(chunk, attempts + 1)
@@ -108,14 +108,14 @@ class _Window:
         self._flying[self._client.submit(_compute, self._loaded, chunk, pure=False)] = (chunk, attempts)
 
     def _landed(self) -> list[Any]:
-        # asking the futures rather than waiting for one: a lost scheduler makes waiting raise, and these cancelled
+        # polling instead of waiting: after the loss of the scheduler a wait raises and cancels the futures
         end = time.monotonic() + _LOOK
         while not (landed := [future for future in self._flying if future.done()]) and time.monotonic() < end:
             time.sleep(0.002)
         return landed
 
     def _kept(self, future: Any, chunk: Chunk) -> Done | None:
-        """Write what came back; None if the cluster lost it."""
+        """Write the returned shard; None if the cluster lost it."""
         if future.status in {"cancelled", "lost"}:
             return None
         try:

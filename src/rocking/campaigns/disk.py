@@ -1,4 +1,4 @@
-"""Files that are there as a whole or not at all, one process a campaign, and what stops it."""
+"""Atomic writing of files, a lock for one process per campaign, and the errors of campaigns."""
 
 import os
 import secrets
@@ -24,11 +24,11 @@ _held: set[int] = set()
 
 
 class CampaignError(RockingError):
-    """Base of what a campaign refuses on purpose."""
+    """Base class of the errors of a campaign."""
 
 
 class CampaignMismatchError(CampaignError):
-    """The folder holds another campaign than the one that was asked for, or none."""
+    """The folder contains another campaign, or none."""
 
 
 class CampaignBusyError(CampaignError):
@@ -40,26 +40,26 @@ class CampaignStorageError(CampaignError):
 
 
 class CampaignDamagedError(CampaignError):
-    """A file of the campaign is not what was written."""
+    """A file of the campaign has changed."""
 
 
 class CampaignIncompleteError(CampaignError):
-    """Results were asked for before all histories are computed."""
+    """Results were requested before the end of the campaign."""
 
 
 class CampaignWorkerError(CampaignError):
-    """Workers cannot compute a chunk: they die of it again and again, or refuse it."""
+    """Workers cannot compute a chunk: they end repeatedly, or refuse it."""
 
 
 class CampaignInterrupted(KeyboardInterrupt):
-    """The campaign was asked to stop, by Ctrl-C or SIGTERM, and has stopped; what is finished is safe.
+    """The campaign has stopped after Ctrl-C or SIGTERM; finished chunks are safe.
 
-    It is a `KeyboardInterrupt`, so that nothing that goes on after errors goes on after it.
+    The base class `KeyboardInterrupt` passes handlers of ordinary errors.
     """
 
 
 def write_new(path: Path, data: bytes) -> None:
-    """Write a file so that a power cut at any instant leaves all of it or nothing under its name."""
+    """Write a file; after a power failure at any instant it is complete or absent."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}{_UNFINISHED}")
     try:
         _write_through(unfinished, data)
@@ -72,7 +72,7 @@ def write_new(path: Path, data: bytes) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make the names in a folder last; where a system cannot open folders, it keeps them by itself."""
+    """Write the names of a folder to disk; some systems do this themselves."""
     if os.name == "nt":
         return
     handle = os.open(folder, os.O_RDONLY)
@@ -83,32 +83,32 @@ def sync_folder(folder: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those it is in, so that they last."""
-    fresh = [each for each in (folder, *folder.parents) if not each.exists()]
+    """Make a folder and its parents, written to disk."""
+    fresh = [parent for parent in (folder, *folder.parents) if not parent.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    for each in reversed(fresh or [folder]):  # also where it was there: who made it may have been killed before this
-        sync_folder(each.parent)
+    for created in reversed(fresh or [folder]):  # also an existing folder: its process may have been killed before this
+        sync_folder(created.parent)
 
 
 def refuse_used(folder: Path, mark: str, allowed: set[str], hint: str) -> None:
-    """Refuse a folder that has the file by which a campaign is known, or any that it is not allowed to begin with."""
-    there = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
-    if mark in there:
+    """Refuse a folder with the file of a campaign, or with other files than the allowed ones."""
+    entries = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
+    if mark in entries:
         raise CampaignMismatchError("a campaign is here already", hint=hint).at(str(folder))
-    if odd := sorted(there - allowed):
+    if odd := sorted(entries - allowed):
         raise CampaignMismatchError(
             "not empty ({name} ...)", name=odd[0], hint="a campaign takes a folder of its own"
         ).at(str(folder))
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove files that were being written when their process ended; call it while nobody writes."""
+    """Remove incomplete files of ended processes; only while nobody writes."""
     for path in folder.glob(f".*{_UNFINISHED}"):
         path.unlink(missing_ok=True)
 
 
 def set_aside(path: Path) -> Path:
-    """Give a damaged file another name, ``.damaged-1``, ``-2`` ... behind it, and return that; nothing is deleted."""
+    """Rename a damaged file to ``.damaged-1``, ``-2`` ..., and return the new path; nothing is deleted."""
     number = 1
     while (aside := path.with_name(f"{path.name}.damaged-{number}")).exists():
         number += 1
@@ -123,7 +123,7 @@ def guarded(
     safe: Callable[[], str] = lambda: NOTHING_LOST,
     foreign: Callable[[BaseException], bool] = lambda _: False,
 ) -> Iterator[None]:
-    """Turn what disk and database say into one sentence that a user can act on."""
+    """Convert errors of disk and database into errors with a remedy."""
     try:
         yield
     except OSError as error:
@@ -147,10 +147,10 @@ def guarded(
         raise ledger_damaged(folder, str(error)) from error
 
 
-def ledger_damaged(folder: Path, why: str) -> CampaignDamagedError:
+def ledger_damaged(folder: Path, reason: str) -> CampaignDamagedError:
     """Return the error of a damaged ledger."""
-    hint = "run the campaign again: its shards make it anew"
-    return CampaignDamagedError("ledger.sqlite is damaged ({reason})", reason=why, hint=hint).at(str(folder))
+    hint = "run the campaign again: it is rebuilt from the shards"
+    return CampaignDamagedError("ledger.sqlite is damaged ({reason})", reason=reason, hint=hint).at(str(folder))
 
 
 _ADVICE = "make room or allow writing, then run the campaign again: it goes on where it stopped"
@@ -168,7 +168,7 @@ def _write_through(path: Path, data: bytes) -> None:
 
 
 class FolderLock:
-    """Held while a campaign runs; the system lets go of it when the process ends, however it ends."""
+    """The lock of a running campaign; the system releases it at the end of the process."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / NAME
@@ -200,7 +200,7 @@ class FolderLock:
 
 
 def holder(folder: Path) -> str | None:
-    """Return the process and machine that run a campaign; None if nobody does."""
+    """Return the process and machine of a running campaign; None without a run."""
     try:
         handle = os.open(folder / NAME, os.O_RDONLY)
     except OSError:
@@ -240,7 +240,7 @@ else:
         return True
 
     def _let_go_in_child() -> None:
-        """Let go in a forked worker: if it outlives its parent, the campaign is not busy."""
+        """Release the lock in a forked worker, which may outlive its parent."""
         for handle in _held:
             with suppress(OSError):
                 os.close(handle)

@@ -1,4 +1,4 @@
-"""What a campaign will take, before it is begun."""
+"""Forecast of the time and disk space of a campaign."""
 
 import shutil
 import time
@@ -24,23 +24,23 @@ _RUN = 2048
 _SHARE = 0.1
 _LONGEST = 2.0
 _PLACES = 32
-# what an adaptive study keeps of a history, with what it takes for a moment; memory of a worker without work [bytes]
+# memory of an adaptive study per history; memory of an idle worker [bytes]
 _KEPT, _BASE = 100, 150_000_000
 
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a campaign will take."""
+    """Remaining time and disk space of a campaign."""
 
-    histories: int  # how many remain
+    histories: int  # remaining number
     chunks: int
-    work: Estimate  # time of one core for them, from a sample spread over them
-    needed: int  # room on the disk [bytes]
+    work: Estimate  # time of one core, from a distributed sample
+    needed: int  # required disk space [bytes]
     free: int
 
 
 def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Forecast:
-    """Compute a sample of the histories, and compare the room on the disk with what is needed."""
+    """Return the forecast from a sample of the histories; too little disk space is an error."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
     needed = left * width(histories.columns) + chunks * _BESIDE
@@ -55,31 +55,31 @@ def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Foreca
 
 @dataclass(frozen=True)
 class JobForecast:
-    """What a job will take, an adaptive study in its first round."""
+    """Forecast of a job; for an adaptive study, of its first round."""
 
     histories: int
     chunks: int
-    chunk: int  # histories in each
-    rate: float  # histories of one core in a second [1/s]
-    seconds: float  # time of the workers for all of them [s]
-    between: tuple[float, float]  # bounds between which it probably is [s]
-    memory: int  # of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes]
-    disk: int  # room for the results [bytes]
-    free: int | None  # room that there is, where a folder is given [bytes]
-    later: tuple[int, int] | None = None  # of an adaptive study, how many histories later rounds usually have
+    chunk: int  # histories per chunk
+    rate: float  # histories per second and core [1/s]
+    seconds: float  # total time of the workers [s]
+    between: tuple[float, float]  # probable bounds of the time [s]
+    memory: int  # approximate memory of all workers and rounds [bytes]
+    disk: int  # disk space of the results [bytes]
+    free: int | None  # free disk space of a given folder [bytes]
+    later: tuple[int, int] | None = None  # usual range of histories in later rounds of an adaptive study
 
 
 def job_forecast(job: "Job", workers: int = 1, folder: Path | None = None) -> JobForecast:
-    """Return what a job will take, from histories that are computed for two seconds.
+    """Return the forecast of a job from two seconds of computation.
 
     Parameters
     ----------
     job : Job
         The job.
     workers : int
-        How many cores.
+        Number of cores.
     folder : Path, optional
-        Where it is to be kept; nothing is written there.
+        Folder of the campaign; nothing is written there.
 
     Returns
     -------
@@ -91,13 +91,13 @@ def job_forecast(job: "Job", workers: int = 1, folder: Path | None = None) -> Jo
     chunk = min(job.document.campaign.chunk or usual_chunk(histories), count)
     chunks = -(-count // chunk)
     size = width(histories.columns)
-    each, later = trial(histories), None if search is None else search.later(count)
-    work = each.at(workers / count)
+    cost, later = trial(histories), None if search is None else search.later(count)
+    work = cost.at(workers / count)
     memory = workers * (_BASE + 4 * size * chunk + _bytes_of(job.problem.motions))
     if search is not None and later is not None:
         memory += _KEPT * (count + int(search.kept * later[1]))
     return JobForecast(
-        count, chunks, chunk, 1.0 / each.seconds, work.seconds, (work.low, work.high), memory,
+        count, chunks, chunk, 1.0 / cost.seconds, work.seconds, (work.low, work.high), memory,
         disk=size * count + 5000 * chunks,
         free=None if folder is None else _free(folder),
         later=later,
@@ -105,7 +105,7 @@ def job_forecast(job: "Job", workers: int = 1, folder: Path | None = None) -> Jo
 
 
 def _bytes_of(motions: MotionSet) -> int:
-    """Return the room that motions take which are held in memory [bytes]."""
+    """Return the memory of the motions [bytes]."""
     if not motions.in_memory:
         return MOTIONS_AT_ONCE * 8 * 8192
     return 3 * 8 * int(sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions))))
@@ -113,33 +113,32 @@ def _bytes_of(motions: MotionSet) -> int:
 
 def _free(folder: Path) -> int:
     path = folder.resolve()
-    return shutil.disk_usage(next(each for each in (path, *path.parents) if each.exists())).free
+    return shutil.disk_usage(next(parent for parent in (path, *path.parents) if parent.exists())).free
 
 
 def trial(histories: Histories) -> Estimate:
-    """Return what a history takes, from runs that are spread over all of them.
+    """Return the mean time of a history, from runs distributed over all of them.
 
-    A motion that has to be made is timed apart, and shared among all histories that it is for.
-
-    Returns the mean of all histories, with twice its standard error.
+    The generation of a motion is timed separately, and divided by its number of histories. The interval is twice the
+    standard error.
     """
     count, synthetic = histories.count, not histories.motions.in_memory
     start = time.perf_counter()
-    _timed(histories, 0, min(count, _WARM))  # motions are laid out, code is loaded
+    _timed(histories, 0, min(count, _WARM))  # start-up: motions, code
     middle = count // 2
     size = int(_SHARE / max(_timed(histories, middle, min(middle + _WARM, count)), 1e-9))
     size = max(1, min(size, _RUN, histories.together if synthetic else count, count))
     times: list[float] = []
-    for place in range(1, _PLACES + 1):
-        first = int(_spread(place) * (count - size + 1))
+    for trial_number in range(1, _PLACES + 1):
+        first = int(_spread(trial_number) * (count - size + 1))
         first -= first % histories.together if synthetic else 0
         last = min(first + size, count)
-        each = _timed(histories, first, last)
-        if synthetic:  # the second time they are there
+        cost = _timed(histories, first, last)
+        if synthetic:  # the second run has the motions in memory
             again = _timed(histories, first, last)
             used = np.unique(histories.rows(first, last).motion).size
-            each = again + max(0.0, each - again) * (last - first) / used * min(1.0, len(histories.motions) / count)
-        times.append(each)
+            cost = again + max(0.0, cost - again) * (last - first) / used * min(1.0, len(histories.motions) / count)
+        times.append(cost)
         if time.perf_counter() - start > _LONGEST or count == size:
             break
     best, number = float(np.mean(times)), len(times)
@@ -147,13 +146,13 @@ def trial(histories: Histories) -> Estimate:
     return Estimate(best, max(0.0, (1.0 - NOISE) * best - doubt), (1.0 + NOISE) * best + doubt)
 
 
-def _spread(place: int) -> float:
-    """Return numbers that fill the space from nought to one evenly, however many are taken: 1/2, 1/4, 3/4, 1/8 ..."""
-    return int(f"{place:b}"[::-1], 2) / 2.0 ** place.bit_length()
+def _spread(number: int) -> float:
+    """Return numbers that fill the interval from 0 to 1 evenly: 1/2, 1/4, 3/4, 1/8 ..."""
+    return int(f"{number:b}"[::-1], 2) / 2.0 ** number.bit_length()
 
 
 def _timed(histories: Histories, first: int, last: int) -> float:
-    """Return the time of a history in a run of some of them [s]."""
+    """Return the time per history of a run [s]."""
     start = time.perf_counter()
     histories.run(first, last, threads=1)
     return (time.perf_counter() - start) / (last - first)

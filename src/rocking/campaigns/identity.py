@@ -1,4 +1,4 @@
-"""What a campaign is, written once in words that a person can read, and which last digits its engine computes."""
+"""Identity of a campaign: a readable description, and a fingerprint of the engine."""
 
 import hashlib
 import json
@@ -24,7 +24,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.histories import Histories
 
-LAST_DIGITS = "another processor, build or ROCKING_ISA"  # what may make an engine compute other last digits
+LAST_DIGITS = "another processor, build or ROCKING_ISA"  # causes of other last digits
 _EACH = 16
 _OF_REFERENCE = 4
 NAME = "campaign.json"
@@ -33,10 +33,10 @@ _SHOWN = 5
 
 
 def engine_of(histories: Histories) -> str:
-    """Return the engine that computes here: of the same text, ``fast, 0123456789abcdef``, are the same bits."""
+    """Return the engine with a fingerprint: equal texts, such as ``fast, 0123456789abcdef``, mean equal bits."""
     engine = fast_engine.chosen(histories.engine, histories.law)
-    mechanics = dict.fromkeys(mechanics_of(each.settings) for each in histories.parts)
-    return f"{engine}, {'-'.join(_fingerprint(engine, _isa(engine, each), each) for each in mechanics)}"
+    mechanics = dict.fromkeys(mechanics_of(block.settings) for block in histories.parts)
+    return f"{engine}, {'-'.join(_fingerprint(engine, _isa(engine, kind), kind) for kind in mechanics)}"
 
 
 def _isa(engine: str, mechanics: Mechanics) -> str:
@@ -44,13 +44,13 @@ def _isa(engine: str, mechanics: Mechanics) -> str:
 
 
 def kind_of(name: str) -> str:
-    """Return which engine it is, whatever its last digits."""
+    """Return the kind of engine, without its fingerprint."""
     return name.partition(", ")[0]
 
 
 @cache
 def _fingerprint(engine: str, instruction_set: str, mechanics: Mechanics) -> str:
-    """Hash the results of a few histories; the instruction set is what the cache tells engines apart by."""
+    """Hash the results of a few histories; the cache distinguishes engines by the instruction set."""
     digest = hashlib.sha256()
     count = _EACH if engine == "fast" else _OF_REFERENCE
     for motions, law, settings in mechanics.samples(*_motions()):
@@ -62,8 +62,8 @@ def _fingerprint(engine: str, instruction_set: str, mechanics: Mechanics) -> str
 
 
 def _motions() -> tuple[list[Segments], list[Segments], list[Segments]]:
-    """Return pulses, and records without and with a vertical part."""
-    # waves of parabolas: four stretches up, four down; of fractions that every machine has to the last bit
+    """Return pulses, and records without and with a vertical component."""
+    # parabolic waves, four segments up and four down, of exact binary fractions
     bump = np.array([0.0, 4.0, -4.0, 0.5, -0.5, 0.0, 0.25, -0.25])
     waves = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * bump
     pulses = [Segments(step, size * waves) for size, step in ((2.0, 0.25), (6.0, 0.25), (12.0, 0.5), (3.0, 0.75))]
@@ -78,13 +78,13 @@ def _motions() -> tuple[list[Segments], list[Segments], list[Segments]]:
 
 
 def _noise(factor: int, size: float) -> FloatArray:
-    """Shaking by remainders of whole numbers, which looks like noise and is the same everywhere."""
+    """Return noise from remainders of integers, equal on all machines."""
     number = np.arange(96)
     return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
 
 
 def _rows(count: int, mechanics: Mechanics) -> Rows:
-    """Return bodies from squat to slender, one of which no engine can take."""
+    """Return bodies from squat to slender; the last one is invalid for all engines."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {
@@ -99,14 +99,14 @@ def _rows(count: int, mechanics: Mechanics) -> Rows:
 
 @dataclass(frozen=True)
 class Identity:
-    """Plan of a campaign, and what its histories are."""
+    """Plan of a campaign, and the description of its histories."""
 
-    plan: Plan  # how it is cut
-    histories: dict[str, Any]  # what they say of themselves
+    plan: Plan
+    histories: dict[str, Any]  # description
 
     @classmethod
     def of(cls, histories: Histories, size: int | None = None) -> "Identity":
-        """Return the identity of a new campaign: the same wherever an engine of the same last digits makes it."""
+        """Return the identity of a new campaign: equal for all engines with equal last digits."""
         size = usual_chunk(histories) if size is None else size
         content = histories.description()
         plan = Plan(histories.key(content), histories.count, size, engine_of(histories), software())
@@ -140,26 +140,26 @@ class Identity:
             ) from error
 
     def write(self, folder: Path) -> None:
-        """Write it; a folder becomes a campaign by this."""
+        """Write the file; it makes the folder a campaign."""
         content = {"plan": asdict(self.plan), "histories": self.histories}
         disk.write_new(folder / NAME, _encoded(content, _sum(content)))
 
     def refuse_other(self, folder: Path, histories: Histories) -> None:
-        """Refuse histories, or a version of this package, that the campaign was not created with."""
+        """Refuse other histories or another version of this package."""
         other = Identity.of(histories, self.plan.size)
         was, now = self.plan, other.plan
         if was.key != now.key:
             differences = list(_differences(self.histories, other.histories, ""))
-            differences.sort(key=lambda text: "..." in text)  # what a person can read comes first
+            differences.sort(key=lambda text: "..." in text)  # readable differences come first
             more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
             shown = "; ".join(differences[:_SHOWN]) + more
             raise CampaignMismatchError(
                 "this campaign is of other histories: {differences}", differences=shown or "their key"
             ).at(str(folder))
-        for what, before, here in (("software", was.software, now.software), ("engine", was.engine, now.engine)):
+        for kind, before, here in (("software", was.software, now.software), ("engine", was.engine, now.engine)):
             if before == here:
                 continue
-            if what == "engine" and kind_of(before) == kind_of(here):
+            if kind == "engine" and kind_of(before) == kind_of(here):
                 raise CampaignMismatchError(
                     "this machine computes other last digits: begun with engine {expected}, here it is {engine} "
                     "({reason})", expected=before, engine=here, reason=LAST_DIGITS,
@@ -167,13 +167,13 @@ class Identity:
                 ).at(str(folder))  # fmt: skip
             raise CampaignMismatchError(
                 "begun with {software} {expected}, this is {version}, whose results may differ in their last bits",
-                software=what, expected=before, version=here,
+                software=kind, expected=before, version=here,
                 hint=f"finish it with {before}, or create a new campaign",
             ).at(str(folder))  # fmt: skip
 
 
 def usual_chunk(histories: Histories) -> int:
-    """Return how many histories make a chunk, unless somebody wants another number; those of a made motion together."""
+    """Return the default number of histories per chunk; those of a synthetic motion remain together."""
     together = 1 if histories.motions.in_memory else histories.together
     engine = fast_engine.chosen(histories.engine, histories.law)
     usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
@@ -200,8 +200,8 @@ def _differences(was: Any, now: Any, where: str) -> Iterator[str]:
         for name in sorted(was.keys() | now.keys()):
             yield from _differences(was.get(name), now.get(name), f"{where}.{name}" if where else str(name))
     elif isinstance(was, list) and isinstance(now, list) and len(was) == len(now):
-        for k, (one, other) in enumerate(zip(was, now, strict=True)):
-            yield from _differences(one, other, f"{where}[{k}]")
+        for k, (before, after) in enumerate(zip(was, now, strict=True)):
+            yield from _differences(before, after, f"{where}[{k}]")
     elif was != now:
         yield f"{where} was {_short(was)}, is {_short(now)}"
 

@@ -1,4 +1,4 @@
-"""Which chunks are finished, kept by the process of the campaign alone, and results read piece by piece from them."""
+"""The ledger of finished chunks, written by the process of the campaign only, and the results read from them."""
 
 import hashlib
 import sqlite3
@@ -51,7 +51,7 @@ class LedgerEntry(NamedTuple):
 
 
 class Ledger:
-    """The ledger of a campaign: what it has recorded outlives the process, the machine and a power cut."""
+    """The ledger of a campaign: its records survive the process, the machine and a power failure."""
 
     def __init__(self, folder: Path, *, writable: bool = False) -> None:
         self._folder = folder
@@ -65,13 +65,13 @@ class Ledger:
 
     @property
     def begun(self) -> bool:
-        """Whether its tables are there: for an instant after its file is made they are not."""
+        """True if the tables exist; a new file has none for an instant."""
         (tables,) = self._database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
         return bool(tables)
 
     @contextmanager
     def instant(self) -> Iterator[None]:
-        """Read as of one instant: between two questions another process may make a chunk of its pieces."""
+        """Read at one instant: between two queries another process may merge pieces."""
         self._database.execute("BEGIN")
         try:
             yield
@@ -79,14 +79,14 @@ class Ledger:
             self._database.execute("COMMIT")
 
     def record(self, record: LedgerEntry) -> None:
-        """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk."""
+        """Record a chunk, which replaces its pieces; on return the record is on disk."""
         with self._database:
             self._database.execute("BEGIN")
             self._insert("chunks", record)
             self._database.execute("DELETE FROM pieces WHERE number = ?", (record.number,))
 
     def record_piece(self, record: LedgerEntry) -> None:
-        """Acknowledge a piece of a chunk; on return this is on disk."""
+        """Record a piece of a chunk; on return the record is on disk."""
         self._insert("pieces", record)
 
     def _insert(self, table: str, record: LedgerEntry) -> None:
@@ -94,23 +94,23 @@ class Ledger:
         self._database.execute(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", row)
 
     def forget(self, name: str) -> None:
-        """Take a chunk or a piece back: its shard turned out to be damaged."""
+        """Remove the record of a chunk or piece with a damaged shard."""
         for table in ("chunks", "pieces"):
             self._database.execute(f"DELETE FROM {table} WHERE name = ?", (name,))
 
-    def note(self, what: str, number: int | None, detail: str) -> None:
-        """Write down what happened."""
+    def note(self, kind: str, number: int | None, detail: str) -> None:
+        """Record an event."""
         self._database.execute(
             "INSERT INTO events (happened, what, chunk, detail) VALUES (datetime('now'), ?, ?, ?)",
-            (what, number, detail),
+            (kind, number, detail),
         )
 
     def records(self) -> Iterator[LedgerEntry]:
-        """Return the finished chunks, in order; none that was changed behind the ledger's back."""
+        """Return the finished chunks in order; a changed record is an error."""
         return self._records("SELECT * FROM chunks ORDER BY number")
 
     def pieces(self) -> Iterator[LedgerEntry]:
-        """Return the finished pieces of chunks that are not whole yet, in order; none that was changed."""
+        """Return the finished pieces of incomplete chunks in order; a changed record is an error."""
         return self._records("SELECT * FROM pieces ORDER BY first")
 
     def _records(self, query: str) -> Iterator[LedgerEntry]:
@@ -125,49 +125,49 @@ class Ledger:
         (state,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if state != "ok" or version != FORMAT:
-            why = f"it is of version {version} of these files, not {FORMAT}" if state == "ok" else str(state)
-            raise ledger_damaged(self._folder, " ".join(why.split())[:120])
-        whole = set()
+            reason = f"it is of version {version} of these files, not {FORMAT}" if state == "ok" else str(state)
+            raise ledger_damaged(self._folder, " ".join(reason.split())[:120])
+        complete = set()
         for record in self.records():
-            whole.add(record.number)
+            complete.add(record.number)
             if record.number >= plan.chunks or plan.chunk(record.number)[:4] != record[:4]:
-                why = f"its chunk {record.number} is not of this campaign"
-                raise ledger_damaged(self._folder, why)
+                reason = f"its chunk {record.number} is not of this campaign"
+                raise ledger_damaged(self._folder, reason)
         end = 0
         for record in self.pieces():
-            mine = record.number < plan.chunks and record.number not in whole
+            mine = record.number < plan.chunks and record.number not in complete
             if not mine or plan.chunk(record.number).piece(*record[1:3])[:4] != record[:4] or record.first < end:
-                why = f"its histories {record.first} to {record.last - 1} are not of this campaign, or there twice"
-                raise ledger_damaged(self._folder, why)
+                reason = f"its histories {record.first} to {record.last - 1} are not of this campaign, or there twice"
+                raise ledger_damaged(self._folder, reason)
             end = record.last
 
     def finished(self) -> tuple[int, int]:
-        """Return how many chunks are finished, and how many histories, those in pieces too."""
+        """Return the number of finished chunks, and of finished histories including pieces."""
         query = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
         chunks, histories = self._database.execute(query).fetchone()
         return int(chunks), int(histories)
 
     def effort(self) -> tuple[float, int]:
-        """Return the seconds of all workers for what is finished, and the attempts beyond the first."""
+        """Return the time of all workers for finished chunks [s], and the number of further attempts."""
         query = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
         seconds, retries = self._database.execute(query).fetchone()
         return float(seconds), int(retries)
 
     def costs(self, count: int) -> Costs:
-        """Return what the histories have taken that are finished."""
+        """Return the costs of the finished histories."""
         costs = Costs(count)
         rows = self._database.execute(f"SELECT first, last, seconds FROM {_ALL}").fetchall()
         if rows:
             costs.add(*(np.array(column) for column in zip(*rows, strict=True)))
         return costs
 
-    def events(self, what: str) -> list[str]:
-        """Return what happened of a kind."""
-        rows = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
+    def events(self, kind: str) -> list[str]:
+        """Return the events of a kind."""
+        rows = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (kind,))
         return [str(detail) for (detail,) in rows]
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._database.close()
 
 
@@ -182,7 +182,7 @@ def _writable(path: Path) -> sqlite3.Connection:
         if version == 0:
             database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
     except sqlite3.DatabaseError:
-        database.close()  # now: later it would remove the log of the ledger that takes its place
+        database.close()  # at once: later it would remove the log of the new ledger
         raise
     if fresh:
         sync_folder(path.parent)
@@ -190,12 +190,12 @@ def _writable(path: Path) -> sqlite3.Connection:
 
 
 def _readable(path: Path) -> sqlite3.Connection:
-    """Open without writing a byte where nobody writes: the log is there only while somebody does, or was killed."""
+    """Open without writing if nobody writes; the log exists during a run or after a kill only."""
     address = f"{path.absolute().as_uri()}?mode=ro"
     if path.with_name(f"{path.name}-wal").exists():
         try:
             return _connected(address)
-        except sqlite3.OperationalError:  # in a folder that cannot be written: what the log has beyond is not seen
+        except sqlite3.OperationalError:  # the folder is read-only: newer records of the log are not visible
             if not path.exists():
                 raise
     return _connected(f"{address}&immutable=1")
@@ -220,8 +220,8 @@ class HistoryRange(NamedTuple):
 
 
 def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
-    """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time."""
-    seals = {chunk.number: seal for chunk, seal in _records(folder, plan) if not chunk.of}
+    """Return the results of a finished campaign in the order of the histories, with one chunk in memory at a time."""
+    seals = {chunk.number: seal for chunk, seal in _records(folder, plan) if not chunk.parent}
     if len(seals) < plan.chunks:
         raise CampaignIncompleteError(
             "{done} of {chunks} chunks are finished", done=len(seals), chunks=plan.chunks, hint="run the campaign"
@@ -232,36 +232,36 @@ def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
 
 
 def digest(ranges: Iterator[HistoryRange]) -> str:
-    """Return the SHA-256 of results, names and types; it does not depend on how they are cut."""
+    """Return the SHA-256 of results, names and types; it is independent of the chunk size."""
     columns: dict[str, Any] = {}
     for piece in ranges:
         for name, values in piece.results.items():
-            each = columns.setdefault(f"{name} {values.dtype.name}", hashlib.sha256())
-            each.update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
-    text = "".join(f"{name} {each.hexdigest()}\n" for name, each in columns.items())
+            column = columns.setdefault(f"{name} {values.dtype.name}", hashlib.sha256())
+            column.update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
+    text = "".join(f"{name} {column.hexdigest()}\n" for name, column in columns.items())
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 @dataclass(frozen=True)
 class Verification:
-    """The state of a campaign's results, each of which was read."""
+    """Result of reading all shards of a campaign."""
 
     histories: int
-    verified: int  # histories whose results are there, to the last bit as they were written
-    chunks: int  # whole chunks among the latter
-    # a sentence for each shard that the ledger has and that is changed, cut short, of other histories, or missing; one
-    # for a ledger that cannot be read, without which nothing counts
+    verified: int  # histories with unchanged results
+    chunks: int  # complete chunks with unchanged results
+    # one sentence per recorded shard that is changed, incomplete, of other histories, or missing; one for an unreadable
+    # ledger
     damaged: tuple[str, ...]
-    missing: tuple[tuple[int, int], ...]  # histories that are not there: first, last (not included)
+    missing: tuple[tuple[int, int], ...]  # missing histories: first, last (not included)
 
     @property
     def whole(self) -> bool:
-        """Whether all results are there, and are what was written."""
+        """True if all results exist and are unchanged."""
         return not self.damaged and not self.missing
 
 
 def verified(folder: Path) -> Verification:
-    """Read every shard that the ledger has, and see that they hold all histories, and none of them twice."""
+    """Read every recorded shard, and check that each history exists once."""
     with disk.guarded(folder):
         plan = Identity.read(folder).plan
         try:
@@ -274,43 +274,43 @@ def verified(folder: Path) -> Verification:
 
 def _verified(folder: Path, plan: Plan, records: list[tuple[Chunk, str]]) -> Verification:
     damaged: list[str] = []
-    there: list[tuple[int, int]] = []
+    verified_ranges: list[tuple[int, int]] = []
     chunks = 0
     for chunk, sealed in records:
         try:
             _read(folder, chunk, sealed)
         except CampaignDamagedError as error:
-            if chunk.of and not any(each == chunk for each, _ in _records(folder, plan)):
-                return verified(folder)  # meanwhile whoever runs it has made a chunk of it
+            if chunk.parent and not any(listed == chunk for listed, _ in _records(folder, plan)):
+                return verified(folder)  # a running process has merged it meanwhile
             damaged.append(str(error))
         else:
-            there.append((chunk.first, chunk.last))
-            chunks += not chunk.of
+            verified_ranges.append((chunk.first, chunk.last))
+            chunks += not chunk.parent
     missing, end = [], 0
-    for first, last in [*sorted(there), (plan.count, plan.count)]:
+    for first, last in [*sorted(verified_ranges), (plan.count, plan.count)]:
         if end < first:
             missing.append((end, first))
         end = last
-    done = sum(last - first for first, last in there)
+    done = sum(last - first for first, last in verified_ranges)
     return Verification(plan.count, done, chunks, tuple(damaged), tuple(missing))
 
 
 def _records(folder: Path, plan: Plan) -> list[tuple[Chunk, str]]:
-    """Return the chunks and pieces that the ledger has, with their seals; it refuses those that overlap."""
+    """Return the recorded chunks and pieces with their seals; overlapping ones are an error."""
     if not (folder / NAME).exists():
         return []
     with Ledger(folder) as ledger, ledger.instant():
         if not ledger.begun:
             return []
         ledger.check(plan)
-        # a chunk's piece that is all of it is the chunk
-        every = (*ledger.records(), *ledger.pieces())
-        return [(plan.chunk(each.number).piece(each.first, each.last), each.seal) for each in every]
+        # a piece with all histories of a chunk is the chunk
+        entries = (*ledger.records(), *ledger.pieces())
+        return [(plan.chunk(record.number).piece(record.first, record.last), record.seal) for record in entries]
 
 
 def _read(folder: Path, chunk: Chunk, sealed: str) -> Arrays:
     path = path_of(folder / SHARDS, chunk)
-    advice = "run the campaign again: it is computed anew"
+    advice = "run the campaign again to compute it"
     try:
         return shard.unpack(path.read_bytes(), chunk, sealed)
     except FileNotFoundError as error:

@@ -1,4 +1,4 @@
-"""Workers that are processes of this machine: any of them may die at any instant."""
+"""Workers in processes of this machine; each may end at any time."""
 
 import contextlib
 import multiprocessing
@@ -24,27 +24,27 @@ _ATTEMPTS = 3
 _AHEAD = 2
 _LOOK = 0.1
 _GRACE = 0.8
-_GUARD = 'too little memory? A script that starts processes needs if __name__ == "__main__": around its calls'
+_GUARD = 'check the memory; a script that starts processes needs if __name__ == "__main__": around its calls'
 
 
 class Failure(NamedTuple):
-    """A chunk that could not be computed, and why; the number is of an error of the disk."""
+    """A chunk that failed, and the reason; number: error number of the disk, if any."""
 
     chunk: Chunk
-    why: str
+    reason: str
     number: int | None
 
 
 def serve(job: WorkerTask, connection: Connection) -> None:
-    """Compute chunks until told to end, or the campaign's process is gone."""
-    # the end of the campaign's process closes a pipe, but a forked sibling may hold that open; a new father tells as
-    # well, but under a fork server the father is the server: so both are asked
+    """Compute chunks until the end, or until the process of the campaign has ended."""
+    # the end of the process of the campaign closes a pipe, but a forked sibling may keep the pipe open; a new parent is
+    # another sign, but the parent may be a fork server: both are checked
     father, campaign = os.getppid(), multiprocessing.parent_process()
 
     def orphaned() -> bool:
         return os.getppid() != father or (campaign is not None and not campaign.is_alive())
 
-    # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
+    # Ctrl-C reaches all processes of a terminal; only the process of the campaign reacts
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
@@ -60,7 +60,7 @@ def serve(job: WorkerTask, connection: Connection) -> None:
 
 
 def answer(job: WorkerTask, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
-    """Return what became of a chunk; nothing that goes wrong with it ends the worker."""
+    """Return the result of a chunk; an error does not end the worker."""
     start = time.perf_counter()
     try:
         data = job.compute(chunk, 1, stop)
@@ -74,7 +74,7 @@ def answer(job: WorkerTask, chunk: Chunk, stop: Callable[[], bool] = lambda: Fal
 
 
 class Processes(Executor):
-    """Computes the chunks on processes of this machine, one thread of the engine each."""
+    """Computes the chunks in processes of this machine, with one engine thread each."""
 
     def __init__(self, workers: int | None = None, start_method: str = "spawn") -> None:
         self.start_method = checks.one_of("start_method", start_method, multiprocessing.get_all_start_methods())
@@ -94,7 +94,7 @@ class Processes(Executor):
 
 
 class _Member:
-    """A worker, and the chunks that were sent to it with the number of attempts; the first one is at work."""
+    """A worker and its chunks with the number of attempts; the first chunk is in progress."""
 
     def __init__(self, context: Any, job: WorkerTask) -> None:
         self.connection, theirs = context.Pipe()
@@ -110,11 +110,11 @@ class _Member:
 
     def send(self, chunk: Chunk, attempts: int) -> None:
         self.tasks.append((chunk, attempts))
-        with contextlib.suppress(OSError):  # dead: it will be noticed with this chunk among its tasks
+        with contextlib.suppress(OSError):  # the worker has ended; its tasks include this chunk
             self.connection.send(chunk)
 
     def answers(self, ready: set[Any]) -> Iterator[Done | Failure | None]:
-        """Give what it has sent; None if it is dead."""
+        """Yield the results of the worker; None if it has ended."""
         if self.connection not in ready and self.process.sentinel not in ready:
             return
         try:
@@ -136,14 +136,14 @@ class _Member:
 class _Crew:
     """The workers of a run."""
 
-    def __init__(self, wanted: int, start_method: str, job: WorkerTask, retried: Retried) -> None:
-        self._wanted, self._job, self._retried = wanted, job, retried
+    def __init__(self, count: int, start_method: str, job: WorkerTask, retried: Retried) -> None:
+        self._wanted, self._job, self._retried = count, job, retried
         self._context = multiprocessing.get_context(start_method)
         self._members: list[_Member] = []
         self._again: deque[tuple[Chunk, int]] = deque()
 
     def feed(self, chunks: Iterator[Chunk], stop: Stop) -> bool:
-        """Hand out chunks while there are any and there is room; whether any are at work."""
+        """Distribute chunks to free workers; return True if any chunk is in progress."""
         while not stop() and (len(self._members) < self._wanted or len(self._least().tasks) < _AHEAD):
             task = self._again.popleft() if self._again else (next(chunks, None), 1)
             if task[0] is None:
@@ -154,7 +154,7 @@ class _Crew:
         return any(member.tasks for member in self._members)
 
     def collect(self) -> Iterator[Done]:
-        """Wait a little; give what is done, raise what failed, bury who died."""
+        """Wait briefly; yield finished chunks, raise failures, and replace ended workers."""
         watched: list[Any] = [m.connection for m in self._members] + [m.process.sentinel for m in self._members]
         ready = set(wait(watched, _LOOK))
         for member in list(self._members):
@@ -164,15 +164,15 @@ class _Crew:
                     break
                 if isinstance(answer, Failure):
                     if answer.number is not None:
-                        raise OSError(answer.number, answer.why)
+                        raise OSError(answer.number, answer.reason)
                     raise CampaignWorkerError(
                         "histories {first} to {last}: {reason}", first=answer.chunk.first, last=answer.chunk.last - 1,
-                        reason=answer.why,
+                        reason=answer.reason,
                     )  # fmt: skip
                 yield answer._replace(attempts=member.tasks.popleft()[1])
 
     def close(self) -> None:
-        """End all workers; what they have not finished is not wanted."""
+        """End all workers; unfinished chunks are discarded."""
         for member in self._members:
             member.end()
         self._members = []
@@ -183,17 +183,17 @@ class _Crew:
     def _bury(self, member: _Member) -> None:
         self._members.remove(member)
         member.process.join()
-        why = _cause(member.process.exitcode)
-        for place, (chunk, attempts) in enumerate(reversed(member.tasks), 1 - len(member.tasks)):
-            at_work = place == 0
+        cause = _cause(member.process.exitcode)
+        for position, (chunk, attempts) in enumerate(reversed(member.tasks), 1 - len(member.tasks)):
+            at_work = position == 0
             if at_work and attempts >= _ATTEMPTS:
                 raise CampaignWorkerError(
                     "histories {first} to {last}: {attempts} workers died of them, the last one {cause}",
-                    first=chunk.first, last=chunk.last - 1, attempts=attempts, cause=why, hint=_GUARD,
+                    first=chunk.first, last=chunk.last - 1, attempts=attempts, cause=cause, hint=_GUARD,
                 )  # fmt: skip
             self._again.appendleft((chunk, attempts + at_work))
             if at_work:
-                self._retried(chunk, f"a worker ended ({why}); its chunk is computed again")
+                self._retried(chunk, f"a worker ended ({cause}); its chunk is computed again")
         member.end()
 
 
@@ -207,7 +207,7 @@ def _cause(code: int | None) -> str:
 
 @contextlib.contextmanager
 def _no_interruption() -> Iterator[None]:
-    """Hold Ctrl-C back, which a new worker inherits: it must not see it before it ignores it."""
+    """Block Ctrl-C for a new worker until it ignores the signal."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -219,16 +219,16 @@ def _no_interruption() -> Iterator[None]:
 
 
 def chosen(executor: str | Executor, workers: int | None, start_method: str | None) -> Executor:
-    """Return the executor of a name, or the one that is given."""
+    """Return the executor for a name, or the given executor."""
     if executor != "processes" and start_method is not None:
         raise InvalidValueError(
-            '{parameter}={value} goes with executor="processes" only', parameter="start_method", value=start_method
+            '{parameter}={value} applies to executor="processes" only', parameter="start_method", value=start_method
         )
     if isinstance(executor, Executor):
         if workers is not None:
             raise InvalidValueError(
-                "{parameter}={value} goes with the name of an executor", parameter="workers", value=workers,
-                hint="the object has its own",
+                "{parameter}={value} applies to the name of an executor only", parameter="workers", value=workers,
+                hint="the object states its workers",
             )  # fmt: skip
         return executor
     if executor == "serial":

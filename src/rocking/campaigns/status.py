@@ -1,4 +1,4 @@
-"""How far a campaign is, in numbers and in a sentence, and how long it will still take."""
+"""Progress of a campaign as numbers and as a sentence, and its remaining time."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -12,22 +12,22 @@ from rocking.campaigns import disk
 from rocking.campaigns.chunks import Chunk, Plan
 
 PARTS = 16
-"""Equal parts of the histories, each of which is measured: costs change from the first history to the last one."""
+"""Number of equal segments with their own cost: costs change from the first to the last history."""
 
 _SETTLED = 4.0
-NOISE = 0.1  # a machine is no steadier than this from one minute to the next [-]
+NOISE = 0.1  # usual variation of the speed of a machine [-]
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Time that is left.
+    """Remaining time.
 
     Parameters
     ----------
     seconds : float
-        The best guess [s].
+        Best estimate [s].
     low, high : float
-        Between these it is likely to be [s].
+        Probable bounds [s].
     """
 
     seconds: float
@@ -35,23 +35,23 @@ class Estimate:
     high: float
 
     def at(self, speed: float) -> "Estimate":
-        """Return the time of several workers for the work of one.
+        """Return the time at another speed.
 
         Parameters
         ----------
         speed : float
-            Seconds of work that are done in a second, by all of them together [-].
+            Work of all workers per second [-].
 
         Returns
         -------
         Estimate
-            That many times less.
+            The estimate divided by the speed.
         """
         return Estimate(self.seconds / speed, self.low / speed, self.high / speed)
 
 
 class Speed:
-    """How much work is done in a second, since the first piece was finished.
+    """Work per second since the first finished piece.
 
     >>> speed = Speed()
     >>> speed.look(1.0, 10.0), speed.look(3.0, 11.0), speed.look(13.0, 16.0)
@@ -62,14 +62,14 @@ class Speed:
         self._first: tuple[float, float] | None = None
 
     def look(self, work: float, now: float) -> float:
-        """Note all work right after a piece was finished [s]; the work in a second, 0 in the first seconds [-]."""
+        """Record the total work after a piece [s]; return the work per second, 0 in the first seconds [-]."""
         self._first = self._first or (work, now)
         spent = now - self._first[1]
         return (work - self._first[0]) / spent if spent >= _SETTLED else 0.0
 
 
 class Costs:
-    """What histories have taken, in equal parts of all of them.
+    """Cost of histories in equal segments of the campaign.
 
     >>> costs = Costs(32)
     >>> costs.add(0, 16, 8.0)
@@ -86,7 +86,7 @@ class Costs:
         self._seen, self._spent = np.zeros_like(self._missing), np.zeros_like(self._missing)
 
     def add(self, first: Any, last: Any, seconds: Any = 0.0) -> None:
-        """Note histories that are finished, and what they took; 0 where that is not known [s]."""
+        """Record finished histories and their time [s]; 0 for an unknown time."""
         share = self._overlap(first, last)
         seconds = np.broadcast_to(np.atleast_1d(seconds), len(share))
         self._missing -= share.sum(axis=0)
@@ -94,58 +94,58 @@ class Costs:
         self._spent += (share / share.sum(axis=1, keepdims=True) * seconds[:, None]).sum(axis=0)
 
     def shares(self, first: Any, last: Any) -> np.ndarray:
-        """Return how many histories of every part are among some."""
+        """Return the number of given histories in each segment."""
         return np.asarray(self._overlap(first, last).sum(axis=0))
 
     def _overlap(self, first: Any, last: Any) -> np.ndarray:
-        first, last = (np.atleast_1d(np.asarray(each, np.int64))[:, None] for each in (first, last))
+        first, last = (np.atleast_1d(np.asarray(ends, np.int64))[:, None] for ends in (first, last))
         return np.asarray(np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None))
 
     def unseen(self) -> np.ndarray:
-        """Return the parts of which nothing was measured yet, and which are not finished."""
+        """Return the unfinished segments without a measurement."""
         return np.flatnonzero((self._missing > 0.0) & (self._seen == 0.0))
 
     def left(self) -> Estimate | None:
-        """Return the time of one worker for what is missing; None while a part of that was not measured."""
+        """Return the remaining time of one worker; None while a segment has no measurement."""
         if self.unseen().size:
             return None
         if not self._missing.any():
             return Estimate(0.0, 0.0, 0.0)
-        numbers, known = np.arange(self._missing.size), self._seen > 0.0
-        each = np.interp(numbers, numbers[known], self._spent[known] / self._seen[known])
-        steps = np.abs(np.diff(each, prepend=each[0], append=each[-1]))
-        # within a part the cost may be as far off its mean as halfway to its neighbours'
+        numbers, is_measured = np.arange(self._missing.size), self._seen > 0.0
+        costs = np.interp(numbers, numbers[is_measured], self._spent[is_measured] / self._seen[is_measured])
+        steps = np.abs(np.diff(costs, prepend=costs[0], append=costs[-1]))
+        # the cost within a segment may differ from its mean by half the difference to its neighbours
         doubt = np.sqrt(np.sum((self._missing * 0.5 * np.maximum(steps[:-1], steps[1:])) ** 2))
-        best = float(np.sum(self._missing * each))
+        best = float(np.sum(self._missing * costs))
         wide = 2.0 * float(doubt) + NOISE * best
         return Estimate(best, max(0.0, best - wide), best + wide)
 
 
 @dataclass(frozen=True)
 class CampaignStatus:
-    """How far a campaign is, as its folder says."""
+    """Progress of a campaign, from its folder."""
 
     folder: Path
     histories: int
-    histories_done: int  # those that are safe on disk
+    histories_done: int  # histories on disk
     chunks: int
     chunks_done: int
-    running: str | None  # process that runs it now
-    seconds: float  # time that all workers have spent on finished chunks [s]
+    running: str | None  # process of the present run
+    seconds: float  # time of all workers for finished chunks [s]
     retries: int  # attempts of finished chunks beyond the first
-    damaged: tuple[str, ...]  # shards found damaged or missing so far, and computed again; a ledger that was made anew
-    software: str  # version of this package that computes it
-    work: Estimate | None = None  # time of one worker for what is missing; None while a part was not measured yet
-    broken: tuple[str, ...] = ()  # shards that are damaged or missing now, and do not count; a run computes them again
+    damaged: tuple[str, ...]  # damaged or missing shards that were computed again; a rebuilt ledger
+    software: str  # version of this package
+    work: Estimate | None = None  # remaining time of one worker; None while a segment has no measurement
+    broken: tuple[str, ...] = ()  # damaged or missing shards at present; a run computes them again
 
     @property
     def complete(self) -> bool:
-        """Whether all histories are computed."""
+        """True if all histories are computed."""
         return self.chunks_done == self.chunks
 
     @property
     def sentence(self) -> str:
-        """How far it is, in words."""
+        """The progress as a sentence."""
         if self.complete:
             return f"all {self.chunks} chunks ({self.histories} histories) are safe in {self.folder}"
         now = f"{self.running} runs it" if self.running else "run the campaign again: it goes on from there"
@@ -155,22 +155,22 @@ class CampaignStatus:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is, right after a chunk, or a piece of one that takes long, was recorded.
+    """Progress of a run after the record of a chunk or a piece.
 
     Parameters
     ----------
     done_histories, total : int
-        Histories that are safe, and all of them.
+        Recorded histories, and their total.
     chunks_done, chunks : int
-        The same, in chunks.
+        Recorded chunks, and their total.
     rate : float
         Histories a second in this run [1/s]; 0 at its start.
     left : Estimate or None
-        Time that is left; None while that is being measured.
+        Remaining time; None during its measurement.
     seconds : float
         Time since the start of this run [s].
     retries : int
-        Chunks that were tried again in this run.
+        Repeated chunks of this run.
     """
 
     done_histories: int
@@ -185,18 +185,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run did."""
+    """Summary of a run."""
 
-    computed: int  # chunks that were computed in it
-    resumed: int  # chunks that were there before
-    adopted: int  # those of them that had been written but not recorded when an earlier run was killed
-    set_aside: tuple[str, ...]  # shards that were damaged or missing, and computed again; a damaged ledger, made anew
-    retries: tuple[str, ...]  # chunks that were tried again, and why
-    seconds: float  # how long it took [s]
+    computed: int  # computed chunks
+    resumed: int  # chunks of earlier runs
+    adopted: int  # unrecorded chunks of an earlier run
+    set_aside: tuple[str, ...]  # damaged or missing shards that were computed again; a rebuilt ledger
+    retries: tuple[str, ...]  # repeated chunks, with reasons
+    seconds: float  # duration [s]
 
 
 class Meter:
-    """Counts what is safe, and tells it."""
+    """Counts recorded histories and reports the progress."""
 
     def __init__(self, folder: Path, plan: Plan, tell: Callable[[Progress], object] | None) -> None:
         self._folder, self._plan, self._tell = folder, plan, tell
@@ -210,9 +210,9 @@ class Meter:
         self._error: Exception | None = None
         self.retries: list[str] = []
 
-    def begin(self, chunks: int, there: Iterable[tuple[int, int]]) -> None:
-        """Note what is there before the first chunk of this run."""
-        ends = np.array(list(there), np.int64).reshape(-1, 2)
+    def begin(self, chunks: int, ranges: Iterable[tuple[int, int]]) -> None:
+        """Record the results before the first chunk of this run."""
+        ends = np.array(list(ranges), np.int64).reshape(-1, 2)
         if ends.size:
             self.costs.add(ends[:, 0], ends[:, 1])
         self.chunks, self.histories = chunks, int(np.sum(ends[:, 1] - ends[:, 0]))
@@ -221,14 +221,14 @@ class Meter:
         self._begun = time.perf_counter()
         self._say()
 
-    def add(self, done: Chunk, seconds: float, *, whole: bool) -> None:
-        """Note that one more chunk, or piece of one, is recorded, and what it took [s]."""
+    def add(self, done: Chunk, seconds: float, *, is_chunk: bool) -> None:
+        """Record one more chunk, or a piece of one, and its time [s]."""
         if not self._work:
-            self._begun = time.perf_counter() - seconds  # what it took to start says nothing about the rest
+            self._begun = time.perf_counter() - seconds  # without the start-up
         self.costs.add(done.first, done.last, seconds)
         self._work += seconds
         self._pace = self._speed.look(self._work, time.perf_counter())
-        self.chunks += whole
+        self.chunks += is_chunk
         self.histories += done.last - done.first
         self._say()
 
@@ -238,7 +238,7 @@ class Meter:
         return time.perf_counter() - self._start
 
     def sentence(self) -> str:
-        """Return what is safe, in words."""
+        """Return the recorded progress as a sentence."""
         if not self.known:
             return disk.NOTHING_LOST
         total = self._plan.chunks
@@ -249,7 +249,7 @@ class Meter:
         return f"{share} are safe"
 
     def raised(self, error: BaseException) -> bool:
-        """Return whether an error is of the function that is told, and so not of the campaign."""
+        """Return True for an error of the progress function."""
         return error is self._error
 
     def _say(self) -> None:

@@ -128,7 +128,7 @@ def test_whole_shards_elsewhere_are_refused():
     data = shard.pack(CHUNK, arrays())
     with pytest.raises(CampaignDamagedError, match="it holds another chunk"):
         shard.unpack(data, PLAN.chunk(4))
-    with pytest.raises(CampaignDamagedError, match="not the one that the ledger recorded"):
+    with pytest.raises(CampaignDamagedError, match="not the recorded one"):
         shard.unpack(data, CHUNK, shard.seal(shard.pack(CHUNK, arrays(2))))
     with pytest.raises(CampaignDamagedError, match="does not fit its name"):
         shard.unpack(data, Chunk(3, 120, 161, CHUNK.name))

@@ -123,7 +123,7 @@ def test_set_aside_deletes_nothing(tmp_path):
         (sqlite3.SQLITE_IOERR_FSYNC, CampaignStorageError, "run the campaign again"),
         (sqlite3.SQLITE_BUSY, CampaignBusyError, "another process holds the ledger"),
         (sqlite3.SQLITE_CORRUPT, CampaignDamagedError, "run the campaign again"),
-        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "its shards make it anew"),
+        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "rebuilt from the shards"),
     ],
 )
 def test_database_errors_have_sentences(tmp_path, code, kind, words):

@@ -76,7 +76,7 @@ def test_run_makes_a_damaged_ledger_anew(finished, shards, harm):
         finished.results()
     summary = finished.run(workers=1)
     assert (summary.adopted, summary.computed) == (6, 0)
-    assert "kept as ledger.sqlite.damaged-1, and made anew from the shards" in summary.set_aside[0]
+    assert "kept as ledger.sqlite.damaged-1, and rebuilt from the shards" in summary.set_aside[0]
     assert finished.status().damaged == summary.set_aside
     assert (finished.verify().whole, shards(finished), finished.sha256()) == (True, before, digest)
     assert (finished.folder / "ledger.sqlite.damaged-1").exists()

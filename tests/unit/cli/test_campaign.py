@@ -201,7 +201,11 @@ def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     assert json.loads(run("verify", folder, "--json")[1])["whole"] is False
     for words in (("status", folder), ("export", folder, "--output", tmp_path / "r.csv")):
         code, _, err = run(*words)
-        assert (code, "run the campaign again: its shards make it anew" in err, len(err.splitlines())) == (6, True, 1)
+        assert (code, "run the campaign again: it is rebuilt from the shards" in err, len(err.splitlines())) == (
+            6,
+            True,
+            1,
+        )
     code, out, _ = run("resume", folder)
     assert (code, "kept as ledger.sqlite.damaged-1" in out) == (0, True)
     assert run("verify", folder)[0] == 0

@@ -136,11 +136,11 @@ class Kills:
     def compare(self, folder, acknowledged):
         """What was acknowledged is in the ledger and on disk, and what is on disk under its name is whole."""
         recorded = self.recorded(folder)
-        whole = {chunk.name for chunk, _ in recorded.values() if not chunk.of}
+        whole = {chunk.name for chunk, _ in recorded.values() if not chunk.parent}
         kept = {name: seal for name, (_, seal) in recorded.items()}
         for name, seal in (acknowledged | kept).items():
             chunk = recorded[name][0] if name in recorded else self.known[name]
-            if chunk.of in whole:  # a piece, which has become part of its chunk
+            if chunk.parent in whole:  # a piece, which has become part of its chunk
                 continue
             what = f"histories {chunk.first} to {chunk.last - 1}"
             if kept.get(name) != seal:

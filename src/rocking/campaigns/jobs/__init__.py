@@ -1,4 +1,4 @@
-"""Jobs: a TOML file says what a campaign computes; its results become files with their provenance."""
+"""Jobs: a TOML file describes a campaign; its results become files with their provenance."""
 
 from rocking.campaigns.forecast import job_forecast as forecast
 from rocking.campaigns.jobs.exporting import export

@@ -1,4 +1,4 @@
-"""Finished campaigns as files: every history, or what the study makes of them, with their provenance."""
+"""Finished campaigns as files: all histories, or results of the study, with their provenance."""
 
 import json
 import os
@@ -50,8 +50,8 @@ from rocking.tables import (
 from rocking.tables.table import written_whole
 
 MOST_REPETITIONS = 100_000  # most repetitions of a bootstrap
-MOST_CELLS = 100_000  # of maps whose safe islands are counted
-MAP = ("mode", "still_rocking")  # what safe islands are found from
+MOST_CELLS = 100_000  # largest map with a count of safe islands
+MAP = ("mode", "still_rocking")  # results for safe islands
 COMPARED = ("flips", "differences")  # tables of a comparison
 
 FORMATS: dict[str, Callable[[Grid, Path], object]] = {
@@ -61,7 +61,7 @@ FORMATS: dict[str, Callable[[Grid, Path], object]] = {
     ".mat": lambda grid, path: to_mat(grid, path, "campaign"),
     ".xlsx": lambda grid, path: to_excel([(grid.row, grid)], path, grid.provenance, others=".nc, .parquet or .csv"),
 }
-"""What writes every history, by the end of the file's name."""
+"""Writers of all histories, by extension."""
 
 TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
     ".csv": to_csv,
@@ -69,7 +69,7 @@ TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
     ".mat": lambda table, path: to_mat(table, path, "table", apart=True),
     ".xlsx": lambda table, path: to_excel([(table.row, table)], path, table.provenance),
 }
-"""What writes a table, by the end of the file's name."""
+"""Writers of a table, by extension."""
 
 ENDINGS: dict[str, tuple[str, ...]] = {
     "histories": tuple(FORMATS),
@@ -80,7 +80,7 @@ ENDINGS: dict[str, tuple[str, ...]] = {
     "boundary": tuple(TABLE_FORMATS),
     **dict.fromkeys(("crossings", "minima", *COMPARED, MEASURES), (".nc", *TABLE_FORMATS)),
 }
-"""What can be exported of campaigns, and how."""
+"""Exports of campaigns, with their extensions."""
 
 _OF_ONE = (*ANALYSES, MEASURES)
 _WHY = {
@@ -103,7 +103,7 @@ _RANKED = {
 
 
 def exports_of(folder: JobFolder) -> list[str]:
-    """Return what can be exported of a campaign; the first is written unless something else is asked for."""
+    """Return the possible exports of a campaign; the first is the default."""
     return [*folder.job.study.exports, *(COMPARED if comparable(folder) else ())]
 
 
@@ -112,32 +112,33 @@ def export(
     crossing_curves: Crossing | None = None, bootstrap: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Path:  # fmt: skip
-    """Write a finished campaign into a file, which is there as a whole or not at all.
+    """Write a finished campaign into a file, which is complete or absent.
 
     Parameters
     ----------
     folder : JobFolder
         The campaign.
     path : path
-        The file; the end of its name says the format.
+        The file; the extension selects the format.
     what : str, optional
-        ``histories``, every one (.nc, .parquet, .csv, .mat, .xlsx); the .nc of a refined map holds its points and
-        polylines too. Of fragility campaigns ``fragility``, the curves with their goodness of fit (.nc, .csv, .mat,
-        .xlsx, and .xml for NRML), ``fragility-points``, observed and fitted level by level, and ``fema-p58`` (.csv). As
-        tables (.csv, .parquet, .mat, .xlsx): of refined maps ``refined``, all points, and ``boundary``, the vertices of
-        the polylines; of minimum accelerations ``crossings`` and ``minima`` (both in one .nc); with several
-        restitutions ``flips``, what each changes against the first, and ``differences``, cell by cell; of clouds
-        ``ims``, the ranking of intensity measures (.nc, too). The first of `exports_of` if not given.
+        Table of the export. Default: the first of `exports_of`.
+
+        - ``histories``: all histories (.nc, .parquet, .csv, .mat, .xlsx). The .nc of a refined map also contains its
+          points and polylines.
+        - ``fragility``: curves with goodness of fit (.nc, .csv, .mat, .xlsx, and .xml for NRML).
+        - ``fragility-points``: observed and fitted fractions per level (.csv). ``fema-p58``: FEMA P-58 table (.csv).
+        - ``refined``, ``boundary``: points and polylines of a refined map (.csv, .parquet, .mat, .xlsx).
+        - ``crossings``, ``minima``: tables of minimum accelerations (also .nc, with both tables).
+        - ``flips``, ``differences``: effect of the restitution compared with the first one, in total and per cell.
+        - ``ims``: ranking of the intensity measures of a cloud.
     restitution : str, optional
-        Label of the restitution whose fragility or measures are meant, where there are several.
+        Label of the restitution of a fragility or ranking; required if there are several.
     crossing_curves : {"keep-uplift", "common-dispersion", "refuse"}, optional
-        Treatment of fragility curves that cross, the same in every file, as in `model_of`. That of the job if not
-        given; "keep-uplift" if the job states none.
+        Treatment of crossing fragility curves, as in `model_of`. Default: from the job, else "keep-uplift".
     bootstrap : int, optional
-        Repetitions of the study for intervals and bands of fragility curves beside the usual ones, none if 0. What the
-        job says if not given; none if it says nothing.
+        Repetitions for intervals and bands of fragility curves, 0 for none. Default: from the job, else 0.
     progress : callable, optional
-        Called with the number of histories done since the last call.
+        Called with the number of histories since the last call.
 
     Returns
     -------
@@ -147,7 +148,7 @@ def export(
     Raises
     ------
     InvalidValueError
-        If there is no such format, or the kind of the campaign has nothing of the sort.
+        If the format is unknown, or the kind of the campaign has no such table.
     CampaignIncompleteError
         If the campaign is not finished.
     """
@@ -169,35 +170,35 @@ def export(
             _write_tables([table], unfinished, attributes_of(folder, provenance))
         else:
             _write_study(folder, unfinished, what, attributes_of(folder, provenance), progress)
-        if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
+        if target.suffix.lower() in {".csv", ".xml"}:  # no attributes in these formats
             write_provenance(provenance, target)
     return target
 
 
 def provenance_of(folder: JobFolder) -> dict[str, Any]:
-    """Return where the results of a finished campaign come from, of an adaptive study with rounds and all histories."""
+    """Return the provenance of the results of a finished campaign, with the rounds of an adaptive study."""
     if folder.job.study.search is None or (noted := finished_rounds(folder.path)) is None:
         return dict(folder.job.provenance)
     return {**folder.job.provenance, "rounds": noted["rounds"], "all_histories": noted["histories"]}
 
 
 def _islands(folder: JobFolder) -> dict[str, list[str]]:
-    """Return sentences on the safe islands of a map, by restitution; large maps are written in pieces, uncounted."""
+    """Return sentences on the safe islands of a map, by restitution; none for large maps."""
     if folder.campaign.plan.count > MOST_CELLS:
-        why = f"Safe islands are not counted in maps of more than {MOST_CELLS} cells."
-        return {label: [why] for label in folder.job.problem.restitutions}
-    return {label: list(safe_islands(found).sentences) for label, found in datasets(folder, MAP).items()}
+        reason = f"Safe islands are not counted in maps of more than {MOST_CELLS} cells."
+        return {label: [reason] for label in folder.job.problem.restitutions}
+    return {label: list(safe_islands(dataset).sentences) for label, dataset in datasets(folder, MAP).items()}
 
 
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
-    """Write where a file comes from into another beside it, of the same name with ``.provenance.json`` behind it."""
+    """Write the provenance into another file, with ``.provenance.json`` after the name of the first one."""
     path = beside.with_name(f"{beside.name}.provenance.json")
     disk.write_new(path, (json.dumps(provenance, indent=1, sort_keys=True) + "\n").encode())
     return path
 
 
 def attributes_of(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, Any]:
-    """Return the provenance as attributes of a file: the main facts each by itself, and all of it as JSON."""
+    """Return the provenance as attributes of a file: the main facts separately, and all of them as JSON."""
     about = folder.job.study.attributes
     plain = {name: int(v) if isinstance(v, bool) else v for name, v in about.items() if v is not None}
     main = {name: provenance[name] for name in _MAIN}
@@ -208,7 +209,7 @@ def checked(
     folder: JobFolder, path: str | os.PathLike[str], what: str | None, restitution: str | None,
     crossing_curves: Crossing | None, bootstrap: int | None = None,
 ) -> tuple[Path, str]:  # fmt: skip
-    """Return the file and what it will hold, after refusing what `export` would."""
+    """Return the path and table of an export, or refuse it."""
     target = target_of(path)
     what = exports_of(folder)[0] if what is None else checks.one_of("what", what, ENDINGS)
     suffix = target.suffix.lower()
@@ -221,9 +222,11 @@ def checked(
             ending=suffix or "no ending", hint=hint,
         )  # fmt: skip
     if what not in _OF_ONE and restitution is not None:
-        raise InvalidValueError("restitution goes with fragility, fema-p58 and ims; every history has its own")
+        raise InvalidValueError(
+            "restitution applies to fragility, fema-p58 and ims only; each history has a restitution"
+        )
     if what not in ANALYSES and crossing_curves is not None:
-        raise InvalidValueError("crossing_curves goes with fragility and fema-p58: it is about curves")
+        raise InvalidValueError("crossing_curves applies to fragility and fema-p58 only")
     if what not in exports_of(folder):
         raise InvalidValueError(
             'nothing to export because a campaign of kind "{kind}" has no {content}{reason}',
@@ -234,35 +237,37 @@ def checked(
     if what in _OF_ONE:
         label_of(what, restitution, list(folder.job.problem.restitutions))
     if bootstrap is not None and what not in ANALYSES:
-        raise InvalidValueError("bootstrap goes with fragility, fragility-points and fema-p58: it is about curves")
-    whole = checks.within("bootstrap", bootstrap or 0, 0, MOST_REPETITIONS, hint="how many times the study is repeated")
-    if 0 < whole < FEWEST or whole != int(whole):
+        raise InvalidValueError("bootstrap applies to fragility, fragility-points and fema-p58 only")
+    repetitions = checks.within(
+        "bootstrap", bootstrap or 0, 0, MOST_REPETITIONS, hint="how many times the study is repeated"
+    )
+    if 0 < repetitions < FEWEST or repetitions != int(repetitions):
         raise InvalidValueError(parameter="bootstrap", allowed=f"0 or a whole number >= {FEWEST}", value=bootstrap)
     return target, what
 
 
 def _write_study(
-    folder: JobFolder, path: Path, what: str, attributes: dict[str, Any], progress: Callable[[int], None] | None
+    folder: JobFolder, path: Path, table: str, attributes: dict[str, Any], progress: Callable[[int], None] | None
 ) -> None:
-    """Write histories, or the tables of an adaptive study; a refined map has room for both in one .nc."""
+    """Write histories, or the tables of an adaptive study; the .nc of a refined map contains both."""
     study, suffix = folder.job.study, path.suffix.lower()
-    if what == "histories":
+    if table == "histories":
 
         def pieces() -> Iterator[tuple[int, int, Arrays]]:
             return pieces_of(study, folder.campaign.pieces(), progress)
 
-        if suffix != ".csv":  # which has no attributes
+        if suffix != ".csv":  # no attributes
             attributes = {**attributes, "contact": _contact_words(folder)}
         FORMATS[suffix](Grid("histories", study.dims, study.coordinates, study.types, pieces, attributes), path)
         if suffix != ".nc" or "refined" not in study.exports:
             return
     result = answer(folder)
-    tables = [*result.tables.values()] if suffix == ".nc" else [result.tables[what]]
+    tables = [*result.tables.values()] if suffix == ".nc" else [result.tables[table]]
     _write_tables(tables, path, attributes | result.attributes)
 
 
 def _contact_words(folder: JobFolder) -> str:
-    """Return in how many histories the ground would have to pull."""
+    """Return the number of histories with a tensile contact force, as a sentence."""
     counts = np.zeros(2, np.int64)
     for piece in folder.campaign.pieces():
         lost = lost_contact(piece.results)
@@ -281,19 +286,19 @@ def _write_tables(tables: list[Table], path: Path, attributes: dict[str, Any]) -
 def _write_fragility(
     folder: JobFolder,
     path: Path,
-    what: str,
+    table: str,
     restitution: str | None,
     crossing_curves: Crossing | None,
     bootstrap: int | None,
 ) -> None:
-    """Write the curves of a finished campaign with goodness of fit; all random numbers have its seed."""
+    """Write the curves of a finished campaign with goodness of fit; its seed determines all random numbers."""
     from rocking.studies.fragility import export as files
     from rocking.studies.fragility.curves import model_of
 
     question: Any = folder.job.document
     campaign, stated = question.campaign, question.export
-    every = analyses(folder)
-    analysis = every[restitution] if restitution else next(iter(every.values()))
+    by_restitution = analyses(folder)
+    analysis = by_restitution[restitution] if restitution else next(iter(by_restitution.values()))
     repetitions = stated.bootstrap if bootstrap is None else bootstrap
     model = model_of(
         analysis,
@@ -304,7 +309,7 @@ def _write_fragility(
     )
     suffix = path.suffix.lower()
     if suffix == ".csv":
-        files.to_csv(model, path, _CURVES[what])
+        files.to_csv(model, path, _CURVES[table])
     elif suffix == ".xml":
         files.to_nrml(model, path)
     else:
@@ -314,36 +319,36 @@ def _write_fragility(
 
 
 def measures_table(ranking: MeasureComparison) -> Table:
-    """Return a ranking of measures as a table, the most efficient first, with ``p(name)`` for each metadata column."""
+    """Return a ranking of measures as a table, the most efficient first; ``p(name)`` per metadata column."""
     rows = [row | {"unit": "1" if row["unit"] == "-" else row["unit"]} for row in ranking.rows()]
     tested = {name: f"p-value of the residuals over {name[2:-1]}" for row in rows for name in row if name[:2] == "p("}
     return _of_rows("rank", rows, _RANKED | tested)
 
 
-def comparison_table(compared: Sensitivity, what: str) -> Table:
-    """Return the ``flips`` of a comparison, or its ``differences`` cell by cell."""
-    if what == "flips":
+def comparison_table(compared: Sensitivity, table: str) -> Table:
+    """Return the ``flips`` of a comparison, or its ``differences`` per cell."""
+    if table == "flips":
         rows = compared.summary()
         return _of_rows("choice", rows, {name: "" for row in rows for name in row})
-    # analyses call the largest rotation over alpha by its own name
+    # analyses have another name of the peak rotation over alpha
     peak_name = "peak_ratio" if "peak_ratio" in compared.datasets[compared.baseline] else "rotation"
     verdict, peak = compared.differences("verdict"), compared.differences(peak_name)
     columns = {}
-    for name, place in zip(verdict.dims, np.indices(verdict.shape, sparse=True), strict=True):
+    for name, index in zip(verdict.dims, np.indices(verdict.shape, sparse=True), strict=True):
         values = np.asarray(verdict[name].values)
-        # words are kept once: written out they would take many times the room of the numbers
-        whole = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
-        columns[str(name)] = Column(np.broadcast_to(whole[place], verdict.shape).ravel())
+        # each text is stored once: repeated texts need far more space than numbers
+        labels = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
+        columns[str(name)] = Column(np.broadcast_to(labels[index], verdict.shape).ravel())
     columns["verdict"] = Column(verdict.values.ravel(), meaning=str(verdict.attrs["long_name"]))
     columns["peak_ratio"] = Column(peak.values.ravel(), meaning=str(peak.attrs["long_name"]))
     return Table("difference", columns)
 
 
 def _of_rows(row: str, rows: list[dict[str, Any]], meanings: Mapping[str, str]) -> Table:
-    """Return rows of any keys as a table; NaN, or no text, where a row has none."""
+    """Return records with any keys as a table; NaN, or an empty text, for an absent key."""
     columns: dict[str, Column] = {}
-    for name in dict.fromkeys(name for each in rows for name in each):
-        values = [each.get(name) for each in rows]
+    for name in dict.fromkeys(name for record in rows for name in record):
+        values = [record.get(name) for record in rows]
         if any(isinstance(value, str) for value in values):
             array = text_array(["" if value is None else str(value) for value in values])
         else:
@@ -352,14 +357,14 @@ def _of_rows(row: str, rows: list[dict[str, Any]], meanings: Mapping[str, str]) 
     return Table(row, columns)
 
 
-def variable_of(name: str, taken: Mapping[str, Column]) -> str:
-    """Return a name that MATLAB and netCDF take, and no other column has.
+def variable_of(name: str, columns: Mapping[str, Column]) -> str:
+    """Return a unique variable name for MATLAB and netCDF.
 
     >>> variable_of("overturned: median ratio", {})
     'overturned_median_ratio'
     """
     variable = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
-    others = {each.variable for each in taken.values()}
+    others = {column.variable for column in columns.values()}
     count = 2
     while (unique := variable if count == 2 and variable not in others else f"{variable}_{count}") in others:
         count += 1

@@ -1,4 +1,4 @@
-"""Results of the studies of finished campaigns, as the Python calls return them."""
+"""Results of finished campaigns, in the classes of the Python functions."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
@@ -26,22 +26,22 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.inventory.assessment import Assessment
 
-READ = ("outcome", "peak_rotation", "least_force")  # all that analyses and assessments read of a history: 17 bytes
+READ = ("outcome", "peak_rotation", "least_force")  # results for analyses and assessments: 17 bytes per history
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
-    """Refuse a campaign that is not finished."""
-    path, known = folder.path, job_status(folder.path, folder.job.document, verify=False)
-    if known.complete:
+    """Refuse an unfinished campaign."""
+    path, status_of_job = folder.path, job_status(folder.path, folder.job.document, verify=False)
+    if status_of_job.complete:
         return
-    status = known.status or folder.campaign.status(verify=False)
+    status = status_of_job.status or folder.campaign.status(verify=False)
     text = "nothing to export because {done} of {chunks} chunks of {folder} are finished"
-    if known.rounds is not None:
+    if status_of_job.rounds is not None:
         text = (
             "nothing to export because {folder} is not finished: {done} of {chunks} chunks of {rounds} so far, and "
             "more rounds may follow"
         )
-    rounds = "one round" if (known.rounds or 1) == 1 else f"{known.rounds} rounds"
+    rounds = "one round" if (status_of_job.rounds or 1) == 1 else f"{status_of_job.rounds} rounds"
     raise CampaignIncompleteError(
         text, done=status.chunks_done, chunks=status.chunks, folder=path, rounds=rounds, hint=resume_hint(path)
     )
@@ -58,7 +58,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     Returns
     -------
     dict
-        By label of the restitution: what `fragility_analysis` returns.
+        By label of the restitution: the result of `fragility_analysis`.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
     Returns
     -------
     AdaptiveResult
-        What the Python call returns, and tables of it.
+        The result of the Python function, and its tables.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def assessment(folder: JobFolder) -> "Assessment":
     Returns
     -------
     Assessment
-        What `rocking.studies.inventory.assess` returns.
+        The result of `rocking.studies.inventory.assess`.
 
     Raises
     ------
@@ -124,26 +124,26 @@ def assessment(folder: JobFolder) -> "Assessment":
 
 
 def comparable(folder: JobFolder) -> bool:
-    """Return whether a campaign has several restitutions that `comparison` can compare."""
+    """Return True if `comparison` can compare the restitutions of a campaign."""
     study = folder.job.study
     is_alone = study.search is not None or study.assess is not None or study.types is not TYPES
     return len(folder.job.problem.restitutions) > 1 and not is_alone
 
 
 def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_ratio")) -> Sensitivity:
-    """Return how the restitution changes the results of a finished campaign, as the Python calls do.
+    """Return the effect of the restitution on the results of a finished campaign.
 
     Parameters
     ----------
     folder : JobFolder
-        The campaign of a job with several restitutions; the first one is what the others are compared with.
+        The campaign of a job with several restitutions; the first one is the reference.
     names : collection of str
-        What of every history the datasets of the comparison hold.
+        Results per history in the datasets of the comparison.
 
     Returns
     -------
     Sensitivity
-        What `map_sensitivity`, `spectrum_sensitivity` and `fragility_sensitivity` return.
+        The result of `map_sensitivity`, `spectrum_sensitivity` or `fragility_sensitivity`.
 
     Raises
     ------
@@ -163,28 +163,28 @@ def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_rat
 def pieces_of(
     study: Study, ranges: Iterable[HistoryRange], progress: Callable[[int], None] | None = None
 ) -> Iterator[tuple[int, int, Arrays]]:
-    """Return first history, last one (not included) and the keys of `HISTORY`, a piece after another."""
-    for each in ranges:
-        for first in range(each.first, each.last, PIECE):
-            last = min(first + PIECE, each.last)
-            part = {name: values[first - each.first : last - each.first] for name, values in each.results.items()}
-            yield first, last, study.derived(first, last, part)
+    """Yield first history, history after the last one, and the keys of `HISTORY`, piece by piece."""
+    for block in ranges:
+        for first in range(block.first, block.last, PIECE):
+            last = min(first + PIECE, block.last)
+            arrays = {name: values[first - block.first : last - block.first] for name, values in block.results.items()}
+            yield first, last, study.derived(first, last, arrays)
             if progress is not None:
                 progress(last - first)
 
 
 def datasets(folder: JobFolder, names: Collection[str] = ()) -> "dict[str, xr.Dataset]":
-    """Return results of all histories by label of the restitution, as the studies' functions return them."""
+    """Return results of all histories by label of the restitution, as from the functions of the studies."""
     study, labels = folder.job.study, list(folder.job.problem.restitutions)
     flat = {name: np.empty(study.histories.count, study.types[name]) for name in names or study.types}
     for first, last, results in pieces_of(study, folder.campaign.pieces()):
         for name, values in flat.items():
             values[first:last] = results[name]
-    every = study.dataset(flat)
+    combined = study.dataset(flat)
     if len(labels) == 1:
-        return {labels[0]: every.assign_attrs(restitution=labels[0])}
+        return {labels[0]: combined.assign_attrs(restitution=labels[0])}
     return {
-        label: every.isel(restitution=k, drop=True).assign_attrs(restitution=label) for k, label in enumerate(labels)
+        label: combined.isel(restitution=k, drop=True).assign_attrs(restitution=label) for k, label in enumerate(labels)
     }
 
 
@@ -198,19 +198,19 @@ def measure_comparison(
     folder : JobFolder
         The campaign.
     restitution : str, optional
-        Label of the restitution whose histories are meant, where there are several.
+        Label of the restitution; required if there are several.
     progress : callable, optional
-        Called with a number of histories since the last call, all of the campaign in the end.
+        Called with the number of histories since the last call; the sum is the total.
 
     Returns
     -------
     MeasureComparison
-        What `compare_measures` returns for the same cloud, the measures and columns of the job.
+        The result of `compare_measures` for this cloud, with the measures and columns of the job.
 
     Raises
     ------
     InvalidValueError
-        If it is no cloud, there are several restitutions, or nothing can be ranked.
+        If the campaign is not a cloud, has several restitutions, or has no measure to rank.
     CampaignIncompleteError
         If the campaign is not finished.
     """
@@ -231,7 +231,7 @@ def measure_comparison(
     total, count, motions = len(folder.job.problem.motions) * len(names), folder.campaign.plan.count, 0
 
     def measured(more: int) -> None:
-        """Tell of motions, each of which is measured once for each measure, as shares of the histories."""
+        """Report measured motions as a number of histories; each motion counts once per measure."""
         nonlocal motions
         before, motions = count * motions // total, motions + more
         if progress is not None:
@@ -243,10 +243,10 @@ def measure_comparison(
         raise InvalidValueError("nothing to export because {reason}", reason=error.sentence) from error
 
 
-def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
-    """Return the restitution that is meant, where each has something of its own."""
+def label_of(table: str, restitution: str | None, labels: list[str]) -> str:
+    """Return the selected restitution; required if several have their own table."""
     if restitution is None and len(labels) > 1:
-        own = what if what == MEASURES else f"a {what}"
+        own = table if table == MEASURES else f"a {table}"
         raise InvalidValueError(
             "{parameter} must be {allowed}: each has {own} of its own", parameter="restitution",
             allowed=f"one of {', '.join(labels)}", own=own,
@@ -256,7 +256,7 @@ def label_of(what: str, restitution: str | None, labels: list[str]) -> str:
 
 @dataclass(frozen=True)
 class FinishedStudy:
-    """Results of a finished campaign, as the picture of its question takes them; without a restitution of the first."""
+    """Results of a finished campaign for the picture of its question; default: the first restitution."""
 
     folder: JobFolder
 

@@ -1,4 +1,4 @@
-"""The folder of a campaign that a job file describes: the job, the hashes of its inputs, and the results."""
+"""The folder of a campaign with a job: the job, the hashes of its inputs, and the results."""
 
 import hashlib
 import json
@@ -48,14 +48,14 @@ JOB, INPUTS = "job.toml", "inputs.json"  # files of the folder
 
 @dataclass(frozen=True)
 class JobFolder:
-    """A campaign on disk with the job that describes it.
+    """A campaign on disk with its job.
 
     Parameters
     ----------
     path : Path
         The folder.
     job : Job
-        The job, its inputs checked against their hashes.
+        The job, with checked hashes of its inputs.
     """
 
     path: Path
@@ -63,19 +63,19 @@ class JobFolder:
 
     @classmethod
     def create(cls, folder: str | os.PathLike[str], job: Job) -> "JobFolder":
-        """Begin a campaign: the job is copied, with the hashes of its inputs.
+        """Create a campaign: copy the job, with the hashes of its inputs.
 
         Parameters
         ----------
         folder : path
-            A new folder, or an empty one.
+            A new or empty folder.
         job : Job
             The job.
 
         Returns
         -------
         JobFolder
-            Nothing is computed yet.
+            The campaign without results.
         """
         path = Path(folder)
         content = {
@@ -98,37 +98,37 @@ class JobFolder:
 
     @classmethod
     def open(cls, folder: str | os.PathLike[str], inputs: str | os.PathLike[str] | None = None) -> "JobFolder":
-        """Go on with a campaign, if its inputs are what they were.
+        """Open a campaign with unchanged inputs to continue it.
 
         Parameters
         ----------
         folder : path
             The folder.
         inputs : path, optional
-            Where the files are now that the job names; where they were, if not given.
+            Present folder of the input files. Default: their folder at the creation.
 
         Returns
         -------
         JobFolder
-            With all that is finished.
+            The campaign with its finished results.
 
         Raises
         ------
         InvalidValueError
-            If a file that the job names is not what it was.
+            If an input file has changed.
         CampaignDamagedError
-            If the job itself is not.
+            If the job has changed.
         """
         path = Path(folder)
         text, content = _kept(path)
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(
-                "the folder of its inputs, {inputs}, is not there", inputs=base, hint="give --inputs"
+                "the folder of its inputs, {inputs}, is not there", inputs=base, hint="add --inputs"
             ).at(str(path))
         with located(str(path), "file"):
             files = InputFiles(base)
-            for item in content["files"]:  # before they are read: what has changed may not be readable
+            for item in content["files"]:  # before reading: a changed file may be unreadable
                 files.file(item["path"])
             refuse_changes(content["files"], files.facts())
         job = Job.of_text(text, content["job_file"], base)
@@ -138,7 +138,7 @@ class JobFolder:
 
     @cached_property
     def campaign(self) -> Campaign:
-        """The campaign, of an adaptive study its first round; begun where a killed process had not come that far."""
+        """The campaign, or the first round of an adaptive study; created if a killed process did not."""
         chunk = self.job.document.campaign.chunk
         if self.job.study.search is None:
             return opened(self.path / HISTORIES, self.job.study.histories, chunk)
@@ -149,30 +149,30 @@ class JobFolder:
         self, executor: str | Executor = "serial", *, workers: int | None = None,
         progress: Callable[[Progress], object] | None = None, **options: Any,
     ) -> Summary:  # fmt: skip
-        """Compute what is missing; of an adaptive study all rounds, one after another.
+        """Compute the missing results; all rounds of an adaptive study in order.
 
         Parameters
         ----------
         executor : {"serial", "processes"} or Executor
-            Who computes.
+            The executor.
         workers : int, optional
             Threads or processes.
         progress : callable, optional
-            Called with a `Progress` at the start and after every chunk; of an adaptive study it tells of one round.
+            Called with a `Progress` at the start and after every chunk; for one round of an adaptive study.
         **options
             ``start_method`` and ``order_seed`` of `Campaign.run`.
 
         Returns
         -------
         Summary
-            What was done.
+            Computed and damaged chunks.
 
         Raises
         ------
         CampaignMismatchError
-            If a round on disk is not the one that the job asks for.
+            If a round on disk belongs to another job.
         CampaignInterrupted
-            If Ctrl-C or SIGTERM asked it to stop.
+            After Ctrl-C or SIGTERM.
         """
         search = self.job.study.search
         if search is None:
@@ -183,66 +183,66 @@ class JobFolder:
 
 @dataclass(frozen=True)
 class JobStatus:
-    """How far a campaign is, and what it is."""
+    """Progress and kind of a campaign."""
 
     path: Path
     name: str
     kind: str
-    # None if it was killed before it had begun; of an adaptive study it is of all rounds that have begun
+    # None if it was killed before its start; for an adaptive study, of all rounds so far
     status: CampaignStatus | None
-    complete: bool  # whether all is computed
-    # rounds of an adaptive study that have begun; how many will follow is not known before they do. None of others
+    complete: bool  # True if all histories are computed
+    # number of rounds of an adaptive study so far; their total is unknown before the end. None for other studies
     rounds: int | None = None
 
 
 def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStatus:
-    """Return how far a campaign is; nothing is written, and its inputs are not needed.
+    """Return the progress of a campaign without its inputs; nothing is written.
 
     Parameters
     ----------
     folder : path
         The folder.
     verify : bool
-        Whether to read all results: what is damaged does not count. Without it the ledger is believed.
+        Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
 
     Returns
     -------
     JobStatus
-        As recorded at this instant.
+        The recorded progress at this instant.
     """
     path = Path(folder)
     return job_status(path, _document(path), verify)
 
 
 def job_status(path: Path, document: "StudyQuestion", verify: bool) -> JobStatus:
-    """Return how far the campaign of a document is."""
+    """Return the progress of the campaign of a document."""
     name, kind, adaptive = document.campaign.name, document.campaign.kind, document.is_adaptive
-    each = of_rounds(path, adaptive, lambda folder: Campaign.status_of(folder, verify=verify))
-    if not each:
+    reports = of_rounds(path, adaptive, lambda folder: Campaign.status_of(folder, verify=verify))
+    if not reports:
         return JobStatus(path, name, kind, None, False, 0 if adaptive else None)
     if not adaptive:
-        return JobStatus(path, name, kind, each[0], each[0].complete)
+        return JobStatus(path, name, kind, reports[0], reports[0].complete)
     status = summed(
-        each, "histories", "histories_done", "chunks", "chunks_done", "seconds", "retries", "damaged", "broken"
+        reports, "histories", "histories_done", "chunks", "chunks_done", "seconds", "retries", "damaged", "broken"
     )
     status = replace(status, folder=path, running=disk.holder(path), work=None)
     finished = finished_rounds(path)
-    complete = finished is not None and finished["rounds"] == len(each) and status.complete
-    return JobStatus(path, name, kind, status, complete, len(each))
+    complete = finished is not None and finished["rounds"] == len(reports) and status.complete
+    return JobStatus(path, name, kind, status, complete, len(reports))
 
 
 def verified(folder: str | os.PathLike[str]) -> Verification:
-    """Read everything that a campaign has, and see that it is there once, and is what was written.
+    """Read all results of a campaign, and check that they are complete and unchanged.
 
     Parameters
     ----------
     folder : path
-        The folder; its inputs are not needed, and nothing is written.
+        The folder; the inputs are not required, and nothing is written.
 
     Returns
     -------
     Verification
-        Of an adaptive study that of all rounds that have begun, which count on.
+        The result; for an adaptive study, of all rounds together.
     """
     path = Path(folder)
     adaptive = _document(path).is_adaptive
@@ -250,13 +250,13 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     wrong = [] if rounds or adaptive else [f"{path}: nothing is computed yet"]
     if adaptive and ((noted := finished_rounds(path)) is None or noted["rounds"] != len(rounds)):
         wrong = [f"{path} is not finished, and more rounds may follow"]
-    begins = np.cumsum([0, *(each.histories for each in rounds)]).tolist()
+    begins = np.cumsum([0, *(report.histories for report in rounds)]).tolist()
     return Verification(
         begins[-1],
-        sum(each.verified for each in rounds),
-        sum(each.chunks for each in rounds),
-        (*wrong, *(sentence for each in rounds for sentence in each.damaged)),
-        tuple((a + k, b + k) for k, each in zip(begins, rounds, strict=False) for a, b in each.missing),
+        sum(report.verified for report in rounds),
+        sum(report.chunks for report in rounds),
+        (*wrong, *(sentence for report in rounds for sentence in report.damaged)),
+        tuple((a + k, b + k) for k, report in zip(begins, rounds, strict=False) for a, b in report.missing),
     )
 
 
@@ -267,7 +267,7 @@ def _document(path: Path) -> "StudyQuestion":
 
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the job as it was copied, and what was noted of its inputs."""
+    """Return the copied job, and the record of its inputs."""
     with disk.guarded(path):
         if not (path / JOB).is_file():
             raise CampaignMismatchError("no campaign of a job file here ({file} is missing)", file=JOB).at(str(path))
@@ -276,7 +276,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         content = json.loads(noted)
         files = [(item["path"], item["sha256"], item["bytes"]) for item in content["files"]]
         assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
-        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders have none
+        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # absent in older folders
             raise CampaignDamagedError(
                 "{file} has changed since the campaign began", file=path / JOB,
                 hint="restore it, or begin a new campaign in another folder",
@@ -291,7 +291,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def _of_schema(number: int, text: str) -> str:
-    """Return a kept job that states its restitution: the default of schema 1 was ked."""
+    """Return a stored job with its restitution: the default of schema 1 was ked."""
     tables = tomllib.loads(text) if number < 2 else {"restitution": {}}
     is_stated = "restitution" in tables or tables.get("campaign", {}).get("kind") == "inventory"
     return text if is_stated else f'{text}\n[restitution]\nmodel = "ked"\n'

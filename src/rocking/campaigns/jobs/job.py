@@ -1,4 +1,4 @@
-"""A job: a TOML file that says what a campaign computes."""
+"""A job: the TOML description of a campaign."""
 
 import hashlib
 import os
@@ -30,16 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    r"""What a campaign computes, as a TOML file says it.
+    r"""A campaign described by a TOML file.
 
     Parameters
     ----------
     text : str
-        The file.
+        Text of the file.
     name : str
-        Name that errors show.
+        Name in errors.
     folder : Path
-        Where the files are that it names.
+        Folder of the input files.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Job:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> "Job":
-        """Return the job of a file, checked as a whole; all files that it names are read.
+        """Return the checked job of a file, including its input files.
 
         Parameters
         ----------
@@ -84,16 +84,16 @@ class Job:
 
     @classmethod
     def of_text(cls, text: str, name: str = "job", folder: str | os.PathLike[str] = ".") -> "Job":
-        """Return the job that a text describes, checked as a whole; all files that it names are read.
+        """Return the checked job of a text, including its input files.
 
         Parameters
         ----------
         text : str
             TOML.
         name : str
-            Name that errors show.
+            Name in errors.
         folder : path
-            Where the files are that it names.
+            Folder of the input files.
 
         Returns
         -------
@@ -107,7 +107,7 @@ class Job:
 
     @cached_property
     def document(self) -> "StudyQuestion":
-        """Its tables."""
+        """Tables of the file."""
         return question_of(self.text)
 
     @cached_property
@@ -119,22 +119,22 @@ class Job:
 
     @cached_property
     def study(self) -> "Study":
-        """Histories, what they are over, and what is read off their results."""
+        """Histories, their dimensions, and the evaluation of their results."""
         return self.document.study(self.problem)
 
     @property
     def inputs(self) -> list[dict[str, Any]]:
-        """The files that it names: path, sha256 and bytes of each."""
+        """Input files: path, sha256 and bytes of each."""
         return self.problem.inputs.facts()
 
     @cached_property
     def provenance(self) -> dict[str, Any]:
-        """Where its results come from, as plain values; no time and no folder is in it."""
+        """Provenance of the results as plain values, without time and folder."""
         histories, campaign, problem = self.study.histories, self.document.campaign, self.problem
         engine = fast_engine.chosen(histories.engine, histories.law)
         motions = {name: value for name, value in problem.motions.description().items() if name != "motions"}
         if isinstance(problem.motions, MotionList):
-            motions["sources"] = [each.answer().plain() for each in summaries_of(problem.motions)]
+            motions["sources"] = [summary.answer().plain() for summary in summaries_of(problem.motions)]
         return {
             "software": f"rocking {software()}",
             "campaign": campaign.name,
@@ -149,13 +149,13 @@ class Job:
             "settings": problem.settings.stated,
             "engine": "; ".join(
                 dict.fromkeys(
-                    mechanics_of(each.settings).engine_of_study(fast=engine == "fast") for each in histories.parts
+                    mechanics_of(block.settings).engine_of_study(fast=engine == "fast") for block in histories.parts
                 )
             ),
             "seeds": {
                 "campaign": campaign.seed,
                 "motions": [table.seed or 0 for table in self.document.motions if table.synthetic is not None],
-                "restitution": [each.seed for each in problem.restitutions.values() if hasattr(each, "seed")],
+                "restitution": [law.seed for law in problem.restitutions.values() if hasattr(law, "seed")],
             },
             "motions": motions | {"count": len(problem.motions)},
             "platform": {

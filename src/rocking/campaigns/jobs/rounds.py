@@ -1,4 +1,4 @@
-"""Rounds of an adaptive study on disk: each is a campaign of its own, and is not computed again by whoever goes on."""
+"""Rounds of an adaptive study on disk: each is a separate campaign and is computed once."""
 
 import json
 import shlex
@@ -30,16 +30,16 @@ from rocking.studies.study_plan import AdaptiveResult, Search, first_round
 _T = TypeVar("_T")
 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
-"""What studies decide on: no more of a round is held in memory."""
+"""Results that studies need; a round keeps only these in memory."""
 
 HISTORIES = "histories"  # the only round of a study that is not adaptive
 
 FINISHED = "finished.json"
-"""Written when a study has asked for its last round: how many there were, and of how many histories."""
+"""Written after the last round: number of rounds and of histories."""
 
 
 def round_folder(folder: Path, number: int) -> Path:
-    """Return the folder of a round; it may not be there yet."""
+    """Return the folder of a round, which may be absent."""
     return folder / f"round-{number:03}"
 
 
@@ -54,12 +54,14 @@ def resume_hint(folder: Path) -> str:
 
 @contextmanager
 def way_out(folder: Path, number: int) -> Iterator[None]:
-    """Say of a damaged round what its user can do: rounds are not campaigns that anybody began."""
+    """Add the remedy of the user to the error of a damaged round."""
     try:
         yield
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
-        if not any(PurePath(place.name).name == NAME for place in error.places):  # a shard or the ledger: made anew
+        if not any(
+            PurePath(location.name).name == NAME for location in error.places
+        ):  # a shard or the ledger is rebuilt
             error.hint = resume_hint(folder)
             raise
         raise CampaignDamagedError(
@@ -68,26 +70,26 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         ) from error  # fmt: skip
 
 
-def of_rounds(folder: Path, adaptive: bool, look: Callable[[Path], _T]) -> list[_T]:
-    """Return what is seen in the folders of the rounds that have begun; what is not adaptive has one."""
+def of_rounds(folder: Path, adaptive: bool, report_on: Callable[[Path], _T]) -> list[_T]:
+    """Return a report on each round; a non-adaptive study has one round."""
     if not adaptive:
-        return [look(folder / HISTORIES)] if (folder / HISTORIES / NAME).exists() else []
-    seen: list[_T] = []
-    while ((path := round_folder(folder, len(seen))) / NAME).exists():
-        with way_out(folder, len(seen)):
-            seen.append(look(path))
-    return seen
+        return [report_on(folder / HISTORIES)] if (folder / HISTORIES / NAME).exists() else []
+    reports: list[_T] = []
+    while ((path := round_folder(folder, len(reports))) / NAME).exists():
+        with way_out(folder, len(reports)):
+            reports.append(report_on(path))
+    return reports
 
 
-def summed(each: Sequence[_T], *names: str) -> _T:
-    """Return the first of some reports with numbers summed up, and lists of sentences one after another."""
-    columns = {name: [getattr(one, name) for one in each] for name in names}
+def summed(reports: Sequence[_T], *names: str) -> _T:
+    """Return the first report with sums of numbers, and joined lists of sentences."""
+    columns = {name: [getattr(report, name) for report in reports] for name in names}
     sums = {name: sum(values, type(values[0])()) for name, values in columns.items()}
-    return replace(each[0], **sums)  # type: ignore[type-var]
+    return replace(reports[0], **sums)  # type: ignore[type-var]
 
 
 def finished_rounds(folder: Path) -> dict[str, int] | None:
-    """Return how many rounds and histories there were, as noted when the last round was through; None before."""
+    """Return the number of rounds and histories of a finished study; None before its end."""
     try:
         noted = json.loads((folder / FINISHED).read_bytes())
         return {name: int(noted[name]) for name in ("rounds", "histories")}
@@ -101,9 +103,9 @@ def finished_rounds(folder: Path) -> dict[str, int] | None:
 
 
 class Rounds:
-    """The rounds that a study asks for, one after another: computed where an executor is given, read where not.
+    """The rounds of a study in order: computed with an executor, read without.
 
-    Ctrl-C and SIGTERM between two rounds are noted.
+    Ctrl-C and SIGTERM between two rounds are recorded.
     """
 
     def __init__(self, folder: Path, chunk: int | None = None, who: str | Executor | None = None, **how: Any) -> None:
@@ -118,7 +120,7 @@ class Rounds:
         return {"rounds": self.number, "histories": self.histories}
 
     def compute(self, histories: Histories) -> Arrays:
-        """Return the results of the next round; as they were, if it was computed before."""
+        """Return the results of the next round, from disk if it was computed before."""
         path, results = round_folder(self.folder, self.number), None
         with self._stopping():
             if self.between.requested():
@@ -127,7 +129,7 @@ class Rounds:
                 raise CampaignIncompleteError("{folder} is missing", folder=path, hint=resume_hint(self.folder))
             campaign = opened(path, histories, self.chunk)
             if self.who is not None:
-                with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
+                with suppress(CampaignDamagedError):  # damaged results are set aside, reported, and computed again
                     results = campaign.results(*NEEDED) if campaign.status(verify=False).complete else None
                 if results is None:
                     self.advance(campaign)
@@ -137,27 +139,27 @@ class Rounds:
         return results
 
     def advance(self, campaign: Campaign) -> None:
-        """Compute what is missing of a round."""
-        # a round of one chunk has work for one only: others would be started for nothing
+        """Compute the missing results of a round."""
+        # a round of one chunk needs one worker only
         alone = {"executor": "serial", "workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
-        self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
+        self.between.__exit__()  # the campaign handles Ctrl-C and SIGTERM within a round
         if self.between.requested():
             raise CampaignInterrupted("between rounds")
         self.done.append(campaign.run(**({"executor": self.who} | self.how | alone)))
         self.between = Interruption().__enter__()
 
     def __enter__(self) -> "Rounds":
-        """Begin to note what comes between the rounds."""
+        """Begin to record signals between rounds."""
         self.between.__enter__()
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Note it no longer."""
+        """End the record of signals."""
         self.between.__exit__()
 
     @contextmanager
     def _stopping(self) -> Iterator[None]:
-        """Say what stops a round in words of the job: its user knows that folder, and no other."""
+        """Convert the error of a round into one of the job with its folder."""
         folder = self.folder
         try:
             with way_out(folder, self.number):
@@ -175,14 +177,14 @@ class Rounds:
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
-    """Return a campaign, begun where it is not."""
+    """Return a campaign, created if it is absent."""
     if (path / NAME).exists():
         return Campaign.open(path, histories)
     return Campaign.create(path, histories, chunk)
 
 
 def replayed(search: Search, folder: Path) -> AdaptiveResult:
-    """Return the result of a finished study, from its rounds on disk; nothing is computed."""
+    """Return the result of a finished study from its rounds on disk, without computation."""
     noted = finished_rounds(folder)
     if noted is None:
         raise CampaignIncompleteError("not finished", hint=resume_hint(folder)).at(str(folder))
@@ -190,7 +192,7 @@ def replayed(search: Search, folder: Path) -> AdaptiveResult:
     result = search(rounds.compute)
     if noted != rounds.counts:
         raise CampaignDamagedError(
-            "{file} tells of {expected}, and there are {counts}", file=folder / FINISHED, expected=noted,
+            "{file} contains {expected}, but the rounds have {counts}", file=folder / FINISHED, expected=noted,
             counts=rounds.counts, hint=resume_hint(folder),
         )  # fmt: skip
     more = {"rounds": noted["rounds"], "all_histories": noted["histories"]}
@@ -201,9 +203,9 @@ def run_rounds(
     search: Search, folder: Path, chunk: int | None, executor: str | Executor = "serial", *,
     workers: int | None = None, progress: Callable[[Progress], object] | None = None, **options: Any,
 ) -> Summary:  # fmt: skip
-    """Compute what is missing of all rounds, read the others, and return what was done in the former."""
+    """Compute the missing results of all rounds, and return the summary."""
     who = chosen(executor, workers, options.get("start_method"))
-    if isinstance(executor, Executor):  # one that cannot compute is refused, also where no round is sent to it
+    if isinstance(executor, Executor):  # an unusable executor is refused, even without remaining rounds
         histories = first_round(search)
         plan = Identity.of(histories).plan
         task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))

@@ -168,7 +168,7 @@ def test_fragility(finished, tmp_path, end, text):
         ("r.xml", "histories", {}, "NRML"),
         ("r.nc", "maps", {}, "what must be one of histories, fragility, .*, minima, .*got 'maps'"),
         ("r.nc", "fragility", {}, 'a campaign of kind "histories" has no fragility'),
-        ("r.nc", "histories", {"restitution": "ked"}, "restitution goes with fragility"),
+        ("r.nc", "histories", {"restitution": "ked"}, "restitution applies to fragility"),
         ("none/r.nc", "histories", {}, "no folder"),
     ],
 )

@@ -86,7 +86,7 @@ def test_inputs_that_moved(job, tmp_path, records):
         (records / name).rename(inputs / name)
     JobFolder.create(tmp_path / "c", Job.read(inputs / "job.toml"))
     inputs.rename(tmp_path / "moved")
-    with pytest.raises(InvalidValueError, match=r"inputs, is not there; give --inputs"):
+    with pytest.raises(InvalidValueError, match=r"inputs, is not there; add --inputs"):
         JobFolder.open(tmp_path / "c")
     assert JobFolder.open(tmp_path / "c", tmp_path / "moved").campaign.plan.count == 32
 

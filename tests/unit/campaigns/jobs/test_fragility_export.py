@@ -100,7 +100,7 @@ def test_a_state_that_is_never_reached(tmp_path):
 @pytest.mark.parametrize(
     ("what", "bootstrap", "words"),
     [
-        ("histories", 200, "bootstrap goes with fragility"),
+        ("histories", 200, "bootstrap applies to fragility"),
         ("fragility", 50, r"bootstrap must be 0 or a whole number >= 99, got 50"),
         ("fragility", 1e9, "bootstrap must be"),
         ("fragility", float("nan"), "bootstrap must be"),
@@ -199,7 +199,7 @@ def test_refusals_of_crossing(crossed, text, tmp_path):
         InvalidValueError, match="crossing_curves must be one of keep-uplift, common-dispersion, refuse, got 'maybe'"
     ):
         export(folder, tmp_path / "r.xml", "fragility", crossing_curves="maybe")
-    with pytest.raises(InvalidValueError, match="it is about curves"):
+    with pytest.raises(InvalidValueError, match="crossing_curves applies to"):
         export(folder, tmp_path / "r.nc", crossing_curves="refuse")
     with pytest.raises(InvalidValueError, match=r"export\.crossing"):
         Job.of_text(text("stripes") + COMMON.replace("common-", "un"))

@@ -325,7 +325,7 @@ def test_status_in_rounds(whole, tmp_path):
             folder.run(workers=1)
     assert folder.run(workers=1).computed == 0
     (tmp_path / "c" / "finished.json").write_text('{"rounds": 2, "histories": 9}')
-    with pytest.raises(CampaignDamagedError, match="tells of"):
+    with pytest.raises(CampaignDamagedError, match="but the rounds have"):
         answer(folder)
     (tmp_path / "c" / "finished.json").write_text("?")
     with pytest.raises(CampaignDamagedError, match="remove it"):
