@@ -1,1 +1,1 @@
-"""Speed against what a user would otherwise take, as ratios in one run."""
+"""Speed compared with alternatives of a user, as ratios within one run."""

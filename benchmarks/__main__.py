@@ -19,15 +19,15 @@ PARTS_ALONE = ("house",)  # not of speed
 
 def rows() -> list[Row]:
     """Every benchmark of bodies and restitution."""
-    found = []
-    for each in ked.comparisons():
-        faster = each.ratio >= 1.0
-        measured = f"{each.ratio:,.0f} times faster" if faster else f"{1.0 / each.ratio:.2f} times its cost"
-        goal = _goal(each.goal)
-        cost = f"{each.ours * 1e9:.2f} ns against {each.theirs * 1e9:,.2f} ns a {each.unit}"
-        found.append(Row(each.subject, each.against, f"{measured} ({cost})", goal, each.met))
+    table_rows = []
+    for comparison in ked.comparisons():
+        faster = comparison.ratio >= 1.0
+        measured = f"{comparison.ratio:,.0f} times faster" if faster else f"{1.0 / comparison.ratio:.2f} times its cost"
+        goal = _goal(comparison.goal)
+        cost = f"{comparison.ours * 1e9:.2f} ns against {comparison.theirs * 1e9:,.2f} ns a {comparison.unit}"
+        table_rows.append(Row(comparison.subject, comparison.against, f"{measured} ({cost})", goal, comparison.met))
     spent = section.seconds()
-    found.append(
+    table_rows.append(
         Row(
             f"Section of {section.VERTICES:,} vertices, checks and KED",
             "-",
@@ -36,8 +36,11 @@ def rows() -> list[Row]:
             spent < section.GOAL,
         )
     )
-    found += [Row(what, "-", f"{spent:.3f} s", f"< {goal} s", spent < goal) for what, spent, goal in start.starts()]
-    return found
+    table_rows += [
+        Row(description, "-", f"{spent:.3f} s", f"< {goal} s", spent < goal)
+        for description, spent, goal in start.starts()
+    ]
+    return table_rows
 
 
 def _goal(goal: float | None) -> str:
@@ -48,7 +51,7 @@ def _goal(goal: float | None) -> str:
 
 def restitution() -> bool:
     """Print and keep the table of bodies and restitution; whether every goal was met."""
-    found = rows()
+    table_rows = rows()
     text = [
         "# Speed",
         "",
@@ -56,30 +59,30 @@ def restitution() -> bool:
         "",
         f"Python {platform.python_version()}, numpy {np.__version__}, {platform.machine()}.",
         "",
-        *table.lines(found),
+        *table.lines(table_rows),
     ]
     table.keep("RESULTS.md", text)
-    return all(row.met is not False for row in found)
+    return all(row.met is not False for row in table_rows)
 
 
 def main() -> None:
-    """Run what was asked for; leave with 1 if a goal is missed."""
+    """Run the selected benchmarks; exit with status 1 if a goal is missed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Speed, as ratios in one run.")
     parser.add_argument("part", nargs="?", choices=("all", *PARTS, *PARTS_ALONE), default="all")
     parser.add_argument("--full", action="store_true", help="engine: more repeats, more histories of slow peers")
     parser.add_argument("--histories", type=int, default=10_000, help="engine: fewer for a trial, not kept")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     good = True
-    if asked.part in {"all", "restitution"}:
+    if options.part in {"all", "restitution"}:
         good = restitution()
-    if asked.part in {"all", "engine"}:
-        good = engine.main(full=asked.full, count=asked.histories) and good
-    if asked.part in {"all", "studies"}:
+    if options.part in {"all", "engine"}:
+        good = engine.main(full=options.full, count=options.histories) and good
+    if options.part in {"all", "studies"}:
         good = studies.main() and good
-    for part, made in (("bed", bed), ("spatial", spatial), ("hull", hull), ("longrun", longrun)):
-        if asked.part in {"all", part}:
-            good = made.main() and good
-    if asked.part == "house":
+    for name, module in (("bed", bed), ("spatial", spatial), ("hull", hull), ("longrun", longrun)):
+        if options.part in {"all", name}:
+            good = module.main() and good
+    if options.part == "house":
         good = house.main()
     sys.exit(0 if good else 1)
 

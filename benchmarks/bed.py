@@ -1,4 +1,4 @@
-"""What a resolved impact costs: one with its history, ten thousand at once, the same by SciPy, and by the table.
+"""Cost of a resolved impact: one with its history, 10,000 together, the same with SciPy, and from the table.
 
 Run it alone: ``python -m benchmarks.bed [COUNT]``. Times are CPU times of this process on one core.
 """
@@ -56,35 +56,41 @@ def random_setups(count: int, kind: str, seed: int = 1) -> list[Setup]:
 
 
 def single() -> list[Row]:
-    """One impact with its history, beside SciPy's integrator on the same equations."""
+    """One impact with its history, compared with the integrator of SciPy on equal equations."""
     block = Block(width=0.2, height=0.4)
     law = KelvinVoigt(block.mass * (2.0 * math.pi * 400.0) ** 2, damping_ratio=1.0)
     bed = ContactBed.uniform(block, POINTS, law)
     fast = median_cpu(lambda: bed_impact(block, bed, angular_velocity=1.0), 21)
     slow = median_cpu(lambda: bed_impact(block, bed, angular_velocity=1.0, engine="reference", tolerance=1e-6), 1)
-    what = f"one impact, {POINTS} points, with its history"
+    description = f"one impact, {POINTS} points, with its history"
     return [
-        Row(what, "-", f"{1e3 * fast:.2f} ms", "< 5 ms", fast < 5e-3),
-        Row(what, "SciPy DOP853, the same equations", f"{slow / fast:,.0f} times faster", "for information"),
+        Row(description, "-", f"{1e3 * fast:.2f} ms", "< 5 ms", fast < 5e-3),
+        Row(description, "SciPy DOP853, the same equations", f"{slow / fast:,.0f} times faster", "for information"),
     ]
 
 
 def batch(count: int, kind: str) -> list[Row]:
     """Many impacts of one law: time, and whether the energy of every one is accounted for."""
-    setups, found = random_setups(count, kind), list[BedImpacts]()
-    spent = cpu_seconds(lambda: found.append(bed_impacts(setups)))
-    impacts, goal = found[0], SECONDS * count / COUNT
+    setups, results = random_setups(count, kind), list[BedImpacts]()
+    spent = cpu_seconds(lambda: results.append(bed_impacts(setups)))
+    impacts, goal = results[0], SECONDS * count / COUNT
     audit, steps = np.abs(impacts.audit), float(np.mean(impacts.results["steps"]))
     failed = int(np.isnan(impacts.coefficient).sum())
-    what = f"{count:,} impacts, {kind}, {POINTS} points"
-    told = f"{spent:.1f} s ({1e3 * spent / count:.2f} ms each, {steps:.0f} steps)"
+    description = f"{count:,} impacts, {kind}, {POINTS} points"
+    time_text = f"{spent:.1f} s ({1e3 * spent / count:.2f} ms each, {steps:.0f} steps)"
     closed = f"worst {audit.max():.1e}, median {np.median(audit):.1e}, {failed} failed"
     # the table of `contact-bed` holds Kelvin-Voigt impacts: the goal is theirs
     of_the_table = kind == "kelvin-voigt"
     timed = (f"< {goal:.0f} s", spent < goal) if of_the_table else ("for information", None)
     return [
-        Row(what, "one core", told, *timed),
-        Row(what, "their own energy before the impact", closed, f"< {AUDIT:.0e}", audit.max() < AUDIT and failed == 0),
+        Row(description, "one core", time_text, *timed),
+        Row(
+            description,
+            "their own energy before the impact",
+            closed,
+            f"< {AUDIT:.0e}",
+            audit.max() < AUDIT and failed == 0,
+        ),
     ]
 
 

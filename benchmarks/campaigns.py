@@ -1,7 +1,7 @@
-"""Campaigns: what safety costs beside the bare engine, what a second worker brings, how time and memory grow.
+"""Campaigns: cost of safe storage, speed-up of a second worker, growth of time and memory.
 
 `python -m benchmarks.campaigns` prints the table; `python -m benchmarks.campaigns COUNT FOLDER` runs one campaign and
-prints what it took as JSON.
+prints its time and memory as JSON.
 """
 
 import json
@@ -64,7 +64,7 @@ def overhead(count: int = 524_288, repeats: int = 7) -> tuple[float, float, int]
 
 
 def two_workers(count: int = 400_000, repeats: int = 3) -> float:
-    """How many times faster two worker processes are than one, from their first finished chunk to the last one."""
+    """Speed-up of two worker processes over one, from their first finished chunk to the last one."""
     work = records(count)
     pairs = [tuple(_working(work, workers) for workers in (1, 2)) for _ in range(repeats)]
     one, two = (statistics.median(column) for column in zip(*pairs, strict=True))
@@ -73,43 +73,49 @@ def two_workers(count: int = 400_000, repeats: int = 3) -> float:
 
 def growth(counts: tuple[int, ...] = (10_000, 100_000, 1_000_000, 10_000_000)) -> list[tuple[int, float, int]]:
     """(histories, CPU seconds, most memory [bytes]) of campaigns in processes of their own."""
-    found = []
+    measured = []
     for count in counts:
         with tempfile.TemporaryDirectory() as folder:
             command = [sys.executable, "-m", "benchmarks.campaigns", str(count), f"{folder}/c"]
             done = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-        found.append((count, done["cpu"], done["memory"] or 0))
-    return found
+        measured.append((count, done["cpu"], done["memory"] or 0))
+    return measured
 
 
 def rows() -> list[Row]:
     """Every benchmark of campaigns."""
     bare, safe, chunks = overhead()
     cost = safe / bare - 1.0
-    what = f"Campaign of {chunks} chunks of default size, records"
-    made = [Row(what, "bare engine", f"{cost:+.1%} ({safe:.2f} s against {bare:.2f} s)", "< +5 %", cost < 0.05)]
+    description = f"Campaign of {chunks} chunks of default size, records"
+    table_rows = [
+        Row(description, "bare engine", f"{cost:+.1%} ({safe:.2f} s against {bare:.2f} s)", "< +5 %", cost < 0.05)
+    ]
     if _cores() > 1:
         faster = two_workers()
-        made.append(Row("Two worker processes", "one", f"{faster:.2f} times", ">= 1.8 times", faster >= 1.8))
+        table_rows.append(Row("Two worker processes", "one", f"{faster:.2f} times", ">= 1.8 times", faster >= 1.8))
     else:
-        made.append(Row("Two worker processes", "one", "not measured: one core", ">= 1.8 times"))
+        table_rows.append(Row("Two worker processes", "one", "not measured: one core", ">= 1.8 times"))
     grown = growth()
     for count, cpu, memory in grown:
-        said = f"{cpu:.2f} s, {cpu / count * 1e6:.2f} us a history, {memory / 1e6:.0f} MB"
+        time_text = f"{cpu:.2f} s, {cpu / count * 1e6:.2f} us a history, {memory / 1e6:.0f} MB"
         goal = "< 2 GiB" if count == grown[-1][0] else "-"
-        made.append(
-            Row(f"Campaign of {count:,}, pulses", "-", said, goal, memory < MEMORY_GOAL if goal != "-" else None)
+        table_rows.append(
+            Row(f"Campaign of {count:,}, pulses", "-", time_text, goal, memory < MEMORY_GOAL if goal != "-" else None)
         )
     # both are many pieces of a second: a campaign of less than one grows with it
-    (few, some, least), (many, long, most) = grown[-2:]
-    straight, flat, what = long / some / (many / few), (most - least) / 1e6, f"{many:,} against {few:,}"
-    made.append(Row(what, "-", f"{straight:.2f} of the time a history", "linear: <= 1.1", straight <= 1.1))
-    made.append(Row(what, "-", f"{flat:+.0f} MB of memory", "flat: <= +20 MB", flat <= 20.0))
-    return made
+    (few, few_seconds, few_memory), (many, long, most) = grown[-2:]
+    straight, flat, description = (
+        long / few_seconds / (many / few),
+        (most - few_memory) / 1e6,
+        f"{many:,} against {few:,}",
+    )
+    table_rows.append(Row(description, "-", f"{straight:.2f} of the time a history", "linear: <= 1.1", straight <= 1.1))
+    table_rows.append(Row(description, "-", f"{flat:+.0f} MB of memory", "flat: <= +20 MB", flat <= 20.0))
+    return table_rows
 
 
 def one(count: int, folder: str) -> None:
-    """Run one campaign in this process; print what it took."""
+    """Run one campaign in this process; print time and memory."""
     work = pulses(count)
     work.run(0, 1000, threads=1)
     clean = _forget_peak()
@@ -122,14 +128,14 @@ def one(count: int, folder: str) -> None:
 
 def _working(work: HistoryTable, workers: int) -> float:
     """Wall seconds a chunk, without the start of the processes."""
-    seen: list[tuple[float, int]] = []
+    samples: list[tuple[float, int]] = []
 
     def note(progress: Progress) -> None:
-        seen.append((time.perf_counter(), progress.chunks_done))
+        samples.append((time.perf_counter(), progress.chunks_done))
 
     with tempfile.TemporaryDirectory() as folder:
         Campaign.create(Path(folder) / "c", work, 8192).run("processes", workers=workers, progress=note)
-    inner = [entry for entry in seen if entry[1] > 2 * workers]
+    inner = [entry for entry in samples if entry[1] > 2 * workers]
     return (inner[-1][0] - inner[0][0]) / (inner[-1][1] - inner[0][1])
 
 

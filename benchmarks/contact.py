@@ -34,7 +34,7 @@ def main() -> None:
                 for engine, count in (("fast", COPIES), ("reference", 1)):
                     scales = np.linspace(1.0, 1.0 + 1e-6, count)
                     began = time.process_time()
-                    found = rk.simulate_many(
+                    dataset = rk.simulate_many(
                         body,
                         motion,
                         0.9,
@@ -46,7 +46,7 @@ def main() -> None:
                     seconds[engine] = (time.process_time() - began) / count
                 ratios.append(seconds["reference"] / seconds["fast"])
                 outcome = rk.Outcome.__members__.values()
-                word = list(outcome)[int(found["outcome"].values.flat[0])].name.lower()
+                word = list(outcome)[int(dataset["outcome"].values.flat[0])].name.lower()
                 print(
                     f"{name:12} mu {mu:.1f} width {body.width:.1f}  {1e3 * seconds['fast']:8.3f} ms  "
                     f"{seconds['reference']:6.2f} s  {ratios[-1]:6.0f} times  {word}"

@@ -1,4 +1,4 @@
-"""The engines: against what users would otherwise take, against the truth, against what the processor can do."""
+"""The engines compared with alternatives, with the reference results, and with the limits of the processor."""
 
 import sys
 import time
@@ -19,7 +19,7 @@ COMMAND = "python -m benchmarks engine"
 
 @dataclass
 class Session:
-    """What the parts share, and what they found."""
+    """Data and results of all sections."""
 
     batch: Histories
     full: bool
@@ -32,12 +32,12 @@ class Session:
         """Progress, apart from the results."""
         print(f"[{time.perf_counter() - self.began:5.0f} s] {text}", file=sys.stderr, flush=True)
 
-    def add(self, name: str, part: Callable[["Session"], None]) -> None:
+    def add(self, name: str, section: Callable[["Session"], None]) -> None:
         """Run a part; one that fails is a goal missed, and does not take the others with it."""
         self.say(name)
         before = len(self.rows)
         try:
-            part(self)
+            section(self)
         except Exception as error:  # noqa: BLE001 - whatever stops a peer or a process is written into the table
             traceback.print_exc()
             self.rows.append(Row(name, "-", f"failed: {type(error).__name__}: {error!s:.80}", "-", False))

@@ -97,7 +97,7 @@ def record(rng: np.random.Generator, highest: float) -> np.ndarray:
 
 
 class Fast:
-    """The fast engine on a batch: what counts is a call of it, results made anew each time."""
+    """The fast engine on a batch: a call of the engine, with new result arrays each time."""
 
     def __init__(self, batch: Histories, threads: int = 1, **options: Any) -> None:
         self.library = library_of(batch.segments())
@@ -107,9 +107,9 @@ class Fast:
     def __call__(self) -> tuple[Arrays, dict[str, int]]:
         """Results and work."""
         out: Arrays = {name: np.empty(self.count, dtype) for name, dtype in RESULTS.items()}
-        given = {**self.rows.values, "motion": self.rows.motion, "key": self.rows.stream}
+        columns = {**self.rows.values, "motion": self.rows.motion, "key": self.rows.stream}
         work = module().run_batch(
-            self.library, given, out, order=self.settings.order, threads=self.threads, chunk=CHUNK,
+            self.library, columns, out, order=self.settings.order, threads=self.threads, chunk=CHUNK,
             **common(self.settings, ConstantRestitution()),
         )  # fmt: skip
         return out, dict(work)

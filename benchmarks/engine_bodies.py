@@ -1,4 +1,4 @@
-"""General-purpose rigid-body codes on the batch: they simulate contacts, and know nothing of rocking."""
+"""General-purpose rigid-body codes on the batch: they simulate contacts, without a rocking model."""
 
 from importlib import import_module
 from typing import Any

@@ -19,7 +19,7 @@ from rocking.dynamics.plane.fast_engine import instruction_set, instruction_sets
 
 @dataclass(frozen=True)
 class Duel:
-    """A peer: what makes it ready, on how many histories it is tried, how often, and how much slower it must be."""
+    """A peer: its preparation, number of histories and repetitions, and smallest ratio of times."""
 
     name: str
     package: str
@@ -48,7 +48,7 @@ DUELS = (
 
 
 def spread_out(batch: Histories, impacts: np.ndarray, count: int, turn: int) -> np.ndarray:
-    """Every n-th history in order of impacts, so that a few stand for all; other ones each turn."""
+    """Return every n-th history in order of impacts, a representative sample; other ones each turn."""
     if count >= len(batch):
         return np.arange(len(batch))
     order, stride = np.argsort(impacts, kind="stable"), len(batch) // count
@@ -59,19 +59,19 @@ def fight(duel: Duel, batch: Histories, truth: np.ndarray, *, full: bool) -> Row
     """One line of the table."""
     ours, spent, ratios = Fast(batch), [], []
     impacts = ours()[0]["impacts"]
-    whole = duel.count >= len(batch)
-    count = len(batch) if whole else duel.count * (5 if full else 1)
+    is_complete = duel.count >= len(batch)
+    count = len(batch) if is_complete else duel.count * (5 if full else 1)
     peer: Verdicts | None = None
     wrong = tried = 0
     for turn in range(duel.repeats + (2 if full else 0)):
         which = spread_out(batch, impacts, count, turn)
-        if peer is None or not whole:
+        if peer is None or not is_complete:
             peer = duel.make(batch.some(which))
         mine = statistics.median(cpu_seconds(ours) for _ in range(3)) / len(batch)
         verdicts: list[np.ndarray] = []
         spent.append(cpu_seconds(lambda: verdicts.append(peer())) / which.size)  # noqa: B023 - called at once
         ratios.append(spent[-1] / mine)
-        if not whole or not turn:
+        if not is_complete or not turn:
             wrong, tried = wrong + int((verdicts[0] != truth[which]).sum()), tried + which.size
     middle = statistics.median(ratios)
     measured = (
@@ -84,39 +84,41 @@ def fight(duel: Duel, batch: Histories, truth: np.ndarray, *, full: bool) -> Row
 
 def shares(batch: Histories, repeats: int) -> list[Row]:
     """Operations a second of the fast engine over the peak of the core: on the batch, and where nothing hits."""
-    found = []
+    table_rows = []
     for name, work, done, goal in (
         ("the batch", Fast(batch), engine_operations.counted(batch), 0.25),
         ("the same records, bodies that never hit", _flying(batch), engine_operations.counted(*_let_go(batch)), None),
     ):
-        what = f"Arithmetic, {name}"
+        description = f"Arithmetic, {name}"
         if done is None:
-            found.append(Row(what, "peak of the core", "not counted: no compiler", _goal(goal)))
+            table_rows.append(Row(description, "peak of the core", "not counted: no compiler", _goal(goal)))
             continue
         peak, spent = engine_peak.beside(work, repeats)
         each, speed = spent / done.steps, done.total / spent
         cost = f"{each * 1e9:.1f} ns an active step of {done.total / done.steps:.0f} operations"
         if peak is None:
-            found.append(Row(what, "peak of the core", f"{cost}; peak not measured", _goal(goal)))
+            table_rows.append(Row(description, "peak of the core", f"{cost}; peak not measured", _goal(goal)))
             continue
         more = f"{100.0 * done.with_extremes / spent / peak:.1f} % with minima and maxima"
         share = f"{100.0 * speed / peak:.1f} % of {peak / 1e9:.1f} GFLOP/s ({cost}, {speed / 1e9:.1f} GFLOP/s; {more})"
-        found.append(Row(what, "peak of the core", share, _goal(goal), None if goal is None else speed / peak >= goal))
-    return found
+        table_rows.append(
+            Row(description, "peak of the core", share, _goal(goal), None if goal is None else speed / peak >= goal)
+        )
+    return table_rows
 
 
 def variants(batch: Histories, truth: np.ndarray) -> list[Row]:
     """The fast engine at its other orders, and on the other instruction sets of this processor."""
-    found = []
+    table_rows = []
     for isa in instruction_sets():
         with patch.dict(os.environ, {"ROCKING_ISA": isa}):
             orders = (8, 6, 4) if isa == instruction_sets()[0] else (8,)
-            found += [_variant(batch, truth, f"order {order}, {instruction_set()}", order) for order in orders]
-    return found
+            table_rows += [_variant(batch, truth, f"order {order}, {instruction_set()}", order) for order in orders]
+    return table_rows
 
 
 def layout(batch: Histories) -> Row:
-    """What it takes to lay out the records for the engine, which the other lines leave out, for peers as well."""
+    """Cost of the layout of the records for the engine; other lines exclude this cost, for peers as well."""
     segments = batch.segments()
     spent = statistics.median(cpu_seconds(lambda: library_of(segments)) for _ in range(3))
     return Row(
@@ -140,7 +142,7 @@ def _variant(batch: Histories, truth: np.ndarray, name: str, order: int) -> Row:
 
 
 def _let_go(batch: Histories) -> tuple[Histories, np.ndarray, np.ndarray]:
-    """Blocks so large that, let go at half alpha, they still fly when the record ends: plain steps alone."""
+    """Return blocks so large that they still fly at the end of the record after a release: plain steps only."""
     return batch, np.full(len(batch), 1e-4), 0.5 * batch.alpha
 
 

@@ -17,7 +17,7 @@ RECORDS = 1000
 
 
 def main(count: int) -> None:
-    """Print what it took."""
+    """Print time and memory."""
     batch = histories(RECORDS)
     campaign = Batch(batch.segments(), threads=1, engine="fast")
 

@@ -51,7 +51,7 @@ def diffrax_tsit5(batch: Histories, substeps: int = 2) -> Verdicts:
 
 def _compiled(jax: Any, batch: Histories, advance: Any, substeps: int) -> Verdicts:
     """Groups of histories of like lengths, each padded to its longest with ground at rest."""
-    one = _history(jax, advance, substeps)
+    history = _history(jax, advance, substeps)
     order = np.argsort([record.size for record in batch.records])
     work = []
     for numbers in np.array_split(order, GROUPS):
@@ -60,8 +60,8 @@ def _compiled(jax: Any, batch: Histories, advance: Any, substeps: int) -> Verdic
         push = np.zeros((len(group), longest))
         for row, record, scale in zip(push, group.records, group.scale, strict=True):
             row[: record.size] = record * (scale / g)
-        arrays = [jax.numpy.asarray(each) for each in (push, group.alpha, group.p, group.r)]
-        work.append((numbers, jax.jit(jax.vmap(one)).lower(*arrays).compile(), arrays))
+        arrays = [jax.numpy.asarray(column) for column in (push, group.alpha, group.p, group.r)]
+        work.append((numbers, jax.jit(jax.vmap(history)).lower(*arrays).compile(), arrays))
 
     def run() -> np.ndarray:
         out = np.zeros(len(batch), bool)

@@ -33,9 +33,9 @@ print(json.dumps(spent))
 
 def threads(batch: Histories, repeats: int) -> Row:
     """Wall time with one thread over that with two, in turn."""
-    one, two = Fast(batch, 1), Fast(batch, 2)
-    two()
-    ratios = sorted(_wall(one) / _wall(two) for _ in range(repeats))
+    single_thread, two_threads = Fast(batch, 1), Fast(batch, 2)
+    two_threads()
+    ratios = sorted(_wall(single_thread) / _wall(two_threads) for _ in range(repeats))
     middle = statistics.median(ratios)
     return Row(
         "Fast engine, 2 threads",
@@ -80,7 +80,7 @@ def growth(counts: tuple[int, ...] = COUNTS) -> list[Row]:
 
 
 def single(batch: Histories) -> list[Row]:
-    """A response of a 40 s record at 0.01 s from Python; and what the first one costs in a fresh process."""
+    """A response to a 40 s record at 0.01 s from Python; and the cost of the first one in a new process."""
     import rocking as rk
 
     record = max(batch.records, key=np.size)

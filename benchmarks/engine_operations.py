@@ -1,4 +1,4 @@
-"""How much arithmetic the fast engine does on a batch: counted while it runs, with numbers that count."""
+"""Number of arithmetic operations of the fast engine on a batch, with numbers that count."""
 
 import ctypes
 import shutil
@@ -21,11 +21,11 @@ FLAGS = ("-std=c++17", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared",
 
 @dataclass(frozen=True)
 class Operations:
-    """What steps, landings and the search for the next sample that lifts a body do, in lanes that hold a history.
+    """Operations of time steps, landings and the search for uplift, in lanes with a history.
 
-    What single lanes do beside that (impacts, tops, rest) is not counted, a few operations a step.
+    Operations of single lanes (impacts, maxima, rest) are excluded, a few per time step.
 
-    Loads, stores, comparisons, selections, absolute values and whole numbers are no operations.
+    Loads, stores, comparisons, selections, absolute values and integers are no operations.
     """
 
     sums: int
@@ -63,7 +63,7 @@ class _Settings(ctypes.Structure):
 
 
 def counted(batch: Histories, p: np.ndarray | None = None, rotation: np.ndarray | None = None) -> Operations | None:
-    """Count the operations of a batch, with another p or let go at rotations if given; None without a compiler."""
+    """Return the operations of a batch, with another p or initial rotations if given; None without a compiler."""
     library = _built()
     if library is None:
         return None

@@ -1,4 +1,4 @@
-"""How many floating-point operations a second the core could do."""
+"""Peak floating-point operations per second of a core."""
 
 import ctypes
 import shutil
@@ -39,15 +39,15 @@ FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fas
 
 
 def spinner(rounds: int = 5_000_000) -> tuple[Callable[[], object], float] | None:
-    """Multiply-adds at full speed, and how many operations a call does; None without a compiler that builds it."""
+    """Return multiply-adds at full speed, and the operations per call; None without a compiler."""
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         return None
     with tempfile.TemporaryDirectory() as folder:
         source, built = Path(folder) / "peak.c", Path(folder) / "peak.so"
         source.write_text(SOURCE, encoding="utf-8")
-        wanted = [flag for flag in FLAGS if sys.platform == "linux" or "vector-width" not in flag]
-        done = subprocess.run([compiler, *wanted, "-o", built, source], capture_output=True, check=False)
+        flags = [flag for flag in FLAGS if sys.platform == "linux" or "vector-width" not in flag]
+        done = subprocess.run([compiler, *flags, "-o", built, source], capture_output=True, check=False)
         if done.returncode:
             return None
         library = ctypes.CDLL(str(built))
@@ -58,20 +58,20 @@ def spinner(rounds: int = 5_000_000) -> tuple[Callable[[], object], float] | Non
 
 def peak(repeats: int = 7) -> float | None:
     """Float64 operations a second of one core, at best; None if it cannot be measured."""
-    made = spinner()
-    if made is None:
+    loop = spinner()
+    if loop is None:
         return None
-    work, count = made
+    work, count = loop
     return max(count / cpu_seconds(work) for _ in range(repeats))
 
 
 def beside(work: Callable[[], object], repeats: int) -> tuple[float | None, float]:
     """Median peak [operations/s] and median CPU seconds of some work, in turn."""
-    made = spinner()
+    loop = spinner()
     work()
     spent, speed = [], []
     for _ in range(repeats):
         spent.append(cpu_seconds(work))
-        if made is not None:
-            speed.append(made[1] / cpu_seconds(made[0]))
+        if loop is not None:
+            speed.append(loop[1] / cpu_seconds(loop[0]))
     return statistics.median(speed) if speed else None, statistics.median(spent)

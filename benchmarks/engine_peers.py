@@ -1,4 +1,4 @@
-"""What a user would write: scipy's solve_ivp with events, and a numba loop of Runge-Kutta steps."""
+"""Programs of a user: solve_ivp of SciPy with events, and a loop of Runge-Kutta steps in numba."""
 
 import math
 from collections.abc import Callable
@@ -15,7 +15,7 @@ HALF_PI = 0.5 * math.pi
 
 
 def falls(side: float, rotation: float, velocity: float, alpha: float, p: float) -> bool:
-    """Whether the body, once the ground is still, goes over the foot on which it stands."""
+    """Return True if the body passes over its foot after the end of the ground motion."""
     outward = side * velocity
     passes = 0.5 * (velocity / p) ** 2 + math.cos(alpha - side * rotation) > 1.0
     beyond = side * rotation > alpha
@@ -23,7 +23,7 @@ def falls(side: float, rotation: float, velocity: float, alpha: float, p: float)
 
 
 def scipy_events(batch: Histories, method: str = "DOP853", tolerance: float = 1e-8) -> Verdicts:
-    """solve_ivp between events, started anew at uplifts and impacts."""
+    """solve_ivp between events, restarted at uplifts and impacts."""
     return lambda: np.array([_scipy_one(batch, k, method, tolerance) for k in range(len(batch))])
 
 
@@ -57,14 +57,14 @@ def _scipy_one(batch: Histories, k: int, method: str, tolerance: float) -> bool:
             if t >= end:
                 return False
             side, y, resting = -math.copysign(1.0, push), np.zeros(2), False
-        found = solve_ivp(
+        solution = solve_ivp(
             rates, (t, end), y, method=method, rtol=tolerance, atol=tolerance * alpha, events=(contact, lies)
         )
         # an uplift that rounding takes back at once would go on for ever at the same instant
-        t, y = max(float(found.t[-1]), t + 1e-9), found.y[:, -1]
-        if found.t_events[1].size:
+        t, y = max(float(solution.t[-1]), t + 1e-9), solution.y[:, -1]
+        if solution.t_events[1].size:
             return True
-        if found.t_events[0].size:
+        if solution.t_events[0].size:
             side, y = -side, np.array([0.0, r * y[1]])
             # slow, and held down: at rest
             resting = abs(y[1]) < 1e-3 * p * alpha and side * rates(t, (0.0, 0.0))[1] < 0.0
@@ -90,7 +90,7 @@ def numba_rk4(batch: Histories, substeps: int = 2) -> Verdicts:
     numba = import_module("numba")
     flat = np.concatenate(batch.records)
     first = np.concatenate([[0], np.cumsum([record.size for record in batch.records])])
-    compiled = {name: numba.njit(fastmath=True, inline="always")(each) for name, each in (("rk4", _rk4),)}
+    compiled = {name: numba.njit(fastmath=True, inline="always")(function) for name, function in (("rk4", _rk4),)}
     loop = numba.njit(fastmath=True)(_loop)
     run = numba.njit(fastmath=True)(_all)
     arguments = (flat, first, batch.alpha, batch.p, batch.r, batch.scale / g, substeps, loop, compiled["rk4"])
@@ -124,9 +124,9 @@ def _loop(record: Any, alpha: float, p: float, r: float, factor: float, substeps
             at = 0.0 if abs(a0) > limit else (math.copysign(limit, a0 + rise) - a0) / rise
             side = -1.0 if a0 + at * rise > 0.0 else 1.0
             th, om, resting = 0.0, 0.0, False
-        part = (1.0 - at) / substeps
+        fraction = (1.0 - at) / substeps
         for _ in range(substeps):
-            left = part
+            left = fraction
             for _ in range(8):  # impacts within a substep
                 a = a0 + at * rise
                 t1, o1 = rk4(th, om, side, p2, alpha, a, a + left * rise, left * STEP)

@@ -1,4 +1,4 @@
-"""Verdicts of the fast engine against those of the reference engine, and how far the boundary is where they differ."""
+"""Outcomes of the fast engine compared with the reference engine, and the distance of differences to the boundary."""
 
 import os
 from collections.abc import Callable
@@ -22,18 +22,18 @@ def outcomes_of(batch: Histories) -> np.ndarray:
 
 def reference_outcomes(batch: Histories, say: Callable[[str], None]) -> np.ndarray:
     """Outcomes by the reference engine, two processes at a time."""
-    found = np.zeros(len(batch), np.int8)
+    outcomes = np.zeros(len(batch), np.int8)
     pieces = np.array_split(np.arange(len(batch)), max(1, len(batch) // PIECE))
-    done, told = 0, 0
+    done, tenths = 0, 0
     with ProcessPoolExecutor(min(2, os.cpu_count() or 1), mp_context=get_context("spawn")) as crew:
         running = {crew.submit(outcomes_of, batch.some(piece)): piece for piece in pieces}
         for future in as_completed(running):
-            found[running[future]] = future.result()
+            outcomes[running[future]] = future.result()
             done += running[future].size
-            if done * 10 // len(batch) > told:
-                told = done * 10 // len(batch)
+            if done * 10 // len(batch) > tenths:
+                tenths = done * 10 // len(batch)
                 say(f"  reference engine: {done:,} of {len(batch):,}")
-    return found
+    return outcomes
 
 
 def agreement(batch: Histories, truth: np.ndarray) -> tuple[list[Row], list[str]]:
@@ -65,16 +65,25 @@ def agreement(batch: Histories, truth: np.ndarray) -> tuple[list[Row], list[str]
 
 def flips(batch: Histories, outcome: np.ndarray, band: float) -> np.ndarray:
     """Which histories end otherwise if the motion is a little stronger or weaker."""
-    found = np.zeros(len(batch), bool)
-    for part in (1.0, 0.5, 0.2, 0.1, 1e-2, 1e-3, 1e-4, 1e-6):  # where impacts magnify errors, the boundary is no line
+    is_flipped = np.zeros(len(batch), bool)
+    for fraction in (
+        1.0,
+        0.5,
+        0.2,
+        0.1,
+        1e-2,
+        1e-3,
+        1e-4,
+        1e-6,
+    ):  # where impacts magnify errors, the boundary is no line
         for sign in (-1.0, 1.0):
-            found |= Fast(batch.rescaled(1.0 + sign * band * part))()[0]["outcome"] != outcome
-    return found
+            is_flipped |= Fast(batch.rescaled(1.0 + sign * band * fraction))()[0]["outcome"] != outcome
+    return is_flipped
 
 
 def _line(batch: Histories, k: int, outcome: np.ndarray, truth: np.ndarray) -> str:
-    one = batch.some(np.array([k]))
-    distance = next((band for band in 10.0 ** np.arange(-13.0, -1.0) if flips(one, outcome[[k]], band)[0]), np.inf)
+    single = batch.some(np.array([k]))
+    distance = next((band for band in 10.0 ** np.arange(-13.0, -1.0) if flips(single, outcome[[k]], band)[0]), np.inf)
     names = ("no uplift", "rocked", "overturned", "failed")
     return (
         f"- history {k}: fast {names[outcome[k]]}, reference {names[truth[k]]}; the fast verdict changes when the"

@@ -1,7 +1,7 @@
-"""How often a left-out group of measurements lies within its interval: sets of evidence made up, resumed where stopped.
+"""Coverage of the intervals of left-out groups of measurements, for synthetic sets of evidence; a run can be resumed.
 
-`make evidence-sets` makes 1,000 of nine groups (ten minutes), keeps every one in build/evidence_sets.jsonl, and prints
-the coverage by the share of the variance that lies between groups.
+`make evidence-sets` makes 1,000 sets of nine groups (ten minutes), stores them in build/evidence_sets.jsonl, and prints
+the coverage by the fraction of the variance between groups.
 """
 
 from dataclasses import replace
@@ -37,20 +37,20 @@ def made_up(number: int) -> DataSet:
 
 
 def left_out(number: int) -> dict[str, Any]:
-    """Return how many of nine groups lie within, how many measurements, and how wide intervals are."""
+    """Return the fractions of groups and measurements within their interval, and the widths of intervals."""
     groups = left_out_groups(made_up(number))
     return {
         "share": SHARES[number % len(SHARES)],
-        "groups": sum(each.within for each in groups) / len(groups),
-        "measurements": sum(each.inside for each in groups) / sum(each.measurements for each in groups),
-        "single": sum(each.inside for each in groups if each.measurements == 1)
-        / sum(each.measurements == 1 for each in groups),
-        "width": float(np.mean([each.interval_width for each in groups])),
+        "groups": sum(group.within for group in groups) / len(groups),
+        "measurements": sum(group.inside for group in groups) / sum(group.measurements for group in groups),
+        "single": sum(group.inside for group in groups if group.measurements == 1)
+        / sum(group.measurements == 1 for group in groups),
+        "width": float(np.mean([group.interval_width for group in groups])),
     }
 
 
 def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
-    """Return the means of what `left_out` returns."""
+    """Return the means of the results of `left_out`."""
     return {name: float(np.mean([row[name] for row in rows])) for name in rows[0]}
 
 
@@ -58,8 +58,8 @@ def main(cases: int = 1000) -> None:
     """Print the coverage."""
     rows = list(resumed(ROOT / "build" / "evidence_sets.jsonl", cases, left_out, __file__, ("evidence", "restitution")))
     kinds = {f"{share:g} between groups": [row for row in rows if row["share"] == share] for share in SHARES}
-    for words, some in {"all": rows, **kinds}.items():
-        print(f"| {words} | {' | '.join(f'{name} {value:.4f}' for name, value in coverage(some).items())} |")
+    for kind, selected in {"all": rows, **kinds}.items():
+        print(f"| {kind} | {' | '.join(f'{name} {value:.4f}' for name, value in coverage(selected).items())} |")
 
 
 if __name__ == "__main__":

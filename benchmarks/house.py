@@ -60,18 +60,18 @@ class Measure:
 @cache
 def trees(folder: Path) -> dict[str, ast.Module]:
     """Return the syntax tree of every module below a folder, by its dotted name."""
-    found = {}
+    by_name = {}
     for path in sorted(folder.rglob("*.py")):
         parts = path.relative_to(folder.parent).with_suffix("").parts
         name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-        found[name] = ast.parse(path.read_text("utf-8"))
+        by_name[name] = ast.parse(path.read_text("utf-8"))
         if (stub := path.with_suffix(".pyi")).exists():
-            found[name].body.append(_exports(ast.parse(stub.read_text("utf-8")), name))
-    return found
+            by_name[name].body.append(_exports(ast.parse(stub.read_text("utf-8")), name))
+    return by_name
 
 
 def _exports(stub: ast.Module, package: str) -> ast.If:
-    """Return the names that a package fetches when they are first asked for, as imports for type checkers alone."""
+    """Return the names that a package imports at first use, from imports for type checkers."""
     for node in stub.body:
         if isinstance(node, ast.ImportFrom) and node.level:
             node.module, node.level = f"{package}.{node.module}" if node.module else package, 0
@@ -84,36 +84,36 @@ def lines(folder: Path) -> tuple[int, int, int]:
     for path in sorted(folder.rglob("*.py")):
         text = path.read_text("utf-8")
         every += len(text.splitlines())
-        told = _docstring_lines(ast.parse(text))
-        docstrings += len(told)
+        documented = _docstring_lines(ast.parse(text))
+        docstrings += len(documented)
         code += sum(
-            bool(line.strip()) and not line.lstrip().startswith("#") and number not in told
+            bool(line.strip()) and not line.lstrip().startswith("#") and number not in documented
             for number, line in enumerate(text.splitlines(), 1)
         )
     return every, code, docstrings
 
 
 def _docstring_lines(tree: ast.Module) -> set[int]:
-    found: set[int] = set()
+    numbers: set[int] = set()
     for node in ast.walk(tree):
         kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
         if isinstance(node, kinds) and ast.get_docstring(node):
             text = node.body[0]
-            found.update(range(text.lineno, (text.end_lineno or text.lineno) + 1))
-    return found
+            numbers.update(range(text.lineno, (text.end_lineno or text.lineno) + 1))
+    return numbers
 
 
 def classes(folder: Path) -> Counter[str]:
-    """Return how often each class name is defined below a folder."""
+    """Return the number of definitions of each class name below a folder."""
     return Counter(
         node.name for tree in trees(folder).values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)
     )
 
 
 def imports(folder: Path) -> dict[str, set[str]]:
-    """Return what each module imports of the others, within functions and as strings too, types aside.
+    """Return the imports of each module from the others, also in functions and as strings, except types.
 
-    A name that a package hands on leads to the module where it stands.
+    A name from a package leads to its module.
     """
     modules = trees(folder)
     return {name: set(_imported(name, tree, modules)) - {name} for name, tree in modules.items()}
@@ -133,7 +133,7 @@ def _imported(name: str, tree: ast.Module, modules: dict[str, ast.Module]) -> It
 
 
 def _is_package(name: str, modules: dict[str, ast.Module]) -> bool:
-    return any(each.startswith(f"{name}.") for each in modules)
+    return any(module.startswith(f"{name}.") for module in modules)
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:
@@ -151,12 +151,16 @@ def _executed(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def _of_method(node: ast.stmt) -> list[ast.AST]:
-    """Return what is executed of a statement of a class, without the imports by which a result draws itself."""
+    """Return the executed code of a statement of a class, without imports for plots and reports."""
     body = ast.Module(body=[node], type_ignores=[])
     if not isinstance(node, ast.FunctionDef) or node.name not in UPWARD:
         return [body]
-    drawn = [part for part in node.body if isinstance(part, ast.ImportFrom) and f"{part.module}.".startswith(DRAWN_BY)]
-    return [ast.Module(body=[part for part in node.body if part not in drawn], type_ignores=[])]
+    drawn = [
+        statement
+        for statement in node.body
+        if isinstance(statement, ast.ImportFrom) and f"{statement.module}.".startswith(DRAWN_BY)
+    ]
+    return [ast.Module(body=[statement for statement in node.body if statement not in drawn], type_ignores=[])]
 
 
 def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:
@@ -167,7 +171,7 @@ def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:
             return module
         if not isinstance(node, ast.ImportFrom) or node.module not in modules or node.module == module:
             continue
-        if any((each.asname or each.name) == name for each in node.names):
+        if any((alias.asname or alias.name) == name for alias in node.names):
             return _home(node.module, name, modules)
     return ""  # compiled
 
@@ -177,7 +181,7 @@ def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
     number: dict[str, int] = {}
     low: dict[str, int] = {}
     stack: list[str] = []
-    found: list[list[str]] = []
+    cycles: list[list[str]] = []
 
     def visit(name: str) -> None:
         number[name] = low[name] = len(number)
@@ -191,17 +195,17 @@ def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
             group = stack[stack.index(name) :]
             del stack[stack.index(name) :]
             if len(group) > 1:
-                found.append(sorted(group))
+                cycles.append(sorted(group))
 
     sys.setrecursionlimit(10_000)
     for name in sorted(arrows):
         if name not in number:
             visit(name)
-    return found
+    return cycles
 
 
 def upward(arrows: dict[str, set[str]]) -> list[tuple[str, str]]:
-    """Return the imports of a room above, or beside, its own."""
+    """Return imports of a package from a higher or equal layer."""
     floor = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 
     def room(name: str) -> str:
@@ -220,28 +224,28 @@ CHOICE = re.compile(r"rocking\.dynamics\.((\w+\.)?mechanics(_base)?|\w+\.body)")
 
 
 def choices_of_mechanics(folder: Path) -> dict[str, list[str]]:
-    """Return where code outside the choice of mechanics asks for the body or the friction that decide it."""
-    found: dict[str, list[str]] = {"in_space()": [], "friction is None": [], "isinstance(..., Solid)": []}
+    """Return code outside the choice of mechanics with a test of body or friction."""
+    locations: dict[str, list[str]] = {"in_space()": [], "friction is None": [], "isinstance(..., Solid)": []}
     for name, tree in trees(folder).items():
         if CHOICE.fullmatch(name):
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and last_name(node.func) == "in_space":
-                found["in_space()"].append(f"{name}:{node.lineno}")
+                locations["in_space()"].append(f"{name}:{node.lineno}")
             if isinstance(node, ast.Call) and last_name(node.func) == "isinstance":
                 kinds = node.args[1].elts if isinstance(node.args[1], ast.Tuple) else [node.args[1]]
                 if "Solid" in map(last_name, kinds):
-                    found["isinstance(..., Solid)"].append(f"{name}:{node.lineno}")
+                    locations["isinstance(..., Solid)"].append(f"{name}:{node.lineno}")
             if (
                 isinstance(node, ast.Compare) and last_name(node.left) == "friction"
                 and isinstance(node.comparators[0], ast.Constant) and node.comparators[0].value is None
             ):  # fmt: skip
-                found["friction is None"].append(f"{name}:{node.lineno}")
-    return found
+                locations["friction is None"].append(f"{name}:{node.lineno}")
+    return locations
 
 
 def facts_stated_twice(folder: Path) -> dict[str, list[str]]:
-    """Return places where a fact is stated that has its place elsewhere, by what is counted."""
+    """Return locations of facts that belong elsewhere, by kind of fact."""
     from rocking.quantities import is_named
 
     scripts = [path for path in sorted(folder.rglob("*.js")) if "vendor" not in path.parts]
@@ -262,21 +266,21 @@ def options() -> dict[str, list[str]]:
 
     from rocking.cli.application import application
 
-    found: dict[str, list[str]] = {}
+    by_command: dict[str, list[str]] = {}
 
     def collect(command: Any, name: str) -> None:
         if hasattr(command, "commands"):
             for key, each in command.commands.items():
                 collect(each, f"{name} {key}".strip())
         else:
-            found[name] = [each.opts[-1] for each in command.params if each.param_type_name == "option"]
+            by_command[name] = [each.opts[-1] for each in command.params if each.param_type_name == "option"]
 
     collect(typer.main.get_command(application()), "")
-    return found
+    return by_command
 
 
 def deep_imports(folder: Path) -> tuple[int, int]:
-    """Return how many test files import inner modules, and how many such modules they import."""
+    """Return the number of test files with imports of inner modules, and the number of these modules."""
     modules = trees(SOURCE)
     faces = {name for name in modules if _is_package(name, modules) or name.count(".") < 2}
     deep: dict[str, set[str]] = defaultdict(set)
@@ -292,9 +296,9 @@ def deep_imports(folder: Path) -> tuple[int, int]:
 
 
 def equations_cited(rooms: tuple[str, ...]) -> tuple[int, int]:
-    """Return how many citations the comments of rooms hold, and how many different equations they cite."""
+    """Return the number of citations in the comments of packages, and the number of cited equations."""
     paths = [path for room in rooms for path in (SOURCE / room).rglob("*.py")]
-    comments = [each for path in paths for each in text_of_comments(path.name, path.read_text("utf-8"))]
+    comments = [comment for path in paths for comment in text_of_comments(path.name, path.read_text("utf-8"))]
     ours, paper = cited(comments)
     return len(ours) + len(paper), len(set(ours)) + len(set(paper))
 

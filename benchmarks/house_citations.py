@@ -12,7 +12,7 @@ KINDS = {"src": ("*.py",), "engine": ("*.hpp", "*.cpp")}
 
 
 class Equation(NamedTuple):
-    """A displayed equation that has a number: its name stands in bold before it."""
+    """A displayed equation with a number in bold before it."""
 
     number: int
     name: str
@@ -25,15 +25,15 @@ def pages() -> dict[str, str]:
 
 
 def numbered(page: str) -> list[Equation]:
-    """Return the equations of a page that have a number, as they stand there."""
-    found, start = [], 0
+    """Return the numbered equations of a page as text."""
+    equations, start = [], 0
     for mark in re.finditer(r"^\$\$([^$]+)\$\$ \(eq-(\d+)\)$", page, flags=re.M):
         names = re.findall(r"\*\*(.+?)\*\*", page[start : mark.start()], flags=re.S)
-        found.append(
+        equations.append(
             Equation(int(mark[2]), " ".join(names[-1].split()).rstrip(".,:") if names else "", mark[1].strip())
         )
         start = mark.end()
-    return found
+    return equations
 
 
 def referred(page: str) -> list[int]:
@@ -68,8 +68,8 @@ def cited(comments: list[str]) -> tuple[list[int], list[int]]:
 @cache
 def computed() -> dict[int, list[str]]:
     """Return the files that compute each equation."""
-    found: dict[int, list[str]] = {}
+    files: dict[int, list[str]] = {}
     for path, source in sources().items():
         for number in sorted(set(cited(text_of_comments(path, source))[0])):
-            found.setdefault(number, []).append(path)
-    return found
+            files.setdefault(number, []).append(path)
+    return files

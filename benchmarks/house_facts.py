@@ -28,13 +28,13 @@ def last_name(node: ast.AST) -> str:
 
 def keys_of_answers(trees: Mapping[str, ast.Module]) -> dict[str, str]:
     """Return the keys that are typed in answers, each with one place: module and line."""
-    found = {}
+    keys = {}
     for name, tree in trees.items():
         for node in ast.walk(tree):
             is_call = isinstance(node, ast.Call) and last_name(node.func) in _ANSWERS
             if is_call or (isinstance(node, ast.FunctionDef) and node.name in _METHODS):
-                found |= {key.value: f"{name}:{key.lineno}" for key in _keys(node)}
-    return found
+                keys |= {key.value: f"{name}:{key.lineno}" for key in _keys(node)}
+    return keys
 
 
 def _keys(node: ast.AST) -> Iterator[ast.Constant]:
@@ -73,9 +73,9 @@ def _foreign(tree: ast.AST, own: set[str]) -> set[int]:
 
 
 def _spoken(tree: ast.AST) -> Iterator[tuple[str, ast.AST]]:
-    """Yield the names of sentences, and what is done with each: variables over lists of them, errors that are caught.
+    """Yield the names of sentences with their code: variables over lists of sentences, caught errors.
 
-    An empty name stands for what is written in full, such as ``result.verdict`` or ``str(error)``.
+    An empty name means an explicit expression, such as ``result.verdict`` or ``str(error)``.
     """
     yield "", tree
     for node in ast.walk(tree):
@@ -105,7 +105,7 @@ def modules_named(trees: Mapping[str, ast.Module]) -> list[str]:
 
     A name after ``-m`` starts a process, and one of ``getLogger`` is that of a log.
     """
-    found = []
+    locations = []
     for name, tree in trees.items():
         started = {
             id(after) for node in ast.walk(tree) if isinstance(node, ast.List)
@@ -113,13 +113,15 @@ def modules_named(trees: Mapping[str, ast.Module]) -> list[str]:
             if isinstance(before, ast.Constant) and before.value == "-m"
         }  # fmt: skip
         logs = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and last_name(node.func) == "getLogger"]
-        started |= {id(each) for node in logs for each in node.args}
+        started |= {id(argument) for node in logs for argument in node.args}
         for node in ast.walk(tree):
-            whole = isinstance(node, ast.Constant) and "." in str(node.value) and node.value in trees
-            made = isinstance(node, ast.Call) and last_name(node.func) == "import_module" and _is_ours(node.args[0])
-            if (whole and id(node) not in started) or made:
-                found.append(f"{name}:{node.lineno}")
-    return found
+            is_name = isinstance(node, ast.Constant) and "." in str(node.value) and node.value in trees
+            is_import = (
+                isinstance(node, ast.Call) and last_name(node.func) == "import_module" and _is_ours(node.args[0])
+            )
+            if (is_name and id(node) not in started) or is_import:
+                locations.append(f"{name}:{node.lineno}")
+    return locations
 
 
 def _is_ours(argument: ast.AST) -> bool:
@@ -136,10 +138,10 @@ def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str
     pictures are no declarations.
     """
     drawn = {name for name in trees if ".plots." in name}
-    found = [name for name, tree in trees.items() if name not in drawn and any(map(_declares, ast.walk(tree)))]
+    names = [name for name, tree in trees.items() if name not in drawn and any(map(_declares, ast.walk(tree)))]
     listed = re.compile(r"""\["width", "|"width", "height",""")
     kept = [path for path in scripts if path.parent.name not in {"charts", "drawing"}]
-    return found + [path.name for path in kept if listed.search(path.read_text("utf-8"))]
+    return names + [path.name for path in kept if listed.search(path.read_text("utf-8"))]
 
 
 def _declares(node: ast.AST) -> bool:

@@ -1,4 +1,4 @@
-"""How many files of the package a question passes through, followed call by call."""
+"""Number of files of the package in the call path of a question."""
 
 import json
 import subprocess
@@ -97,5 +97,5 @@ def followed(before: str, asked: str) -> list[str]:
 
 
 def files_passed() -> list[tuple[str, int, int]]:
-    """Return each question, the files that it passes, and at most how many it should."""
+    """Return each question, the files in its path, and their largest allowed number."""
     return [(what, len(followed(before, asked)), most) for what, (before, asked, most) in QUESTIONS.items()]

@@ -1,8 +1,8 @@
-"""Fifty random hulls, shaken: the compiled engine of hulls and MuJoCo, one core each, in CPU time.
+"""Fifty random hulls under ground motion: the compiled engine of hulls and MuJoCo, one core each, in CPU time.
 
-MuJoCo runs at the largest step whose verdicts agree in 95 % of the hulls with those of half of it; the engine of hulls
-at two tolerances, with its verdicts beside those of one of 1e-10. The ratio is the median over the histories that rock
-at least a fifth of the time, as MuJoCo has them.
+MuJoCo runs at the largest time step with outcomes equal to those of half of it in 95 % of the hulls. The engine of
+hulls runs at two tolerances, compared with a tolerance of 1e-10. The ratio is the median over the histories that rock
+at least a fifth of the time in MuJoCo.
 """
 
 import sys
@@ -59,13 +59,13 @@ class Case:
 
     @property
     def ground(self) -> HullGround:
-        """What the engine takes."""
+        """Ground motion of the engine."""
         return HullGround(*(GroundMotion(a, DT) for a in self.acceleration.T))
 
 
 def cases() -> list[Case]:
     """The hulls, each with a motion of its own: ten sines from 0.5 to 3 Hz, the vertical component a third."""
-    rng, made = np.random.default_rng(2026), []
+    rng, drawn_cases = np.random.default_rng(2026), []
     t = np.arange(0.0, SHAKEN, DT)
     for _ in range(COUNT):
         body = _hull(rng)
@@ -74,8 +74,8 @@ def cases() -> list[Case]:
             phases, rates = rng.uniform(0.0, 2.0 * np.pi, 10), rng.uniform(0.5, 3.0, 10)
             sines = np.sin(2.0 * np.pi * t[:, None] * rates + phases).sum(axis=1) * np.sin(np.pi * t / SHAKEN) ** 2
             waves[:, k] = peak * sines / np.abs(sines).max()
-        made.append(Case(body, waves))
-    return made
+        drawn_cases.append(Case(body, waves))
+    return drawn_cases
 
 
 def _hull(rng: np.random.Generator) -> HullBody:
@@ -113,7 +113,7 @@ def model_of(body: HullBody, step: float) -> Any:
 
 
 def peer(case: Case, step: float) -> tuple[bool, float, float]:
-    """Whether MuJoCo says that it overturns, the share of time in which it rocks, CPU time [s]."""
+    """Return overturning in MuJoCo, the fraction of time with rocking, CPU time [s]."""
     model = model_of(case.body, step)
     steps = round(DURATION / step)
     at = step * (np.arange(steps) + 0.5)
@@ -128,9 +128,9 @@ def peer(case: Case, step: float) -> tuple[bool, float, float]:
     w, x, y, z = states[:, 4:8].T
     up = np.column_stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)])
     poses = case.body.poses
-    fell = poses[case.body.under(tuple(up[-1].tolist()))] != poses[case.body.under((0.0, 0.0, 1.0))]
+    overturned = poses[case.body.under(tuple(up[-1].tolist()))] != poses[case.body.under((0.0, 0.0, 1.0))]
     turns = np.linalg.norm(states[:, 11:14], axis=1) > 0.02
-    return fell, float(turns.mean()), spent
+    return overturned, float(turns.mean()), spent
 
 
 def ours(case: Case, settings: HullSettings, count: int = BATCH) -> tuple[bool, float]:
@@ -171,7 +171,7 @@ def main() -> bool:
 
 
 def against_mujoco(hulls: list[Case], mine: dict[float, list[tuple[bool, float]]]) -> list[Row]:
-    """Verdicts and CPU time beside those of MuJoCo at the step that its own verdicts ask for."""
+    """Outcomes and CPU time compared with MuJoCo at its required time step."""
     coarse = [peer(case, STEPS[0]) for case in hulls]
     for step, half in pairwise(STEPS):
         fine = [peer(case, half) for case in hulls]
@@ -190,8 +190,8 @@ def against_mujoco(hulls: list[Case], mine: dict[float, list[tuple[bool, float]]
     return rows
 
 
-def _alike(one: list[Any], other: list[Any]) -> float:
-    return float(np.mean([a[0] == b[0] for a, b in zip(one, other, strict=True)]))
+def _alike(left: list[Any], right: list[Any]) -> float:
+    return float(np.mean([a[0] == b[0] for a, b in zip(left, right, strict=True)]))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""Random hulls, shaken: the compiled engine against Moreau's time stepping, and against itself with other settings.
+"""Random hulls under ground motion: the compiled engine compared with Moreau's time stepping and with other settings.
 
-`python -m benchmarks.hull_stepping` prints how often verdicts agree, histories in which the engine had to let a contact
-stand in apart from the others, and how many verdicts its settings flip. 480 histories; ten minutes of CPU time.
+`python -m benchmarks.hull_stepping` prints the agreement of outcomes, the histories with a contact held by the engine,
+and the outcomes that settings change. 480 histories; ten minutes of CPU time.
 """
 
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ CHANGES = {
 
 @dataclass
 class Verdicts:
-    """What becomes of histories: whether they overturn, the last pose, the peak tilt [rad], how often held."""
+    """Outcomes of histories: overturning, last pose, peak tilt [rad], number of held contacts."""
 
     overturned: BoolArray
     pose: FloatArray
@@ -48,7 +48,7 @@ class Verdicts:
 
 @dataclass
 class Histories:
-    """Bodies, their ground (samples, 3) every `spacing` [m/s2, s], friction, and how long to follow them [s]."""
+    """Bodies, ground motion (samples, 3) every `spacing` [m/s2, s], friction, and durations [s]."""
 
     bodies: list[HullBody]
     grounds: list[FloatArray]
@@ -77,17 +77,17 @@ class Histories:
         return Verdicts(np.not_equal(last, first), np.array(last, dtype=float), peak, np.zeros(len(last)))
 
 
-def smooth(count: int = 50, scales: tuple[float, ...] = (0.6, 1.0, 1.5), part: slice = slice(None)) -> Histories:
+def smooth(count: int = 50, scales: tuple[float, ...] = (0.6, 1.0, 1.5), selection: slice = slice(None)) -> Histories:
     """The hulls and sines of `benchmarks.hull` under two frictions; part: of the record."""
     rows = [(c, s, mu) for c in hull.cases()[:count] for mu in (0.3, 0.6) for s in scales]
-    grounds = [s * case.acceleration[part] for case, s, _ in rows]
+    grounds = [s * case.acceleration[selection] for case, s, _ in rows]
     after = hull.DURATION - hull.SHAKEN
     friction = np.array([mu for *_, mu in rows])
     return Histories([c.body for c, *_ in rows], grounds, hull.DT, friction, len(grounds[0]) * hull.DT + after)
 
 
 def noisy(count: int = 60) -> Histories:
-    """Hulls under 4 s of white noise of 3 to 9 m/s2, where contacts stand in most often."""
+    """Hulls under 4 s of white noise of 3 to 9 m/s2, with the most held contacts."""
     rng = np.random.default_rng(17)
     bodies = [hull._hull(rng) for _ in range(count)]
     sizes = np.resize(np.linspace(3.0, 9.0, 10), count)
@@ -100,30 +100,30 @@ FRICTIONS = (0.3, 0.7, 2.0)
 
 
 def share(same: BoolArray) -> str:
-    """How many of how many, and Wilson's 95 % interval."""
+    """Return count, total and 95 % interval of Wilson."""
     if not same.size:
         return "none"
     low, high = stats.binomtest(int(same.sum()), same.size).proportion_ci(0.95, "wilson")
     return f"{same.sum()} of {same.size} ({low:.3f} to {high:.3f})"
 
 
-def mcnemar(one: Verdicts, other: Verdicts) -> float:
+def mcnemar(left: Verdicts, right: Verdicts) -> float:
     """How likely flips are as unequal by chance (exact)."""
-    gained, lost = (int((a.overturned & ~b.overturned).sum()) for a, b in ((one, other), (other, one)))
+    gained, lost = (int((a.overturned & ~b.overturned).sum()) for a, b in ((left, right), (right, left)))
     return float(stats.binomtest(gained, gained + lost).pvalue) if gained + lost else 1.0
 
 
-def apart(one: Verdicts, other: Verdicts) -> FloatArray:
+def apart(left: Verdicts, right: Verdicts) -> FloatArray:
     """Ratio of peaks, less one, of histories that rock and do not overturn in either."""
-    rock = ~one.overturned & ~other.overturned & (np.minimum(one.peak, other.peak) > MOVES)
-    return np.asarray(other.peak[rock] / one.peak[rock] - 1.0)
+    rock = ~left.overturned & ~right.overturned & (np.minimum(left.peak, right.peak) > MOVES)
+    return np.asarray(right.peak[rock] / left.peak[rock] - 1.0)
 
 
 def compare(name: str, histories: Histories) -> None:
-    """Print how a family of histories agrees."""
+    """Print the agreement of a family of histories."""
     ours, steps = histories.ours(), [histories.stepped(step) for step in STEPS]
-    held = ours.held > 0
-    print(f"\n{name}: {held.size} histories, {ours.overturned.sum()} overturn, held in {held.sum()}")
+    is_held = ours.held > 0
+    print(f"\n{name}: {is_held.size} histories, {ours.overturned.sum()} overturn, held in {is_held.sum()}")
     print("| against | never held | held | last pose | peaks apart, median and 90 % | McNemar p | KS p |")
     print("|---|---|---|---|---|---|---|")
     wrong = histories.stepped(STEPS[0], 0.5)
@@ -133,13 +133,13 @@ def compare(name: str, histories: Histories) -> None:
         poses = share(ours.pose == other.pose)
         ks = stats.ks_2samp(ours.ranked, other.ranked, method="asymp").pvalue
         cells = f"{gaps[1]:+.3f} ({gaps[0]:+.3f} to {gaps[2]:+.3f}) | {mcnemar(ours, other):.2g} | {ks:.2g}"
-        print(f"| {label} | {share(same[~held])} | {share(same[held])} | {poses} | {cells} |")
+        print(f"| {label} | {share(same[~is_held])} | {share(same[is_held])} | {poses} | {cells} |")
     own = steps[0].overturned == steps[1].overturned
-    print(f"time stepping with both steps: {share(own[~held])} never held, {share(own[held])} held", flush=True)
+    print(f"time stepping with both steps: {share(own[~is_held])} never held, {share(own[is_held])} held", flush=True)
 
 
 def sensitivity(histories: Histories) -> None:
-    """Print how many verdicts other settings flip."""
+    """Print the number of outcomes that other settings change."""
     ours = histories.ours()
     print("| changed | verdicts that differ | last poses that differ | peaks 1 % apart | held |")
     print("|---|---|---|---|---|")

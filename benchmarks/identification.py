@@ -1,12 +1,12 @@
-"""How often intervals of `identify` hold the truth: free rockings made up and heard badly, resumed where it stopped.
+"""Coverage of the intervals of `identify` for synthetic free rocking with measurement errors; a run can be resumed.
 
-Of ten, nine are times of impacts with jitter, bounces, gaps and false ones, one an angular velocity with noise, an
-offset and a drift. Sounds, clipped ones too, are tried by tests/verification/test_impact_sounds.py.
+Nine of ten measurements are times of impacts with jitter, bounces, gaps and false ones, one is an angular velocity with
+noise, offset and drift. tests/verification/test_impact_sounds.py covers sounds.
 
-`make identification` makes 10,000 of them (half an hour), keeps every one in build/identification.jsonl, and prints the
-coverage beside that of a constant coefficient fitted by least squares. Then it makes 6,000 whose coefficient scatters
-by 0 to 5 %, of usual and asymmetric bodies and of few impacts, keeps them in build/identification_scatters.jsonl, and
-prints the coverage for each scatter.
+`make identification` makes 10,000 measurements (half an hour), stores them in build/identification.jsonl, and prints
+the coverage, also of a constant coefficient fitted by least squares. Then it makes 6,000 measurements with a scatter of
+0 to 5 %, of ordinary and asymmetric bodies and of few impacts, in build/identification_scatters.jsonl, and prints the
+coverage per scatter.
 """
 
 import math
@@ -39,7 +39,7 @@ FEW = 8
 
 
 def rocked(random: np.random.Generator, scatter: float | None = None, kind: str = "usual") -> dict[str, Any]:
-    """Make one up: a body, what its impacts take, and when they are; it stands on its right foot first."""
+    """Return a synthetic body, its coefficients, and times of impacts; the right foot is the first one in contact."""
     alpha, p, r = random.uniform(0.12, 0.35), random.uniform(1.5, 6.0), random.uniform(0.8, 0.95)
     usual = random.uniform(0.01, 0.03)
     truth: dict[str, Any] = {"r": r, "scatter": usual if scatter is None else scatter, "half": HALF * random.normal()}
@@ -52,8 +52,8 @@ def rocked(random: np.random.Generator, scatter: float | None = None, kind: str 
         faster = math.exp(0.5 * SIZE_ERROR * random.normal())
         alphas = (sides[0].slenderness_angle * wider - tilt, sides[1].slenderness_angle * wider + tilt)
         p_real = (sides[0].frequency_parameter * faster, sides[1].frequency_parameter * faster)
-        if (made := _times(random, truth, peak, alphas, p_real, most)) is not None:
-            return truth | {"tilt": tilt, "alphas": alphas, "p_real": p_real, "times": made[0], "speeds": made[1]}
+        if (times := _times(random, truth, peak, alphas, p_real, most)) is not None:
+            return truth | {"tilt": tilt, "alphas": alphas, "p_real": p_real, "times": times[0], "speeds": times[1]}
 
 
 def _body(alpha: float, p: float, aside: float) -> rk.Block:
@@ -77,10 +77,10 @@ def _times(
         y = turning / (p[side] * 2.0 * math.sin(0.5 * alpha[side]))
         if y >= 1.0:
             return None  # it would overturn
-        taken = float(duration(np.array(y), np.array(alpha[side]))) / p[side]
-        if taken < SHORTEST:
+        length = float(duration(np.array(y), np.array(alpha[side]))) / p[side]
+        if length < SHORTEST:
             break
-        times.append(times[-1] + taken)
+        times.append(times[-1] + length)
         speeds.append(y)
         side = 1 - side
         mean = math.log(truth["r"]) + truth["half"] * (1.0 - 2.0 * side)
@@ -112,7 +112,7 @@ def turned(random: np.random.Generator, truth: dict[str, Any]) -> RotationSeries
 
 
 def identified(number: int) -> dict[str, Any]:
-    """Return whether intervals of one hold the truth, what it took, and what a constant coefficient says."""
+    """Return coverage flags and time of one identification, and the result of a constant coefficient."""
     random = np.random.default_rng([18, number])
     truth = rocked(random)
     return _judged(random, truth, drifts=number % 10 == 9) | {"constant": constant_holds(number, truth)}
@@ -131,22 +131,22 @@ def _judged(random: np.random.Generator, truth: dict[str, Any], *, drifts: bool)
     """Return whether intervals hold the truth, and the error of the mean over its standard deviation."""
     began = time.process_time()
     measured = turned(random, truth) if drifts else ImpactTimes(listened(random, truth["times"]))
-    found = identify(measured, truth["body"], size_error=SIZE_ERROR, tilt=TILT, asymmetry=2.0 * HALF)
-    row = {"drifts": drifts, "seconds": time.process_time() - began, "refused": bool(found.refused)}
-    if found.refused:
+    result = identify(measured, truth["body"], size_error=SIZE_ERROR, tilt=TILT, asymmetry=2.0 * HALF)
+    row = {"drifts": drifts, "seconds": time.process_time() - began, "refused": bool(result.refused)}
+    if result.refused:
         return row
-    row["mean"] = found.mean.low <= truth["r"] <= found.mean.high
-    row["scatter"] = found.scatter.low <= truth["scatter"] <= found.scatter.high
-    width = found.mean.high - found.mean.low
-    return row | {"width": width, "deviations": 3.92 * (found.mean.value - truth["r"]) / width}
+    row["mean"] = result.mean.low <= truth["r"] <= result.mean.high
+    row["scatter"] = result.scatter.low <= truth["scatter"] <= result.scatter.high
+    width = result.mean.high - result.mean.low
+    return row | {"width": width, "deviations": 3.92 * (result.mean.value - truth["r"]) / width}
 
 
 def constant_holds(number: int, truth: dict[str, Any]) -> bool:
-    """Whether one constant r, fitted by least squares, has the truth in its interval where impacts scatter alone.
+    """Return True if the interval of a constant r from least squares contains the true value with scatter alone.
 
-    Sides are equal, the floor is level, the body known, and nothing is missed or disturbed: ln y_n is a straight line
-    in n, and jitter is all that the fit knows, the errors of neighbouring times. (With sides that differ and a tilt it
-    holds the truth in 49 %: they widen the interval, and the slope hardly feels what alternates.)
+    Sides are equal, the floor is level, the body is known, and no time is missed or disturbed: ln y_n is linear in n,
+    and the fit includes only jitter, the errors of neighbouring times. (With unequal sides and a tilt the coverage is
+    49 %: they widen the interval, but hardly affect the slope.)
     """
     random, made = np.random.default_rng([19, number]), None
     while made is None:
@@ -168,7 +168,7 @@ def constant_holds(number: int, truth: dict[str, Any]) -> bool:
 
 
 def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
-    """Return shares of intervals that hold the truth, of measurements refused, and times."""
+    """Return coverage of intervals, fraction of refused measurements, and times."""
     kept = [row for row in rows if not row["refused"]]
     share = {name: float(np.mean([row[name] for row in kept])) for name in ("mean", "scatter", "width")}
     seconds = [row["seconds"] for row in rows]
@@ -179,21 +179,30 @@ def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
 
 
 def coverage_by_scatter(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return shares of intervals that hold the truth for each scatter and kind, each with its binomial interval."""
+    """Return coverage of intervals for each scatter and kind, each with its binomial interval."""
     from scipy.stats import binomtest
 
-    found = []
+    rows_by_scatter = []
     for kind, scatter in product(KINDS, SCATTERS):
         own = [row for row in rows if (row["kind"], row["true_scatter"]) == (kind, scatter)]
         kept = [row for row in own if not row["refused"]]
-        each: dict[str, Any] = {"kind": kind, "scatter": scatter, "cases": len(kept), "refused": len(own) - len(kept)}
+        row_of_scatter: dict[str, Any] = {
+            "kind": kind,
+            "scatter": scatter,
+            "cases": len(kept),
+            "refused": len(own) - len(kept),
+        }
         for name in ("mean", "scatter"):
             test = binomtest(sum(row[name] for row in kept), max(len(kept), 1)).proportion_ci(method="wilson")
-            each[f"{name}_held"] = float(np.mean([row[name] for row in kept])), float(test.low), float(test.high)
-        each["deviations"] = float(np.sqrt(np.mean([min(row["deviations"] ** 2, 25.0) for row in kept])))
-        each["width"] = float(np.median([row["width"] for row in kept]))
-        found.append(each)
-    return found
+            row_of_scatter[f"{name}_held"] = (
+                float(np.mean([row[name] for row in kept])),
+                float(test.low),
+                float(test.high),
+            )
+        row_of_scatter["deviations"] = float(np.sqrt(np.mean([min(row["deviations"] ** 2, 25.0) for row in kept])))
+        row_of_scatter["width"] = float(np.median([row["width"] for row in kept]))
+        rows_by_scatter.append(row_of_scatter)
+    return rows_by_scatter
 
 
 def main(cases: int = 10000, of_scatters: int = 6000) -> None:
@@ -203,11 +212,14 @@ def main(cases: int = 10000, of_scatters: int = 6000) -> None:
     for name, value in coverage(rows).items():
         print(f"| {name} | {value:.4f} |")
     rows = list(resumed(ROOT / "build" / "identification_scatters.jsonl", of_scatters, scattered, __file__, rooms))
-    for each in coverage_by_scatter(rows):
-        held = [" to ".join(f"{value:.3f}" for value in each[f"{name}_held"][1:]) for name in ("mean", "scatter")]
+    for summary in coverage_by_scatter(rows):
+        fractions = [
+            " to ".join(f"{value:.3f}" for value in summary[f"{name}_held"][1:]) for name in ("mean", "scatter")
+        ]
         print(
-            f"| {each['kind']} | {each['scatter']} | {each['cases']} | {each['mean_held'][0]:.3f} ({held[0]}) | "
-            f"{each['scatter_held'][0]:.3f} ({held[1]}) | {each['deviations']:.2f} | {each['width']:.2g} |"
+            f"| {summary['kind']} | {summary['scatter']} | {summary['cases']} | "
+            f"{summary['mean_held'][0]:.3f} ({fractions[0]}) | {summary['scatter_held'][0]:.3f} ({fractions[1]}) | "
+            f"{summary['deviations']:.2f} | {summary['width']:.2g} |"
         )
 
 

@@ -1,9 +1,9 @@
-"""How often intervals of `identify` hold the truth under a known ground motion: bodies made up, shaken and measured.
+"""Coverage of the intervals of `identify` under a known ground motion, for synthetic measurements.
 
-`python -m benchmarks.identification_forced` makes 1,000 of them (a quarter of an hour) and 100 whose feet slide, keeps
-every one in build/identification_forced.jsonl and build/identification_friction.jsonl, goes on where it stopped, and
-prints the coverage. The truth is followed by the engines of `simulate`, with r drawn anew at every impact;
-identification has an integrator of its own.
+`python -m benchmarks.identification_forced` makes 1,000 measurements (a quarter of an hour) and 100 with sliding feet,
+stores them in build/identification_forced.jsonl and build/identification_friction.jsonl, resumes an earlier run, and
+prints the coverage. The engines of `simulate` compute the true response with a random r per impact; identification has
+a separate integrator.
 """
 
 import math
@@ -44,7 +44,7 @@ NOISE, RATE, AFTER = 0.005, 200.0, 6.0  # over the largest value; samples a seco
 
 
 def shaken(number: int, kind: str = "rotation", clock: float = CLOCK, *, friction: bool = False) -> dict[str, Any]:
-    """Make one up that rocks and stays standing: the body as it is believed to be, the motion, what was measured."""
+    """Return a synthetic body that rocks without overturning: assumed body, motion, measurement."""
     random = np.random.default_rng([18, 5 if friction else 4, number])
     while True:
         truth = (_slid if friction else _followed)(random)
@@ -69,7 +69,7 @@ def shaken(number: int, kind: str = "rotation", clock: float = CLOCK, *, frictio
 
 
 def _bodies(random: np.random.Generator) -> tuple[rk.Block, rk.Block, dict[str, Any]]:
-    """A body as it is believed to be, as it is, and what impacts take of it."""
+    """Return the assumed body, the true body, and its coefficients."""
     height, alpha, e = random.uniform(0.3, 3.0), random.uniform(0.12, 0.3), random.uniform(-0.12, 0.12)
     width, centre = height * math.tan(alpha), 0.5 * height * random.uniform(0.9, 1.1)
     body = rk.Block(width=width, height=height, centre=(width * (0.5 + e), centre))
@@ -93,9 +93,9 @@ def _scaled(random: np.random.Generator, motion: rk.GroundMotion, real: rk.Block
 
 
 def _floor(motion: rk.GroundMotion, tilt: float) -> rk.GroundMotion:
-    """A floor that falls to the right is one that is level, under a gravity that leans to the right."""
-    rest = np.zeros(int(AFTER / motion.time_step))
-    pushed = np.concatenate([motion.acceleration, rest]) - g * math.sin(tilt)
+    """Return the motion on a level floor that is equivalent to a fall to the right, with inclined gravity."""
+    still = np.zeros(int(AFTER / motion.time_step))
+    pushed = np.concatenate([motion.acceleration, still]) - g * math.sin(tilt)
     return rk.GroundMotion(pushed, motion.time_step, vertical=np.full(pushed.size, g * (math.cos(tilt) - 1.0)))
 
 
@@ -121,7 +121,7 @@ def _followed(random: np.random.Generator) -> dict[str, Any] | None:
 
 
 class DrawnContact(ContactEngine):
-    """Sliding, hopping and rocking, with coefficients of restitution that are drawn at every impact."""
+    """Sliding, hopping and rocking, with random coefficients of restitution at every impact."""
 
     def draws_from(self, random: np.random.Generator, truth: dict[str, Any]) -> "DrawnContact":
         """Return it with the law of the draws."""
@@ -207,17 +207,17 @@ def identified(number: int, kind: str = "rotation", *, friction: bool = False, s
     return row | {"doubts": list(found.doubts)}
 
 
-def constant_holds(found: ForcedPosterior, r: float) -> bool:
+def constant_holds(posterior: ForcedPosterior, r: float) -> bool:
     """Whether the interval of one r for all impacts holds the truth: the same, with hardly any scatter."""
     fixed = ForcedPosterior(
-        found.problem, fitted(found.problem, found.fit.x, found.noise, 1e-3, SAME_TIME), found.noise
+        posterior.problem, fitted(posterior.problem, posterior.fit.x, posterior.noise, 1e-3, SAME_TIME), posterior.noise
     )
     mixture, at = fixed.shared((MEAN, 1.0)), int(np.argmin(np.abs(fixed.scatter - 1e-3)))
     return bool(abs(mixture.means[at] - math.log(r)) <= 1.96 * mixture.deviations[at])
 
 
 def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
-    """Return shares of intervals that hold the truth, of measurements refused, and times."""
+    """Return coverage of intervals, fraction of refused measurements, and times."""
     kept = [row for row in rows if not row["refused"]]
     names = "mean", "right", "left", "scatter", "clock", "gain", "tilt", "friction", "identified", "held", "constant"
     names += "width", "impacts", "odd"
@@ -229,10 +229,10 @@ def coverage(rows: list[dict[str, Any]]) -> dict[str, float]:
 
 def main(cases: int = 1000) -> None:
     """Print the coverage."""
-    for what, count, made in (("forced", cases, identified), ("friction", cases // 10, slid)):
-        path = ROOT / "build" / f"identification_{what}.jsonl"
-        for name, value in coverage(list(resumed(path, count, made, __file__, ("identification",)))).items():
-            print(f"| {what}: {name} | {value:.4f} |")
+    for kind, count, compute in (("forced", cases, identified), ("friction", cases // 10, slid)):
+        path = ROOT / "build" / f"identification_{kind}.jsonl"
+        for name, value in coverage(list(resumed(path, count, compute, __file__, ("identification",)))).items():
+            print(f"| {kind}: {name} | {value:.4f} |")
 
 
 if __name__ == "__main__":

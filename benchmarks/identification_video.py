@@ -1,7 +1,7 @@
-"""How often intervals of `identify` hold the truth of a body that was filmed: rockings made up, drawn, and compressed.
+"""Coverage of the intervals of `identify` for synthetic compressed videos of rocking bodies.
 
-`python -m benchmarks.identification_video` films 200 of them (some minutes), keeps every one in
-build/identification_video.jsonl, goes on where it stopped, and prints the coverage. It needs OpenCV.
+`python -m benchmarks.identification_video` makes 200 videos (some minutes), stores the results in
+build/identification_video.jsonl, resumes an earlier run, and prints the coverage. It needs OpenCV.
 """
 
 import math
@@ -33,7 +33,7 @@ Edit = Callable[[Picture, float], Picture]
 
 
 def rocked(number: int) -> dict[str, Any]:
-    """Make up a body as it is believed to be, and how the real one rocks freely."""
+    """Return an assumed body, and the free rocking of the true one."""
     random = np.random.default_rng([18, 7, number])
     alpha, centre = random.uniform(0.16, 0.28), random.uniform(0.48, 0.52)
     width, height = 0.8 * math.tan(alpha), 0.8
@@ -75,7 +75,7 @@ def drawn(case: dict[str, Any], rotation: float, texture: Picture | None) -> Pic
 
 
 def filmed(path: Path, case: dict[str, Any], number: int, rate: float, lasts: float, edit: Edit | None = None) -> None:
-    """Write a video with motion blur, blur, noise, and what OpenCV's MPEG-4 loses; edit: of frames at times."""
+    """Write a video with motion blur, blur, noise, and the losses of OpenCV's MPEG-4; edit: changes frames at times."""
     import cv2
 
     random = np.random.default_rng([number, 1])
@@ -98,12 +98,12 @@ def identified(number: int, rate: float | None = None, lasts: float = 5.0) -> di
     with TemporaryDirectory() as folder:
         filmed(Path(folder) / "trial.mp4", case, number, rate, lasts)
         series = read_measurement(Path(folder) / "trial.mp4")
-    found = identify(series, case["body"], size_error=SIZE_ERROR, tilt=0.0, asymmetry=2.0 * HALF_ERROR)
+    result = identify(series, case["body"], size_error=SIZE_ERROR, tilt=0.0, asymmetry=2.0 * HALF_ERROR)
     assert series.rotation is not None
     true = np.array([float(case["response"].at(min(t, case["response"].time[-1]))) for t in series.time])
     error = series.rotation - true
-    row = {"rate": rate, "refused": list(found.refused), "error": float(error.std())}
-    return row | {"mean": found.mean.low <= case["r"] <= found.mean.high, "width": found.mean.high - found.mean.low}
+    row = {"rate": rate, "refused": list(result.refused), "error": float(error.std())}
+    return row | {"mean": result.mean.low <= case["r"] <= result.mean.high, "width": result.mean.high - result.mean.low}
 
 
 def main(cases: int = 200) -> None:
@@ -114,9 +114,14 @@ def main(cases: int = 200) -> None:
     kept = [row for row in rows if not row["refused"]]
     print(f"| refused | {1.0 - len(kept) / len(rows):.4f} |")
     for rate in (30.0, 60.0, 120.0, 240.0):
-        some = [row for row in kept if row["rate"] == rate]
-        held, error, width = (float(np.mean([row[name] for row in some])) for name in ("mean", "error", "width"))
-        print(f"| {rate:.0f} 1/s | {len(some)} | held {held:.3f} | error {1e3 * error:.3f} mrad | width {width:.4f} |")
+        rows_at_rate = [row for row in kept if row["rate"] == rate]
+        fraction, error, width = (
+            float(np.mean([row[name] for row in rows_at_rate])) for name in ("mean", "error", "width")
+        )
+        print(
+            f"| {rate:.0f} 1/s | {len(rows_at_rate)} | held {fraction:.3f} | error {1e3 * error:.3f} mrad | "
+            f"width {width:.4f} |"
+        )
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ def appendix_program(slenderness: float) -> float:
 
 
 def double_quadrature(slenderness: float, tolerance: float = 1.49e-8) -> float:
-    """Eq. 17 by scipy's dblquad; its own default tolerance unless told."""
+    """Eq. 17 by dblquad of SciPy, with its default tolerance."""
     from scipy.integrate import dblquad
 
     upper, _ = dblquad(

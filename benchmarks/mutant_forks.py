@@ -1,8 +1,8 @@
-"""Judges errors within functions in forks of one process that has collected the tests: twenty times as fast.
+"""Judges errors within functions in forks of one process with collected tests: 20 times faster.
 
-In each fork the code of the changed function is replaced, so that nothing is imported anew. Errors outside of functions
-are left to `benchmarks.mutants`, which goes on from the same ledger. Tests that start processes of their own see no
-error here, so that the count of errors noticed is rather too low.
+Each fork replaces the code of the changed function without another import. `benchmarks.mutants` judges errors outside
+functions from the same ledger. Tests with own processes do not see the error, so the number of detected errors is a
+lower bound.
 """
 
 import ast
@@ -36,7 +36,7 @@ class Loop:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        """Judge what is not in the ledger yet; tests that noticed other errors in the same file come first."""
+        """Judge mutants that are absent from the ledger; tests that detected other errors in the file come first."""
         items = {item.nodeid: item for item in session.items}
         lines = self.ledger.read_text(encoding="utf-8").splitlines() if self.ledger.exists() else []
         known = {entry["key"] for entry in map(json.loads, lines)}

@@ -1,7 +1,7 @@
-"""Runs tests in copies of a process that has read what all tests read, `rocking` apart: half the time of a fresh one.
+"""Runs tests in copies of a process that has imported all test modules except `rocking`, in half the time.
 
-A line of standard input is a file with arguments for pytest, and a limit of the processor's time [s]; a line of
-standard output is the exit code, and the test that failed if one did.
+A line of standard input contains a file with arguments for pytest and a limit of CPU time [s]. A line of standard
+output contains the exit code and the failed test, if any.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""Which tests run which line, and how long each takes: one run of the suite under coverage, kept in a folder.
+"""Coverage of lines by tests, and durations of tests, from one run of the suite.
 
 This module is also the pytest plugin of that run; with `-p benchmarks.mutant_tests` it writes durations.
 """
@@ -21,7 +21,7 @@ _spent: dict[str, float] = {}
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
-    """Add up what a test took, its fixtures too."""
+    """Add the duration of a test, including its fixtures."""
     if report.outcome == "passed":
         _spent[report.nodeid] = _spent.get(report.nodeid, 0.0) + report.duration
 
@@ -36,35 +36,36 @@ def record(folder: Path, tests: list[str], workers: int) -> None:
     """Run the suite, or tests of some paths, once under coverage; later only files of tests that have changed since."""
     kept, now = folder / "recorded.json", seals(tests)
     before = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
-    known = {path for path, seal in now.items() if before.get(path) == seal}
-    changed = sorted(now.keys() - known)
-    whole = bool((before.keys() | now.keys()) - known - {path for path in changed if "/test_" in path})
-    if not changed and not whole:
+    unchanged = {path for path, seal in now.items() if before.get(path) == seal}
+    changed = sorted(now.keys() - unchanged)
+    is_complete = bool((before.keys() | now.keys()) - unchanged - {path for path in changed if "/test_" in path})
+    if not changed and not is_complete:
         return
-    durations, stale = folder / "durations.json", () if whole else tuple(f"{path}::" for path in changed)
-    old = {} if whole else json.loads(durations.read_text(encoding="utf-8"))
+    durations, stale = folder / "durations.json", () if is_complete else tuple(f"{path}::" for path in changed)
+    old = {} if is_complete else json.loads(durations.read_text(encoding="utf-8"))
     print("Running the tests once to see which runs which line ...", flush=True)
     command = [sys.executable, "-m", "pytest", "-q", "-m", "not speed and not browser"]
     command += ["-n", str(workers), "--dist", "loadfile"] if workers > 1 else []
     command += ["--cov", "--cov-context=test", "--cov-report=", "--cov-fail-under=0"]
     command += ["-p", "benchmarks.mutant_tests"]
-    command += ["-p", "no:cacheprovider", *(tests if whole else ["--cov-append", *changed])]
+    command += ["-p", "no:cacheprovider", *(tests if is_complete else ["--cov-append", *changed])]
     at = {"COVERAGE_FILE": str(folder / "coverage"), DURATIONS: str(durations)}
     kept.unlink(missing_ok=True)
     done = subprocess.run(command, cwd=ROOT, env=os.environ | at, check=False)
     if done.returncode not in (0, 5):  # 5: none of the changed files has a test that counts
         raise SystemExit("the suite must pass before it can be judged")
-    found = json.loads(durations.read_text(encoding="utf-8"))
+    by_test = json.loads(durations.read_text(encoding="utf-8"))
     durations.write_text(
-        json.dumps({test: spent for test, spent in old.items() if not test.startswith(stale)} | found), encoding="utf-8"
+        json.dumps({test: spent for test, spent in old.items() if not test.startswith(stale)} | by_test),
+        encoding="utf-8",
     )
     kept.write_text(json.dumps(now), encoding="utf-8")
 
 
 def seals(tests: list[str]) -> dict[str, str]:
     """Hashes of the sources and of the tests, all or those of some paths, by path."""
-    files = {file for part in ("src", *(tests or ["tests"])) for file in (ROOT / part).rglob("*.py")}
-    files |= {ROOT / part for part in tests if part.endswith(".py")}
+    files = {file for folder in ("src", *(tests or ["tests"])) for file in (ROOT / folder).rglob("*.py")}
+    files |= {ROOT / folder for folder in tests if folder.endswith(".py")}
     return {str(path.relative_to(ROOT)): hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(files)}
 
 
@@ -83,10 +84,10 @@ class Covering:
         if path not in self._files:
             self._files[path] = self._of_file(path)
         by_line = self._files[path]
-        found = set().union(*(by_line.get(line, set()) for line in lines)) or set().union(*by_line.values())
-        found |= {test for test in self.durations if test.partition("::")[0] in self._elsewhere.get(path, ())}
+        selected = set().union(*(by_line.get(line, set()) for line in lines)) or set().union(*by_line.values())
+        selected |= {test for test in self.durations if test.partition("::")[0] in self._elsewhere.get(path, ())}
         own = Path(path).stem
-        return sorted(found & self.durations.keys(), key=lambda test: (own not in test, self.durations[test], test))
+        return sorted(selected & self.durations.keys(), key=lambda test: (own not in test, self.durations[test], test))
 
     def seal(self, tests: list[str]) -> str:
         """Another one where these tests are others than before, or changed."""
@@ -96,14 +97,14 @@ class Covering:
     def _of_file(self, path: str) -> dict[int, set[str]]:
         # branch coverage keeps arcs from line to line; negative numbers are entries and exits
         names = self._database.execute("select id from file where path = ?", (str(ROOT / path),)).fetchall()
-        found: dict[int, set[str]] = {}
+        by_line: dict[int, set[str]] = {}
         for (number,) in names:
             query = "select context, {} from {} join context on context.id = context_id where file_id = ?"
             for test, line in self._database.execute(query.format("tono", "arc"), (number,)):
-                found.setdefault(line, set()).add(test.partition("|")[0])
+                by_line.setdefault(line, set()).add(test.partition("|")[0])
             for test, bits in self._database.execute(query.format("numbits", "line_bits"), (number,)):
                 for line in numbits_to_nums(bits):
-                    found.setdefault(line, set()).add(test.partition("|")[0])
-        for tests in found.values():
+                    by_line.setdefault(line, set()).add(test.partition("|")[0])
+        for tests in by_line.values():
             tests.discard("")
-        return found
+        return by_line

@@ -1,9 +1,9 @@
-"""Deliberate errors in the numerical core, and how many of them the tests notice: `make mutants`.
+"""Deliberate errors in the numerical core, and the number that the tests detect: `make mutants`.
 
-A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
-comparisons, signs, conditions, loops), each against the tests that run its line, the likeliest and quickest first, for
-90 seconds; and the hand-made errors of mutants.toml. It goes on where it was stopped: every verdict is a line in
-build/mutants/. A sample of some packages (--packages) is judged by the tests that mutants.toml names for each.
+A random sample of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
+comparisons, signs, conditions, loops), each with the tests of its line, the most likely and fastest first, for 90
+seconds; and the hand-made errors of mutants.toml. A later run continues: every result is a line in build/mutants/. A
+sample of some packages (--packages) uses the tests in mutants.toml for each.
 """
 
 import argparse
@@ -104,7 +104,7 @@ class Mutant(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What it is called in the ledger: a file that has changed since is judged again."""
+        """Name in the ledger; a changed file is judged again."""
         seal = hashlib.sha256((ROOT / self.path).read_bytes()).hexdigest()[:8]
         return f"{self.path}:{self.first} {self.operator} {self.occurrence} {seal}"
 
@@ -115,11 +115,11 @@ class Mutant(NamedTuple):
 
     def code(self) -> str:
         """The module with the error in it."""
-        made = mutate_code(
+        mutated = mutate_code(
             (ROOT / self.path).read_text(encoding="utf-8"), get_operator(self.operator)(), self.occurrence
         )
-        assert made is not None
-        return str(made)
+        assert mutated is not None
+        return str(mutated)
 
     def change(self) -> tuple[str, str]:
         """The first line that it changes, before and after."""
@@ -128,9 +128,9 @@ class Mutant(NamedTuple):
 
 
 def mutants(package: str) -> list[Mutant]:
-    """Every mutation of a package that means something: not in annotations, messages, or what is only looked at."""
-    found = []
-    for path in sorted(each for pattern in CORE[package] for each in (ROOT / "src/rocking").glob(pattern)):
+    """Return every meaningful mutation of a package, without annotations and messages."""
+    drawn = []
+    for path in sorted(path_ for pattern in CORE[package] for path_ in (ROOT / "src/rocking").glob(pattern)):
         if any(word in path.name for word in NOT_NUMERICAL):
             continue
         source = path.read_text(encoding="utf-8")
@@ -138,11 +138,11 @@ def mutants(package: str) -> list[Mutant]:
         nodes = list(ast_nodes(get_ast(source)))
         for name in OPERATORS:
             operator = get_operator(name)()
-            places = (place for node in nodes for place in operator.mutation_positions(node))
+            places = (position for node in nodes for position in operator.mutation_positions(node))
             for occurrence, (start, end) in enumerate(places):
                 if start[0] not in quiet:
-                    found.append(Mutant(package, str(path.relative_to(ROOT)), name, occurrence, start[0], end[0]))
-    return found
+                    drawn.append(Mutant(package, str(path.relative_to(ROOT)), name, occurrence, start[0], end[0]))
+    return drawn
 
 
 def _quiet_lines(tree: ast.AST) -> Iterator[int]:
@@ -157,26 +157,26 @@ def _quiet_lines(tree: ast.AST) -> Iterator[int]:
             quiet = [*node.decorator_list]
             if isinstance(node, ast.FunctionDef):
                 every = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-                quiet += [node.returns, *(each.annotation for each in every)]
-        for part in filter(None, quiet):
-            yield from range(part.lineno, (part.end_lineno or part.lineno) + 1)
+                quiet += [node.returns, *(argument.annotation for argument in every)]
+        for annotation in filter(None, quiet):
+            yield from range(annotation.lineno, (annotation.end_lineno or annotation.lineno) + 1)
 
 
 def sample(seed: int, count: int, packages: list[str]) -> tuple[list[Mutant], dict[str, int]]:
-    """The same number of every package, in an order that mixes them; and how many there are in all.
+    """Return equal numbers of mutants of every package, mixed, and the total number.
 
-    Each has a rank by seed, file, line and operator, and the first ranks are taken: an edit elsewhere leaves them.
+    Each mutant has a rank by seed, file, line and operator, and the first ranks are selected: another edit keeps them.
     """
     every, ranks = {}, {}
     for package in packages:
-        there = mutants(package)
-        every[package], place = len(there), Counter[str]()
+        candidates = mutants(package)
+        every[package], position = len(candidates), Counter[str]()
         ranked = {}
-        for mutant in there:
+        for mutant in candidates:
             line = _lines(mutant.path)[mutant.first - 1].strip()
             of = f"{seed} {mutant.path} {mutant.operator} {line}"
-            ranked[mutant] = hashlib.sha256(f"{of} {place[of]}".encode()).hexdigest()
-            place[of] += 1
+            ranked[mutant] = hashlib.sha256(f"{of} {position[of]}".encode()).hexdigest()
+            position[of] += 1
         ranks |= dict(sorted(ranked.items(), key=lambda item: item[1])[:count])
     return sorted(ranks, key=lambda mutant: ranks[mutant]), every
 
@@ -207,9 +207,11 @@ class Worker:
             "OPENBLAS_NUM_THREADS": "1",
         }
         command = [sys.executable, "-c", "import rocking; print(rocking.__file__)"]
-        found = subprocess.run(command, cwd=folder, env=env, check=True, capture_output=True, text=True).stdout
-        if folder not in Path(found).parents:
-            raise SystemExit(f"errors go into {folder}, and the tests import {found.strip()}: remove that installation")
+        output = subprocess.run(command, cwd=folder, env=env, check=True, capture_output=True, text=True).stdout
+        if folder not in Path(output).parents:
+            raise SystemExit(
+                f"errors go into {folder}, and the tests import {output.strip()}: remove that installation"
+            )
         command = [sys.executable, "-m", "benchmarks.mutant_server"]
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
         self._server = subprocess.Popen(command, cwd=folder, env=env, text=True, **pipes)
@@ -223,9 +225,9 @@ class Worker:
         os.utime(target, (2e9 + self._writes, 2e9 + self._writes))
 
     def fails(self, tests: list[str], limit: float) -> str:
-        """Return the test that fails first, or what else went wrong; empty if all pass.
+        """Return the first failed test, or another failure; empty if all pass.
 
-        The limit is of the processor's time [s]: a neighbour's load kills no mutant.
+        The limit is CPU time [s]: the load of other processes has no effect.
         """
         if not tests:
             return ""
@@ -261,9 +263,9 @@ def staged(tests: list[str], durations: dict[str, float]) -> list[list[str]]:
 
 
 def verdict(mutant: Mutant, worker: Worker, covering: Covering, noticed: Counter[str]) -> dict[str, object]:
-    """Whether a mutant is noticed, by which of how many tests, and how long that took.
+    """Return detection of a mutant, number of tests, and duration.
 
-    Tests that noticed other errors in the same file come first.
+    Tests that detected other errors in the file come first.
     """
     began, text = time.monotonic(), (ROOT / mutant.path).read_text(encoding="utf-8")
     tests = covering.tests(mutant.path, mutant.lines)
@@ -283,7 +285,7 @@ def verdict(mutant: Mutant, worker: Worker, covering: Covering, noticed: Counter
 
 
 def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[str, dict[str, object]]:
-    """Judge what is not in the ledger yet, and survivors of tests that have changed since, until the time is up."""
+    """Judge mutants absent from the ledger, and survivors of changed tests, until the end of the time."""
     ledger, covering = folder / "verdicts.jsonl", Covering(folder, by_hand()["elsewhere"])
     lines = ledger.read_text(encoding="utf-8").splitlines() if ledger.exists() else []
     known: dict[str, dict[str, object]] = {}
@@ -417,7 +419,7 @@ def harmless() -> dict[tuple[str, str], str]:
 
 
 def wilson(killed: float, count: int) -> tuple[float, float]:
-    """Interval of 95 % for a share (Wilson 1927, doi:10.1080/01621459.1927.10502953)."""
+    """Return the 95 % interval of a fraction (Wilson 1927, doi:10.1080/01621459.1927.10502953)."""
     z = 1.959964
     share, spread = killed / count, z * z / count
     half = z * math.sqrt(share * (1.0 - share) / count + spread / (4.0 * count))
@@ -433,10 +435,10 @@ def page(
     *,
     whole: bool,
 ) -> bool:
-    """Print and keep the scores and every survivor; whether the lower end of the score is 85 % or more.
+    """Print and store the scores and all survivors; return True if the lower end of the score is at least 85 %.
 
-    The score is that of the errors that are some: survivors of which mutants.toml says why they change no result are
-    counted, and left out of it (Jia and Harman 2011, doi:10.1109/TSE.2010.62).
+    The score excludes equivalent mutants: survivors with a reason in mutants.toml (Jia and Harman 2011,
+    doi:10.1109/TSE.2010.62).
     """
     reasons = harmless()
     judged = [mutant for mutant in chosen if mutant.key in known]
@@ -498,25 +500,26 @@ def main() -> None:
     parser.add_argument(
         "--forks", type=float, metavar="SECONDS", help="judge in forks first, each by tests of so many seconds"
     )
-    asked = parser.parse_args()
+    options = parser.parse_args()
     folder = ROOT / "build/mutants"
     folder.mkdir(parents=True, exist_ok=True)
-    packages = asked.packages or list(CORE)
-    record(folder, [test for name in asked.packages or () for test in by_hand()["tests"][name]], asked.workers)
-    chosen, every = sample(asked.seed, asked.count, packages)
-    made = [] if asked.no_engines else engines(folder, asked.workers)
-    if asked.forks:
-        numbers = map(str, (asked.seed, asked.count, asked.forks))
+    packages = options.packages or list(CORE)
+    record(folder, [test for name in options.packages or () for test in by_hand()["tests"][name]], options.workers)
+    chosen, every = sample(options.seed, options.count, packages)
+    hand_made = [] if options.no_engines else engines(folder, options.workers)
+    if options.forks:
+        numbers = map(str, (options.seed, options.count, options.forks))
         command = [sys.executable, "-m", "benchmarks.mutant_forks", *numbers, *packages]
         subprocess.run(command, cwd=ROOT, check=True)
-    known = run(chosen, folder, asked.workers, asked.hours)
-    made += planted(folder)
-    command = f"python -m benchmarks.mutants --seed {asked.seed} --count {asked.count}"
-    if asked.packages:
+    judged = run(chosen, folder, options.workers, options.hours)
+    hand_made += planted(folder)
+    command = f"python -m benchmarks.mutants --seed {options.seed} --count {options.count}"
+    if options.packages:
         command += (
-            f" --forks {asked.forks:g}" * bool(asked.forks) + f" --no-engines --packages {shlex.join(asked.packages)}"
+            f" --forks {options.forks:g}" * bool(options.forks)
+            + f" --no-engines --packages {shlex.join(options.packages)}"
         )
-    raise SystemExit(not page(chosen, every, known, made, command, whole=not asked.packages))
+    raise SystemExit(not page(chosen, every, judged, hand_made, command, whole=not options.packages))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
-"""How often predictions are right: bodies whose base, friction and restitution are hidden, resumed where it stopped.
+"""Accuracy of predictions for bodies with hidden base, friction and restitution; a run can be resumed.
 
-`make predictions` foresees 2,000 of them with 256 histories each (3 minutes), keeps every one in
-build/predictions.jsonl, and prints scores beside those of a plain logistic in PGA and PGV and of a prediction that
-takes the friction, which decides most, for known.
+`make predictions` predicts 2,000 bodies with 256 histories each (3 minutes), stores them in build/predictions.jsonl,
+and prints scores, compared with a logistic in PGA and PGV and with a prediction that assumes a known friction.
 """
 
 import hashlib
@@ -29,9 +28,9 @@ KEYS = ("said", "ignorant", "fell", "motion", "pga", "pgv")
 
 
 def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
-    """Return the probabilities of one body, what then happened to it, and what shook it, by `KEYS`.
+    """Return the probabilities of one body, its true outcome, and its ground motion, by `KEYS`.
 
-    What happened is of a body made with its true feet, simulated by itself.
+    The outcome is a separate simulation of the body with its true feet.
     """
     random, which = np.random.default_rng([17, number]), number % motions
     shape = (rk.pulses.sine, rk.pulses.cosine, rk.pulses.ricker, rk.pulses.antisymmetric_ricker)[which % 4]
@@ -44,14 +43,21 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
     coefficient = float(np.clip(random.normal(*RESTITUTION.values()), 0.0, 1.0))
     coefficients = {foot: min(coefficient, energy_bound(truly, foot)) for foot in ("left", "right")}
     friction, sign = random.uniform(*FRICTION), 1.0 if random.random() < 0.5 else -1.0
-    fell = rk.simulate_many(truly, motion, coefficients, friction=friction, scale=sign, threads=1).overturned.item()
-    known: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
-    known |= {"contributions": False, "seed": number, "threads": 1}
-    found = [predict(body, motion, friction=mu, count=count, **known) for mu in (FRICTION, TAKEN_FOR_KNOWN)]
+    overturned = rk.simulate_many(
+        truly, motion, coefficients, friction=friction, scale=sign, threads=1
+    ).overturned.item()
+    settings: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
+    settings |= {"contributions": False, "seed": number, "threads": 1}
+    predictions = [predict(body, motion, friction=mu, count=count, **settings) for mu in (FRICTION, TAKEN_FOR_KNOWN)]
     # a share of a finite sample is never quite certain
-    said = [(each.chances["overturning"].value * each.count + 0.5) / (each.count + 1.0) for each in found]
+    probabilities = [
+        (prediction.chances["overturning"].value * prediction.count + 0.5) / (prediction.count + 1.0)
+        for prediction in predictions
+    ]
     sampled = motion.sampled(0.005)
-    return dict(zip(KEYS, (*said, fell, which, sampled.peak, peak_ground_velocity(sampled)), strict=True))
+    return dict(
+        zip(KEYS, (*probabilities, overturned, which, sampled.peak, peak_ground_velocity(sampled)), strict=True)
+    )
 
 
 def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
@@ -70,7 +76,7 @@ def resumed(
     rooms: tuple[str, ...] = ("prediction", "dynamics/contact", "dynamics/hull", "evidence"),
     **settings: int,
 ) -> Iterator[dict[str, Any]]:
-    """Give every case that is made, those of an earlier run from its file unless what computes them has changed."""
+    """Yield every case, from the file of an earlier run unless the code has changed."""
     folders = [ROOT / "src" / "rocking" / each for each in rooms]
     sources = sorted([Path(source), *(file for folder in folders for file in folder.rglob("*.py"))])
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()
@@ -93,16 +99,16 @@ def resumed(
 def main(cases: int = 2000, count: int = 256, motions: int = 100) -> None:
     """Print the scores."""
     rows = list(resumed(ROOT / "build" / "predictions.jsonl", cases, foreseen, __file__, count=count, motions=motions))
-    found = scored(rows)
+    forecasts = scored(rows)
     print("| forecast | Brier | logarithmic | balanced accuracy | calibration z |\n|---|---|---|---|---|")
-    for name, each in found.items():
+    for name, forecast in forecasts.items():
         cells = [
             f"{s.value:.4f} ({s.low:.4f} to {s.high:.4f})"
-            for s in (each.brier, each.logarithmic, each.balanced_accuracy)
+            for s in (forecast.brier, forecast.logarithmic, forecast.balanced_accuracy)
         ]
-        print(f"| {name} | {' | '.join(cells)} | {each.calibration:.2f} |")
+        print(f"| {name} | {' | '.join(cells)} | {forecast.calibration:.2f} |")
     print("\n| said | happened | 95 % | bodies |\n|---|---|---|---|")
-    for step in found["predict"].reliability():
+    for step in forecasts["predict"].reliability():
         print(f"| {step.predicted:.3f} | {step.observed:.3f} | {step.low:.3f} to {step.high:.3f} | {step.count} |")
 
 

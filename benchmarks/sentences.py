@@ -1,4 +1,4 @@
-"""Sentences of the project, drawn at random from 19 sources, to be judged by a reader.
+"""A random sample of the sentences of the project from 19 sources, for a reader.
 
 `python -m benchmarks.sentences [--seed N] [--count N]` prints JSON lines with source, file, line and sentence. A reader
 marks each sentence that an engineer who is not a native speaker would not understand at once.
@@ -43,11 +43,11 @@ def sentences(text: str) -> Iterator[tuple[int, str]]:
 
 
 def sources() -> dict[str, list[tuple[str, int, str]]]:
-    """Return file, line and sentence of everything that can be drawn, by source."""
-    found: dict[str, list[tuple[str, int, str]]] = {}
+    """Return file, line and text of all sentences, by source."""
+    by_source: dict[str, list[tuple[str, int, str]]] = {}
 
     def add(source: str, paths: list[Path], kind: str = "", keep: str = "") -> None:
-        rows = found.setdefault(source, [])
+        rows = by_source.setdefault(source, [])
         for path in paths:
             for text in PROSE["texts"](path):
                 if kind in {"", text.kind} and re.search(keep, text.text):
@@ -74,17 +74,17 @@ def sources() -> dict[str, list[tuple[str, int, str]]]:
     }
     for source, is_wanted in places.items():
         if is_wanted is not None:
-            found[source] = [row for path in python for row in _literals(path, is_wanted)]
+            by_source[source] = [row for path in python for row in _literals(path, is_wanted)]
     pages = [path for path in PROSE["files"]([ROOT / "src"]) if path.suffix == ".js"]
     quoted = re.compile(r'"((?:[^"\\\n]|\\.){12,})"|>([^<>{}`$\n]{12,})<')
-    found["labels and texts of the page"] = [
+    by_source["labels and texts of the page"] = [
         (path.relative_to(ROOT).as_posix(), text.count("\n", 0, hit.start()) + 1, " ".join((hit[1] or hit[2]).split()))
         for path in pages
         for text in [path.read_text("utf-8")]
         for hit in quoted.finditer(text)
         if len((hit[1] or hit[2]).split()) >= FEWEST_WORDS
     ]
-    return found
+    return by_source
 
 
 def _unmarked(text: Any) -> str:

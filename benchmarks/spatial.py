@@ -97,34 +97,36 @@ def _agreement() -> list[str]:
 def _lines(number: int, case: Case) -> list[str]:
     response = case.ours()
     ours, when = read(case, response), windows(response)
-    made = [_cells(f"{number}. {case.name}", "ours", ours, _asked(response, when))]
+    cells = [_cells(f"{number}. {case.name}", "ours", ours, _asked(response, when))]
     for peer in PEERS:
         if peer.installed():
-            found = finding(peer, case, when)
-            made.append(_cells("", peer.name, found.best, verdict(ours, found, reason(peer, response, when))))
-    return made
+            comparison = finding(peer, case, when)
+            cells.append(
+                _cells("", peer.name, comparison.best, verdict(ours, comparison, reason(peer, response, when)))
+            )
+    return cells
 
 
 def _asked(response: SpatialResponse, when: Windows) -> str:
-    asked = demands(response, until=when.third)
-    needed, slope = max(each.needed for each in asked), min(each.slope for each in asked)
+    impacts = demands(response, until=when.third)
+    needed, slope = max(impact.needed for impact in impacts), min(impact.slope for impact in impacts)
     return f"needs friction {needed:.2f}; corners leave at slopes from {slope:.3g}"
 
 
-def _cells(name: str, by: str, shown: Measures, words: str) -> str:
+def _cells(name: str, by: str, shown: Measures, remark: str) -> str:
     end = "falls" if shown.fell else "stands"
     numbers = f"{shown.landing:.4f} | {shown.kept:.4f} | {shown.peak:.3f} | {shown.lost:.4f}"
-    return f"| {name} | {by} | {numbers} | {end} | {shown.direction:.1f} | {words} |"
+    return f"| {name} | {by} | {numbers} | {end} | {shown.direction:.1f} | {remark} |"
 
 
-def verdict(ours: Measures, found: Finding, why: str) -> str:
+def verdict(ours: Measures, comparison: Finding, cause: str) -> str:
     """In words."""
-    apart = beyond(ours, found)
-    loose = {name for name, floor in FLOOR.items() if found.spread[name] > LOOSE * floor}
+    apart = beyond(ours, comparison)
+    loose = {name for name, floor in FLOOR.items() if comparison.spread[name] > LOOSE * floor}
     unsure = f"; its own runs differ in {', '.join(sorted(loose))}" if loose else ""
     if not apart:
         return f"agrees{unsure}"
-    return f"differs in {', '.join(apart)}{unsure}: {why or 'not explained'}"
+    return f"differs in {', '.join(apart)}{unsure}: {cause or 'not explained'}"
 
 
 # ---- speed -----------------------------------------------------------------------------------------------------------
@@ -132,8 +134,8 @@ def verdict(ours: Measures, found: Finding, why: str) -> str:
 
 def _conditions() -> list[str]:
     x, y, z = spatial_speed.SIZE
-    there = spatial_mujoco.installed()
-    parted = f" Medians of the relative differences of peaks: {spatial_speed.scatter()}." if there else ""
+    mujoco = spatial_mujoco.installed()
+    parted = f" Medians of the relative differences of peaks: {spatial_speed.scatter()}." if mujoco else ""
     return [
         f"One record of three components, {spatial_speed.DURATION:g} s at {spatial_speed.STEP:g} s, by seed, scaled",
         f"from {spatial_speed.WEAK:g} to {spatial_speed.STRONG:g} m/s2; a box of {x:g} by {y:g} by {z:g} m;",

@@ -1,4 +1,4 @@
-"""Our engine and two peers on the same cases: what each shows, its own error, and whether we agree within it."""
+"""This engine and two peers on equal cases: their results, their own errors, and the agreement within these errors."""
 
 import math
 from collections.abc import Callable
@@ -18,7 +18,7 @@ Peaks are relative, the others absolute [s, -, -, -, degrees]."""
 
 @dataclass(frozen=True)
 class Peer:
-    """A general-purpose code: its runs of a case, the last one the finest; its friction; whether friction is convex."""
+    """A general-purpose code: its runs of a case, the last one the finest, its friction, convex friction or not."""
 
     name: str
     runs: Callable[[Case], list[Track]]
@@ -47,48 +47,50 @@ PEERS = (
 
 @dataclass(frozen=True)
 class Finding:
-    """What a peer shows in its finest run, and how far its other runs are from it."""
+    """Results of the finest run of a peer, and the differences of its other runs."""
 
     best: Measures
     spread: dict[str, float]
 
 
-def distance(one: Measures, other: Measures) -> dict[str, float]:
+def distance(left: Measures, right: Measures) -> dict[str, float]:
     """Differences in the units of `FLOOR`; infinite where one falls and the other does not."""
-    if one.fell != other.fell:
+    if left.fell != right.fell:
         return dict.fromkeys(FLOOR, math.inf)
-    found = {f.name: abs(getattr(one, f.name) - getattr(other, f.name)) for f in fields(Measures) if f.name in FLOOR}
-    found["peak"] /= other.peak
-    found["direction"] = min(found["direction"], 360.0 - found["direction"])
-    return found
+    differences = {
+        f.name: abs(getattr(left, f.name) - getattr(right, f.name)) for f in fields(Measures) if f.name in FLOOR
+    }
+    differences["peak"] /= right.peak
+    differences["direction"] = min(differences["direction"], 360.0 - differences["direction"])
+    return differences
 
 
 def finding(peer: Peer, case: Case, when: Windows) -> Finding:
     """Run a peer."""
     shown = [measured(track, when) for track in peer.runs(case)]
-    others = [distance(each, shown[-1]) for each in shown[:-1]]
-    return Finding(shown[-1], {name: max(each[name] for each in others) for name in FLOOR})
+    others = [distance(run, shown[-1]) for run in shown[:-1]]
+    return Finding(shown[-1], {name: max(run[name] for run in others) for name in FLOOR})
 
 
-def beyond(ours: Measures, found: Finding) -> dict[str, float]:
+def beyond(ours: Measures, comparison: Finding) -> dict[str, float]:
     """Differences above a peer's own spread and the floor, in multiples of these; empty where we agree."""
-    apart = distance(ours, found.best)
-    allowed = {name: found.spread[name] + floor for name, floor in FLOOR.items()}
+    apart = distance(ours, comparison.best)
+    allowed = {name: comparison.spread[name] + floor for name, floor in FLOOR.items()}
     return {
         name: apart[name] / allowed[name] for name in FLOOR if math.isnan(apart[name]) or apart[name] > allowed[name]
     }
 
 
 def reason(peer: Peer, response: SpatialResponse, when: Windows) -> str:
-    """Why a peer must differ, from what our history asks up to the third landing; empty where it need not."""
-    asked = demands(response, until=when.third)
-    pulled = response.impacts["pull"][: len(asked)] > 0.0
+    """Return the reason for a difference of a peer, from the friction demand up to the third landing, or ""."""
+    impacts = demands(response, until=when.third)
+    pulled = response.impacts["pull"][: len(impacts)] > 0.0
     if pulled.any():
         return "a corner grazes the ground and would stick only if pulled: ours holds it and says so"
-    if any(each.needed > peer.friction for each in asked):
-        return f"an impact needs friction {max(each.needed for each in asked):.2f}: the peer slips"
-    if peer.convex and any(each.slope < peer.friction for each in asked):
-        return f"a corner leaves at slope {min(each.slope for each in asked):.2f}: convex friction holds it"
+    if any(impact.needed > peer.friction for impact in impacts):
+        return f"an impact needs friction {max(impact.needed for impact in impacts):.2f}: the peer slips"
+    if peer.convex and any(impact.slope < peer.friction for impact in impacts):
+        return f"a corner leaves at slope {min(impact.slope for impact in impacts):.2f}: convex friction holds it"
     released = any(
         a[2] is ContactMode.EDGE
         and b[2] is ContactMode.VERTEX
@@ -106,5 +108,5 @@ def symmetric(case: Case) -> bool:
 
 
 def read(case: Case, response: SpatialResponse) -> Measures:
-    """What our history shows, by the same rules."""
+    """Return the results of this engine, by the rules of the peers."""
     return measured(track_of(case, response), windows(response))

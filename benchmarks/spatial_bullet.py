@@ -13,7 +13,7 @@ from rocking.conventions import FloatArray
 
 @dataclass(frozen=True)
 class Rules:
-    """How Bullet is run: step [s], friction, iterations of its solver, share of penetration that it takes back."""
+    """Settings of Bullet: time step [s], friction, solver iterations, corrected fraction of penetration."""
 
     step: float = 1e-4
     friction: float = 20.0
@@ -50,7 +50,7 @@ def run(case: Case, rules: Rules = Rules()) -> Track:
 
 
 def _scene(bullet: Any, case: Case, rules: Rules) -> int:
-    """A box on a large flat one, whose whole manifold of contacts is found anew every step."""
+    """Return a box on a large flat box, with a new contact manifold at every time step."""
     bullet.setPhysicsEngineParameter(
         fixedTimeStep=rules.step,
         numSolverIterations=rules.iterations,
@@ -66,15 +66,15 @@ def _scene(bullet: Any, case: Case, rules: Rules) -> int:
     )
     ground = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[50.0, 50.0, 1.0])
     floor = bullet.createMultiBody(0.0, ground, basePosition=[0.0, 0.0, -1.0])
-    shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[0.5 * each for each in case.size])
+    shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[0.5 * body for body in case.size])
     s, x, y, z = case.quaternion().tolist()
     box = int(bullet.createMultiBody(case.body.mass, shape, -1, case.centre().tolist(), [x, y, z, s]))
     bullet.changeDynamics(box, -1, localInertiaDiagonal=np.diag(case.body.inertia).tolist())
-    for each in (floor, box):
+    for body in (floor, box):
         bullet.changeDynamics(
-            each,
+            body,
             -1,
-            lateralFriction=rules.friction if each == box else 1.0,
+            lateralFriction=rules.friction if body == box else 1.0,
             restitution=0.0,
             linearDamping=0.0,
             angularDamping=0.0,
@@ -88,9 +88,9 @@ def _scene(bullet: Any, case: Case, rules: Rules) -> int:
 def _step(bullet: Any, box: int, field: list[float]) -> tuple[float, ...]:
     bullet.setGravity(*field)
     bullet.stepSimulation()
-    place, attitude = bullet.getBasePositionAndOrientation(box)
+    position, attitude = bullet.getBasePositionAndOrientation(box)
     velocity, spin = bullet.getBaseVelocity(box)
-    return (*place, *attitude, *velocity, *spin)
+    return (*position, *attitude, *velocity, *spin)
 
 
 def _track(case: Case, time: FloatArray, states: FloatArray) -> Track:

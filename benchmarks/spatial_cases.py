@@ -1,4 +1,4 @@
-"""Twenty boxes that rock on their corners: let go, pushed, or shaken; both engines and peers start from these."""
+"""Twenty boxes that rock on their corners after a release, a push or under ground motion; for engines and peers."""
 
 import math
 from dataclasses import dataclass
@@ -18,10 +18,10 @@ Shape = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Case:
-    """A box (width, depth, height [m]), how it starts, and how long it is followed.
+    """A box (width, depth, height [m]), its initial state, and its duration.
 
-    It leans by a share of the angle at which it balances on the corner, towards an azimuth [degrees]; `pulses` are the
-    amplitudes of a sine of `period` [s] in x, y and z, as shares of gravity, y a quarter of a period later.
+    The initial tilt is a fraction of the slenderness angle over the corner, towards an azimuth [degrees]. `pulses` are
+    the amplitudes of a sine of `period` [s] in x, y and z, as fractions of gravity, y a quarter of a period later.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Case:
 
     @property
     def tilt(self) -> float:
-        """Lean at the start [rad]."""
+        """Initial tilt [rad]."""
         width, depth, height = self.size
         return self.lean * math.atan2(math.hypot(width, depth), height)
 
@@ -50,18 +50,18 @@ class Case:
 
     def acceleration(self, time: FloatArray) -> FloatArray:
         """Of the ground, shape (n, 3) [m/s2]."""
-        given = [np.interp(time, STEP * np.arange(each.size), each) for each in self.samples()]
-        return np.column_stack(given)
+        components = [np.interp(time, STEP * np.arange(component.size), component) for component in self.samples()]
+        return np.column_stack(components)
 
     def samples(self) -> list[FloatArray]:
         """Components of the acceleration every `STEP` [m/s2]."""
         time = np.arange(0.0, self.duration, STEP)
-        made = []
+        components = []
         for amplitude, late in zip(self.pulses, (0.0, 0.25, 0.1), strict=True):
             phase = time / self.period - late
             wave = np.sin(2.0 * np.pi * phase) * ((phase >= 0.0) & (phase <= 1.0))
-            made.append(GRAVITY * amplitude * wave)
-        return made
+            components.append(GRAVITY * amplitude * wave)
+        return components
 
     def quaternion(self) -> FloatArray:
         """Attitude at the start (s, x, y, z) [-]."""
@@ -69,13 +69,13 @@ class Case:
         return np.asarray(attitude.turn([-math.sin(towards), math.cos(towards), 0.0], self.tilt))
 
     def centre(self) -> FloatArray:
-        """Centre of mass at the start, the lowest corner where it stood before the lean [m]."""
+        """Centre of mass at the start; the lowest corner is at its position before the tilt [m]."""
         body, turned = self.body, attitude.matrix(self.quaternion())
         low = body.vertices[int((body.vertices @ turned[2]).argmin())]
         return np.asarray(low + turned @ (body.centre - low))
 
     def ours(self, restitution: object = "housner-3d") -> SpatialResponse:
-        """What our engine makes of it."""
+        """Response of this engine."""
         common = {
             "start": SpatialStart(self.tilt, math.radians(self.azimuth)),
             "gravity": GRAVITY,
@@ -83,7 +83,7 @@ class Case:
         }
         if not self.shaken:
             return free_rocking(self.body, restitution=restitution, **common)
-        x, y, z = (GroundMotion(each, STEP) for each in self.samples())
+        x, y, z = (GroundMotion(component, STEP) for component in self.samples())
         return simulate(self.body, {"x": x, "y": y, "z": z}, restitution, **common)
 
 

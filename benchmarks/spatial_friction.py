@@ -1,8 +1,8 @@
-"""What impacts of our histories ask of friction, and where a peer's law of friction cannot agree with them.
+"""Friction demand of impacts, and limits of the agreement with the friction law of a peer.
 
-A vertex that leaves in an impact slides while it rises. In a convex law of contact (MuJoCo's) friction holds it unless
-it rises at least as fast as mu times its slip; a law by complementarity lets it go. So such a peer can only agree
-where mu is above what the new contact needs, |Jt| / Jn, and below the slope at which the old one leaves, vn / |vt|.
+A vertex that separates in an impact slides while it rises. In a convex contact law (MuJoCo) friction holds the vertex
+unless it rises at least as fast as mu times its slip; a complementarity law releases it. Such a peer can therefore
+agree only if mu is above the demand of the new contact, |Jt| / Jn, and below the slope of the old one, vn / |vt|.
 """
 
 import math
@@ -24,7 +24,7 @@ class Demand:
 
 def demands(response: SpatialResponse, until: float = math.inf) -> list[Demand]:
     """Demands of impacts between vertices, in order."""
-    body, found = response.body, []
+    body, impacts = response.body, []
     for time in response.impacts["time"]:
         if time > until:
             break
@@ -32,8 +32,8 @@ def demands(response: SpatialResponse, until: float = math.inf) -> list[Demand]:
         change = body.mass * np.diff(instants.centre_velocity, axis=0)[0]
         arm = instants.pivot[0] - instants.pivot[1]
         leaves = instants.rotation[1] @ np.cross(instants.body_velocity[1], arm)
-        found.append(Demand(float(time), _ratio(math.hypot(*change[:2]), change[2]), _slope(leaves)))
-    return found
+        impacts.append(Demand(float(time), _ratio(math.hypot(*change[:2]), change[2]), _slope(leaves)))
+    return impacts
 
 
 def _slope(velocity: np.ndarray) -> float:

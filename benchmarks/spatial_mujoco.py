@@ -64,23 +64,23 @@ def installed() -> bool:
 
 def scene(size: tuple[float, float, float], contact: Contact) -> Any:
     """A box on a plane."""
-    x, y, z = (0.5 * each for each in size)
+    x, y, z = (0.5 * length for length in size)
     values = {**vars(contact), "soft": contact.steps * contact.step, "gravity": GRAVITY, "density": DENSITY}
     return import_module("mujoco").MjModel.from_xml_string(SCENE.format(**values, x=x, y=y, z=z))
 
 
 def start(model: Any, case: Case) -> FloatArray:
     """State that `rollout` takes: time, place and attitude, velocities."""
-    made = np.zeros(1 + model.nq + model.nv)
-    made[1:4], made[4:8] = case.centre(), case.quaternion()
-    return made
+    state = np.zeros(1 + model.nq + model.nv)
+    state[1:4], state[4:8] = case.centre(), case.quaternion()
+    return state
 
 
 def pushes(model: Any, acceleration: FloatArray) -> FloatArray:
     """Forces on the centre of mass as seen from the ground: a gravity field the other way, shape (n, 6) [N]."""
-    made = np.zeros((len(acceleration), 6))
-    made[:, :3] = -float(model.body_mass[1]) * acceleration
-    return made
+    forces = np.zeros((len(acceleration), 6))
+    forces[:, :3] = -float(model.body_mass[1]) * acceleration
+    return forces
 
 
 def control(push: FloatArray) -> FloatArray:
@@ -91,10 +91,10 @@ def control(push: FloatArray) -> FloatArray:
 def rollout(model: Any, starts: FloatArray, controls: FloatArray) -> FloatArray:
     """States after every step, shape (histories, steps, state); one thread."""
     mujoco = import_module("mujoco")
-    found = import_module("mujoco.rollout").rollout(
+    result = import_module("mujoco.rollout").rollout(
         model, mujoco.MjData(model), starts, controls, control_spec=int(mujoco.mjtState.mjSTATE_XFRC_APPLIED)
     )
-    return np.asarray(found[0])
+    return np.asarray(result[0])
 
 
 def run(case: Case, contact: Contact = Contact()) -> Track:

@@ -34,9 +34,9 @@ FELL = 1.0  # tilt at the end [rad]
 def record() -> tuple[GroundMotion, GroundMotion, GroundMotion]:
     """Three components of noise whose strength and frequency change; the first has a peak of 1 m/s2."""
     modulation = GammaModulation(a1=0.35, a2=2.6, a3=0.45)
-    made = [nonstationary_motion(modulation, NonstationaryFilter(), seed=k, duration=DURATION) for k in (11, 12, 13)]
-    factors = np.array([1.0, 1.0, 0.5]) / np.abs(made[0].acceleration).max()
-    x, y, z = (GroundMotion(f * each.acceleration, STEP) for f, each in zip(factors, made, strict=True))
+    motions = [nonstationary_motion(modulation, NonstationaryFilter(), seed=k, duration=DURATION) for k in (11, 12, 13)]
+    factors = np.array([1.0, 1.0, 0.5]) / np.abs(motions[0].acceleration).max()
+    x, y, z = (GroundMotion(f * motion.acceleration, STEP) for f, motion in zip(factors, motions, strict=True))
     return x, y, z
 
 
@@ -64,10 +64,10 @@ def batch_engine() -> Callable[..., Any] | None:
     """Our compiled engine, where it was built."""
     try:
         import_module("rocking.dynamics._spatial")
-        found: Callable[..., Any] = import_module("rocking.dynamics.space.batch").batch_in_space
+        function: Callable[..., Any] = import_module("rocking.dynamics.space.batch").batch_in_space
     except (ImportError, AttributeError):
         return None
-    return found
+    return function
 
 
 def batched(factors: FloatArray) -> Any:
@@ -81,7 +81,7 @@ def batched(factors: FloatArray) -> Any:
 
 
 class Fleet:
-    """Histories in MuJoCo by one call of `rollout`: no Python between steps, one thread, nothing drawn."""
+    """Histories in MuJoCo by one call of `rollout`: no Python between time steps, one thread, no pictures."""
 
     def __init__(self, contact: Contact, factors: FloatArray) -> None:
         self.model = spatial_mujoco.scene(SIZE, contact)
@@ -97,7 +97,7 @@ class Fleet:
 
     def tilts(self) -> FloatArray:
         """Tilts of all histories, shape (histories, steps) [rad]."""
-        return np.array([attitude.tilt(each[:, 4:8]) for each in self()])
+        return np.array([attitude.tilt(states[:, 4:8]) for states in self()])
 
 
 @dataclass(frozen=True)
@@ -121,12 +121,14 @@ class Mode:
         return f"peak tilt of {len(GENERIC)} free cases off by {self.middle:.1%} (median), {self.worst:.1%} (largest)"
 
 
-def mode(words: str, contact: Contact) -> Mode:
+def mode(description: str, contact: Contact) -> Mode:
     """Find the error of a way to run MuJoCo."""
-    setting = spatial_studies.Setting("MuJoCo", words, contact.step, lambda c: spatial_mujoco.run(c, contact), True)
+    setting = spatial_studies.Setting(
+        "MuJoCo", description, contact.step, lambda c: spatial_mujoco.run(c, contact), True
+    )
     peaks = [each["peak"] for each in spatial_studies.shown(setting, GENERIC)]
     good = [each for each in peaks if math.isfinite(each)]
-    return Mode(words, contact, max(good), statistics.median(good), len(peaks) - len(good))
+    return Mode(description, contact, max(good), statistics.median(good), len(peaks) - len(good))
 
 
 def quick(step: float) -> Contact:
@@ -136,16 +138,16 @@ def quick(step: float) -> Contact:
 
 def modes() -> list[Mode]:
     """Defaults, and contacts that are tuned for impacts at falling steps."""
-    made = [
+    candidates = [
         mode(f"all defaults, {1e3 * s:g} ms", replace(spatial_studies.defaults(s), integrator="implicitfast"))
         for s in (2e-3, 1e-3)
     ]
-    made += [mode(f"tuned, quick, {1e3 * s:g} ms", quick(s)) for s in (2e-3, 1e-3, 5e-4, 2.5e-4)]
-    return made + [mode(f"tuned, {1e3 * s:g} ms", Contact(s)) for s in (2e-3, 1e-3, 5e-4, 2.5e-4)]
+    candidates += [mode(f"tuned, quick, {1e3 * s:g} ms", quick(s)) for s in (2e-3, 1e-3, 5e-4, 2.5e-4)]
+    return candidates + [mode(f"tuned, {1e3 * s:g} ms", Contact(s)) for s in (2e-3, 1e-3, 5e-4, 2.5e-4)]
 
 
 def scatter() -> str:
-    """How far histories part that differ by nothing but the step, or the engine: medians over the scales, in words."""
+    """Return the scatter of histories due to the time step or the engine, as a sentence: medians over the scales."""
     factors = scales(FEW)
     coarse, fine = (Fleet(Contact(step), factors).tilts().max(axis=1) for step in (5e-4, 2.5e-4))
     mine = np.array([each.peak_tilt for each in reference(factors)])
@@ -158,8 +160,8 @@ def scatter() -> str:
     return f"{words}, our batched and our reference engine {_apart(both, mine):.1e}"
 
 
-def _apart(one: FloatArray, other: FloatArray) -> float:
-    return float(np.median(np.abs(one / other - 1.0)))
+def _apart(left: FloatArray, right: FloatArray) -> float:
+    return float(np.median(np.abs(left / right - 1.0)))
 
 
 # ---- all in turn -----------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What the peers' settings do: which differences shrink with the step and the stiffness, and which do not."""
+"""Effect of the settings of peers: differences that decrease with time step and stiffness, and others."""
 
 import math
 import statistics
@@ -28,14 +28,14 @@ class Setting:
     installed: bool
 
 
-def _mujoco(words: str, contact: Contact) -> Setting:
-    there = spatial_mujoco.installed()
-    return Setting("MuJoCo", words, contact.step, lambda case: spatial_mujoco.run(case, contact), there)
+def _mujoco(description: str, contact: Contact) -> Setting:
+    version = spatial_mujoco.installed()
+    return Setting("MuJoCo", description, contact.step, lambda case: spatial_mujoco.run(case, contact), version)
 
 
-def _bullet(words: str, rules: Rules) -> Setting:
-    there = spatial_bullet.installed()
-    return Setting("Bullet", words, rules.step, lambda case: spatial_bullet.run(case, rules), there)
+def _bullet(description: str, rules: Rules) -> Setting:
+    version = spatial_bullet.installed()
+    return Setting("Bullet", description, rules.step, lambda case: spatial_bullet.run(case, rules), version)
 
 
 def settings() -> list[Setting]:
@@ -53,7 +53,7 @@ def settings() -> list[Setting]:
 
 
 def defaults(step: float) -> Contact:
-    """What a user gets who sets nothing but friction: contacts of 0.02 s, a pyramid of friction."""
+    """Default settings of a user with a stated friction: contacts of 0.02 s, a pyramid of friction."""
     return Contact(
         step, stiff=0.95, steps=0.02 / step, damping=1.0, friction=0.8, ratio=1.0, cone="pyramidal", tolerance=1e-8
     )
@@ -61,11 +61,11 @@ def defaults(step: float) -> Contact:
 
 def shown(setting: Setting, cases: Sequence[Case]) -> list[dict[str, float]]:
     """Differences from ours, case by case."""
-    found = []
+    rows = []
     for case in cases:
         ours, when = known(case)
-        found.append(distance(measured(setting.run(case), when), ours))
-    return found
+        rows.append(distance(measured(setting.run(case), when), ours))
+    return rows
 
 
 _KNOWN: dict[str, tuple[Measures, Windows]] = {}
@@ -90,10 +90,10 @@ def lines() -> list[str]:
         "|---|---|---|---|---|---|---|",
     ]
     for setting in settings():
-        found = shown(setting, GENERIC)
-        good = [each for each in found if math.isfinite(each["peak"])]
+        measured = shown(setting, GENERIC)
+        good = [each for each in measured if math.isfinite(each["peak"])]
         cells = [_spread([each[name] for each in good], share=name == "peak") for name in ("kept", "peak", "lost")]
-        row = (setting.peer, setting.words, f"{1e3 * setting.step:g}", *cells, str(len(found) - len(good)))
+        row = (setting.peer, setting.words, f"{1e3 * setting.step:g}", *cells, str(len(measured) - len(good)))
         text.append(f"| {' | '.join(row)} |")
     return text
 

@@ -1,4 +1,4 @@
-"""What is read from a history in space, ours or a peer's, by the same rules."""
+"""Results from a history in 3D of this engine or a peer, by equal rules."""
 
 import math
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ class Track:
 
     @cached_property
     def slip(self) -> float:
-        """How far the lowest vertex wanders from where it touched down, largest over flights [m]."""
+        """Largest drift of the lowest vertex from its touchdown during flights [m]."""
         turned = attitude.matrix(self.quaternion)
         places = self.centre[:, None, :] + np.einsum("nab,kb->nka", turned, self.body.vertices - self.body.centre)
         low = self.gaps.argmin(axis=1)
@@ -76,14 +76,14 @@ class Track:
 
     def first_landing(self) -> float:
         """When a vertex that had left the ground first comes back; NaN if none does [s]."""
-        size, found = self.body.size, math.inf
+        size, earliest = self.body.size, math.inf
         for gap in self.gaps.T:
             clear = np.flatnonzero(gap > CLEAR * size)
             if clear.size:
                 back = np.flatnonzero(gap[clear[0] :] < CLOSED * size)
                 if back.size:
-                    found = min(found, self._crossing(gap, int(clear[0] + back[0])))
-        return found if found < math.inf else math.nan
+                    earliest = min(earliest, self._crossing(gap, int(clear[0] + back[0])))
+        return earliest if earliest < math.inf else math.nan
 
     def _crossing(self, gap: FloatArray, k: int) -> float:
         """Time at which a gap closes, going on as before the sample at which it is seen closed [s]."""
@@ -107,11 +107,11 @@ class Windows:
 
 @dataclass(frozen=True)
 class Measures:
-    """What is compared.
+    """Compared results.
 
-    Time of the first landing [s], kinetic energy kept in it [-], peak of the tilt after it [degrees], energy that
-    contacts took up to the flight after the third landing over that of overturning [-], how it ended, direction of the
-    largest lean after the first landing, or of the fall [degrees], and slip of the pivot [mm].
+    Time of the first landing [s], kinetic energy after it over that before it [-], peak tilt after it [degrees], energy
+    loss of contacts up to the flight after the third landing over the overturning energy [-], outcome, direction of the
+    largest tilt after the first landing, or of overturning [degrees], and slip of the pivot [mm].
     """
 
     landing: float
@@ -149,12 +149,12 @@ def windows(response: SpatialResponse) -> Windows:
 
 
 def measured(track: Track, when: Windows) -> Measures:
-    """What a history shows."""
+    """Return the results of a history."""
     body, landing = track.body, track.first_landing()
-    fell = bool(track.tilt[-1] > 1.0)
+    overturned = bool(track.tilt[-1] > 1.0)
     after = (track.time > when.first) if math.isfinite(landing) else track.time >= 0.0
-    place = int(np.where(after, track.tilt, 0.0).argmax())
-    direction = attitude.azimuth(track.quaternion[[place]])[0]
+    peak_index = int(np.where(after, track.tilt, 0.0).argmax())
+    direction = attitude.azimuth(track.quaternion[[peak_index]])[0]
     just = landing - 2.0 * (track.time[1] - track.time[0])
     spent = track.at(track.ledger, just) - track.at(track.ledger, when.first)
     kept = 1.0 - spent / track.at(track.kinetic, just)
@@ -162,9 +162,9 @@ def measured(track: Track, when: Windows) -> Measures:
     return Measures(
         landing,
         kept,
-        90.0 if fell else math.degrees(track.tilt[place]),
+        90.0 if overturned else math.degrees(track.tilt[peak_index]),
         float(lost),
-        fell,
+        overturned,
         math.degrees(direction),
         1e3 * track.slip,
     )

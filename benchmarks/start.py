@@ -36,11 +36,11 @@ def scaled(*arguments: str, repeats: int = 5) -> float:
 
 
 def starts() -> list[tuple[str, float, float]]:
-    """(what, seconds, goal) for each."""
-    found = [("import rocking", scaled("-c", "import rocking"), 0.1)]
+    """Return rows of description, time [s] and goal [s]."""
+    rows = [("import rocking", scaled("-c", "import rocking"), 0.1)]
     for name, (options, goal, repeats) in COMMANDS.items():
         with tempfile.TemporaryDirectory() as folder:
             out = ("--output", folder) if name == "reproduce" else ()
             spent = scaled("-m", "rocking", name, *options, *out, repeats=repeats)
-        found.append((f"rocking {name}", spent, goal))
-    return found
+        rows.append((f"rocking {name}", spent, goal))
+    return rows

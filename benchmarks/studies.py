@@ -1,4 +1,4 @@
-"""Studies: a map of pulses and a fragility study of a million histories, beside a loop over scipy's solve_ivp."""
+"""Studies: a map of pulses and a fragility study of a million histories, compared with a loop over solve_ivp."""
 
 import time
 from collections.abc import Callable
@@ -58,9 +58,9 @@ def cells(seed: int = 1) -> Histories:
         rk.pulses.sine(a * conventions.g * np.tan(alpha), 2.0 * np.pi / (p * w))
         for w, a in zip(ratio, amplitude, strict=True)
     ]
-    each = np.ones(SAMPLE)
+    ones = np.ones(SAMPLE)
     records = [pulse.sampled(STEP).acceleration for pulse in pulses]
-    return Histories(records, alpha * each, p * each, r * each, side.semi_diagonal * each, each)
+    return Histories(records, alpha * ones, p * ones, r * ones, side.semi_diagonal * ones, ones)
 
 
 def bodies() -> list[rk.Block]:
@@ -84,10 +84,10 @@ def stripes(seed: int = 2) -> Histories:
     rng = np.random.default_rng(seed)
     batch, blocks = histories(RECORDS), bodies()
     chosen = [blocks[k] for k in rng.integers(BODIES, size=SAMPLE)]
-    some = batch.some(rng.integers(RECORDS, size=SAMPLE))
+    sampled = batch.some(rng.integers(RECORDS, size=SAMPLE))
     sides = [body.side("right") for body in chosen]
     return Histories(
-        some.records,
+        sampled.records,
         np.array([side.slenderness_angle for side in sides]),
         np.array([side.frequency_parameter for side in sides]),
         np.array([rk.coefficient_of_restitution(body, "ked") for body in chosen]),
@@ -102,21 +102,21 @@ def rows() -> list[Row]:
     drawn = min(_seconds(a_map) for _ in range(3))
     count = RATIOS.size * AMPLITUDES.size
     slow = _seconds(scipy_events(cells())) / SAMPLE * count
-    made = [
+    table_rows = [
         _row(f"Map of {RATIOS.size} x {AMPLITUDES.size} sine pulses, all cores", drawn, slow, "seconds: < 5 s", 5.0)
     ]
     records = [rk.GroundMotion(record, STEP) for record in histories(RECORDS).records]
     count = BODIES * RECORDS * LEVELS.size
     spent = _seconds(lambda: fragility(records))
     slow = _seconds(scipy_events(stripes())) / SAMPLE * count
-    made.append(
+    table_rows.append(
         _row(f"Fragility of {BODIES} blocks, {count:,} histories, all cores", spent, slow, "minutes: < 300 s", 300.0)
     )
     spent, written = refined_map()
     count = POINTS**2
     measured = f"{spent:.1f} s and {written:.1f} s"
-    made.append(Row(f"Refined map of {count:,} points as a campaign, and its export", "-", measured, "-", None))
-    return made
+    table_rows.append(Row(f"Refined map of {count:,} points as a campaign, and its export", "-", measured, "-", None))
+    return table_rows
 
 
 def refined_map() -> tuple[float, float]:
@@ -131,7 +131,7 @@ def refined_map() -> tuple[float, float]:
 
 def main() -> bool:
     """Print and keep the table; whether every goal was met."""
-    found = rows() + synthetic.rows() + campaigns.rows()
+    table_rows = rows() + synthetic.rows() + campaigns.rows()
     text = [
         "# Speed of studies and campaigns",
         "",
@@ -141,15 +141,15 @@ def main() -> bool:
         f"- Machine: {table.machine()}",
         f"- Versions: {table.versions('numpy', 'scipy', 'distributed')}",
         "",
-        *table.lines(found),
+        *table.lines(table_rows),
     ]
     table.keep("RESULTS-studies.md", text)
-    return all(row.met is not False for row in found)
+    return all(row.met is not False for row in table_rows)
 
 
-def _row(what: str, ours: float, theirs: float, goal: str, limit: float) -> Row:
+def _row(description: str, ours: float, theirs: float, goal: str, limit: float) -> Row:
     measured = f"{ours:.2f} s; {theirs / ours:,.0f} times faster ({theirs / 3600.0:,.1f} hours)"
-    return Row(what, "scipy loop, one core", measured, goal, ours < limit)
+    return Row(description, "scipy loop, one core", measured, goal, ours < limit)
 
 
 def _seconds(call: Callable[[], object]) -> float:

@@ -1,4 +1,4 @@
-"""What a synthetic motion of 40 s at .01 s costs, by each of the three models: CPU time on one core."""
+"""Cost of a synthetic motion of 40 s at 0.01 s for each of the three models: CPU time on one core."""
 
 import statistics
 from collections.abc import Callable
@@ -34,6 +34,6 @@ def rows() -> list[Row]:
     """A row for each model."""
     spent = {name: seconds(make) for name, make in models().items()}
     return [
-        Row(f"Synthetic motion of 40 s, {name}", "-", f"{1e3 * each:.2f} ms", f"< {1e3 * GOAL:g} ms", each < GOAL)
-        for name, each in spent.items()
+        Row(f"Synthetic motion of 40 s, {name}", "-", f"{1e3 * times:.2f} ms", f"< {1e3 * GOAL:g} ms", times < GOAL)
+        for name, times in spent.items()
     ]

@@ -1,4 +1,4 @@
-"""Tables of goals: what was measured, what was asked for, and on which machine."""
+"""Tables of goals: measured values, required values, and the machine."""
 
 import os
 import platform
@@ -25,7 +25,7 @@ def lines(rows: list[Row]) -> list[str]:
 
 
 def keep(name: str, text: list[str]) -> None:
-    """Print a page and keep it beside the benchmarks."""
+    """Print a page and store it in the folder of the benchmarks."""
     print("\n".join(text), flush=True)
     (Path(__file__).parent / name).write_text("\n".join(text) + "\n", encoding="utf-8")
 
@@ -36,20 +36,20 @@ def machine() -> str:
     info = Path("/proc/cpuinfo")
     if info.exists():
         entries = dict(line.split(":", 1) for line in info.read_text(encoding="utf-8").splitlines() if ":" in line)
-        known = {key.strip(): value.strip() for key, value in entries.items()}
-        flags = set(known.get("flags", "").split())
-        family = f"family {known.get('cpu family', '?')} model {known.get('model', '?')}"
-        model = f"{known.get('model name', model)} ({family}, {known.get('cache size', '?')} cache)"
+        fields = {key.strip(): value.strip() for key, value in entries.items()}
+        flags = set(fields.get("flags", "").split())
+        family = f"family {fields.get('cpu family', '?')} model {fields.get('model', '?')}"
+        model = f"{fields.get('model name', model)} ({family}, {fields.get('cache size', '?')} cache)"
     vectors = ", ".join(name for name in ("avx512f", "avx512dq", "avx2", "fma", "asimd") if name in flags)
     return f"{model}; {vectors or 'vector instructions unknown'}; {os.cpu_count()} cores; {platform.system()}"
 
 
 def versions(*names: str) -> str:
-    """Versions of what is installed of these."""
-    found = [f"Python {platform.python_version()}"]
+    """Return the versions of the installed packages among some."""
+    texts = [f"Python {platform.python_version()}"]
     for name in names:
         try:
-            found.append(f"{name} {metadata.version(name)}")
+            texts.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
-            found.append(f"{name} not installed")
-    return ", ".join(found)
+            texts.append(f"{name} not installed")
+    return ", ".join(texts)

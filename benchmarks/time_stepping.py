@@ -53,9 +53,11 @@ class Motion:
     @classmethod
     def upright(cls, bodies: Bodies) -> "Motion":
         """At rest in the axes of the vertices, the lowest one on the ground."""
-        place = np.zeros((len(bodies.mass), 3))
-        place[:, 2] = -np.nanmin(bodies.points[..., 2], axis=1)
-        return cls(place, np.tile(np.eye(3), (len(place), 1, 1)), np.zeros_like(place), np.zeros_like(place))
+        position = np.zeros((len(bodies.mass), 3))
+        position[:, 2] = -np.nanmin(bodies.points[..., 2], axis=1)
+        return cls(
+            position, np.tile(np.eye(3), (len(position), 1, 1)), np.zeros_like(position), np.zeros_like(position)
+        )
 
 
 def crossing(vectors: FloatArray) -> FloatArray:
@@ -117,17 +119,17 @@ def _contact(
     push = np.where(low[..., None], first, 0.0)
     moving = moving + np.einsum("nklij,nlj->nki", effect, push)
     close = CLOSE * np.sqrt(g * bodies.size[rows])
-    found, left = push.copy(), np.arange(len(rows))
+    impulse, left = push.copy(), np.arange(len(rows))
     friction = bodies.friction[rows]
     for _ in range(SWEEPS):
         change = _sweep(effect, moving, push, low, friction)
-        found[left] = push
+        impulse[left] = push
         on = change > close[left]
         if not on.any():
             break
         if on.mean() < 0.7:
             left, effect, moving, push, low, friction = (x[on] for x in (left, effect, moving, push, low, friction))
-    return found
+    return impulse
 
 
 def _sweep(effect: FloatArray, moving: FloatArray, push: FloatArray, low: FloatArray, friction: FloatArray) -> Any:
@@ -151,7 +153,7 @@ def _sweep(effect: FloatArray, moving: FloatArray, push: FloatArray, low: FloatA
 
 @dataclass
 class Tracks:
-    """What becomes of bodies: upward in axes of the body at every step, shape (step, body, 3), and where they end."""
+    """Results: upward direction in body axes at every time step, shape (step, body, 3), and last positions."""
 
     up: FloatArray
     end: Motion

@@ -19,7 +19,7 @@ class Comparison:
 
     @property
     def ratio(self) -> float:
-        """How many times faster ours is."""
+        """Ratio of the time of the peer to the time of this package."""
         return self.theirs / self.ours
 
     @property
@@ -45,7 +45,7 @@ def compare(
     counts: tuple[int, int],
     repeats: int = 15,
 ) -> Comparison:
-    """Time both in turn; `counts` says how many items each call does."""
+    """Time both alternately; `counts` is the number of items per call."""
     ours()
     pairs = [(cpu_seconds(ours) / counts[0], cpu_seconds(theirs) / counts[1]) for _ in range(repeats)]
     mine, other = (statistics.median(column) for column in zip(*pairs, strict=True))

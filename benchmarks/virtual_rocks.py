@@ -1,8 +1,8 @@
-"""Whether predictions tell which rocks fall: rocks whose base, friction and restitution are hidden, shaken in MuJoCo.
+"""Accuracy of predictions for rocks with hidden base, friction and restitution, simulated in MuJoCo.
 
-`make virtual-rocks` makes 20 rocks, asks MuJoCo (soft contacts, steps of its own) what becomes of each under
-40 motions, foresees the same from the rock's scan alone, and prints how often that was right. Nothing is fitted. It
-keeps every rock in build/virtual_rocks.jsonl, and goes on where it stopped.
+`make virtual-rocks` makes 20 rocks, simulates each under 40 motions in MuJoCo (soft contacts, own time steps), predicts
+the outcomes from the scan alone, and prints the scores. No parameter is fitted. The results are in
+build/virtual_rocks.jsonl, and a later run continues.
 """
 
 import sys
@@ -50,7 +50,7 @@ POINT = 1e-4
 
 
 def rock(number: int) -> Solid:
-    """Return a rough rock that stands on a face of its hull whose nearest edge is 0.08 to 0.35 of the height away."""
+    """Return a rough rock on a face of its hull with the nearest edge at a distance of 0.08 to 0.35 of the height."""
     random = np.random.default_rng([5, number])
     while True:
         points = random.normal(size=(60, 3))
@@ -81,12 +81,12 @@ def motion(number: int) -> dict[str, Any]:
 
 
 def fell(solid: Solid, motions: list[dict[str, Any]], random: np.random.Generator) -> list[float]:
-    """Return whether a rock with what is hidden of it falls under each motion, in MuJoCo."""
+    """Return the overturning of a rock with its hidden properties under each motion, in MuJoCo."""
     mujoco = import_module("mujoco")
-    moments, found = solid.local_moments, solid.equilibria()
-    pose, height = found.settling((0.0, 0.0, -1.0)), moments.centre[2]
+    moments, equilibria = solid.local_moments, solid.equilibria()
+    pose, height = equilibria.settling((0.0, 0.0, -1.0)), moments.centre[2]
     radius = np.linalg.norm(pose.support, axis=1).mean()
-    points = found.hull.vertices.copy()  # from the centre of mass
+    points = equilibria.hull.vertices.copy()  # from the centre of mass
     base = random.uniform(BASE[0] * radius, min(BASE[1] * height, 0.005))
     low = points[:, 2] + height <= max(base, 1e-9)
     if base > 0.0:
@@ -99,19 +99,19 @@ def fell(solid: Solid, motions: list[dict[str, Any]], random: np.random.Generato
         f'<geom type="sphere" size="{POINT}" pos="{x} {y} {z + POINT}"/>'
         for x, y, z in points[ConvexHull(points).vertices]
     ]
-    words = {
+    names = {
         "step": STEP, "soft": SOFT, "friction": random.uniform(*FRICTION), "damping": random.uniform(*DAMPING),
         "centre": f"0 0 {height * random.uniform(*CENTRE)}", "mass": moments.mass,
         "inertia": " ".join(map(str, inertia)),
         "points": "".join(balls),
     }  # fmt: skip
-    model = mujoco.MjModel.from_xml_string(SCENE.format(**words))
+    model = mujoco.MjModel.from_xml_string(SCENE.format(**names))
     rollout, data, ended = import_module("mujoco.rollout").rollout, mujoco.MjData(model), []
     for shaking in motions:
         time = STEP * (np.arange(round((shaking["x"].duration + AFTER) / STEP)) + 0.5)
         ground = np.zeros((time.size, 3))
-        for axis, each in enumerate(shaking.values()):
-            ground[:, axis] = np.interp(time, each.time, each.acceleration, right=0.0)
+        for axis, component in enumerate(shaking.values()):
+            ground[:, axis] = np.interp(time, component.time, component.acceleration, right=0.0)
         start = np.zeros((1, 1 + model.nq + model.nv))
         start[0, 4] = 1.0
         push = control(pushes(model, ground))[None]
@@ -122,29 +122,33 @@ def fell(solid: Solid, motions: list[dict[str, Any]], random: np.random.Generato
 
 
 def foreseen(number: int, count: int, motions: int) -> dict[str, Any]:
-    """Return what is said of a rock under each motion, and what then happened to it."""
+    """Return the prediction for a rock under each motion, and its outcomes."""
     solid, shaken = rock(number), [motion(k) for k in range(motions)]
     # what a scan says, which way the rock stands, and nothing else
-    known = predict(solid, shaken, azimuth=0.0, count=count, contributions=False, seed=number)
+    prediction = predict(solid, shaken, azimuth=0.0, count=count, contributions=False, seed=number)
     peaks = [[each["x"].peak, peak_ground_velocity(each["x"])] for each in shaken]
-    said = known.chances["overturning"].per_motion
-    return {"said": said.tolist(), "fell": fell(solid, shaken, np.random.default_rng([7, number])), "peaks": peaks}
+    probabilities = prediction.chances["overturning"].per_motion
+    return {
+        "said": probabilities.tolist(),
+        "fell": fell(solid, shaken, np.random.default_rng([7, number])),
+        "peaks": peaks,
+    }
 
 
 def scored(rows: list[dict[str, Any]]) -> dict[str, Forecasts]:
     """Return the scores of the predictions, and of a logistic in PGA and PGV that has not seen the motion."""
-    said, happened = (np.concatenate([row[key] for row in rows]) for key in ("said", "fell"))
+    probabilities, happened = (np.concatenate([row[key] for row in rows]) for key in ("said", "fell"))
     peaks = np.concatenate([row["peaks"] for row in rows])
     which = np.tile(np.arange(len(rows[0]["said"])), len(rows))
     logistic = logistic_left_out(np.log(peaks), happened, which)
     return {
-        "predict": Forecasts(said, happened, which),
+        "predict": Forecasts(probabilities, happened, which),
         "logistic, a motion left out": Forecasts(logistic, happened, which),
     }
 
 
 def main(rocks: int = 20, count: int = 32, motions: int = 40) -> None:
-    """Print how often it was right, for each rock and over all."""
+    """Print the scores of each rock and of all rocks."""
     path = ROOT / "build" / "virtual_rocks.jsonl"
     rows = list(resumed(path, rocks, foreseen, __file__, count=count, motions=motions))
     print("| rock | fell | balanced accuracy |\n|---|---|---|")

@@ -17,19 +17,19 @@ _TOLD = re.compile(r"\s*(?:(\d\.\d+):|\"(.+)\"$)")  # a number or a text at the 
 
 
 def main(readme: str, *options: str) -> None:
-    """Run all of it, and stop at what gives another answer than README says."""
+    """Run all lines, and stop at a result that differs from README."""
     block = re.search(r"```python\n(.*?)```", Path(readme).read_text("utf-8"), re.DOTALL)
     assert block is not None, f"{readme} has no Python in it"
     names: dict[str, object] = {}
     checked = 0
     for line in block[1].splitlines():
         code, _, comment = line.partition("#")
-        told = _TOLD.match(comment)
-        if told is None:
+        match = _TOLD.match(comment)
+        if match is None:
             exec(code, names)
             continue
-        value, (number, words) = eval(code, names), told.groups()
-        assert value == words if words else f"{value:.{len(number) - 2}f}" == number, (line, value)
+        value, (number, description) = eval(code, names), match.groups()
+        assert value == description if description else f"{value:.{len(number) - 2}f}" == number, (line, value)
         checked += 1
     assert checked, f"{readme} says of no line what it gives"
     from rocking.dynamics.plane import fast_engine

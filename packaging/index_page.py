@@ -19,7 +19,7 @@ _ABSOLUTE = re.compile(r"[a-z]+:|//", re.IGNORECASE)
 
 
 def dynamic_metadata(settings: Mapping[str, Any], project: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields `readme` and `urls` of the project, as the build asks for them."""
+    """Return the fields `readme` and `urls` of the project for the build."""
     repository = str(settings["repository"]).rstrip("/")
     text = index_page(Path("README.md").read_text("utf-8"), repository, f"v{project['version']}")
     return {"readme": {"content-type": "text/markdown", "text": text}, "urls": urls(repository)}
@@ -51,8 +51,8 @@ def index_page(readme: str, repository: str, tag: str) -> str:
     '![a block](https://forge.example/rocking/raw/v1/docs/block.png)'
     """
     rewritten = _without_addresses if not repository else _with_addresses(repository, tag)
-    parts = _FENCED.split(readme)
-    return "".join(part if part.startswith("```") else rewritten(part) for part in parts)
+    sections = _FENCED.split(readme)
+    return "".join(section if section.startswith("```") else rewritten(section) for section in sections)
 
 
 def _without_addresses(text: str) -> str:

@@ -73,8 +73,8 @@ def _texts(node: ast.AST | None) -> Iterator[str]:
 
 def messages_of_script(text: str) -> Iterator[Key]:
     """Yield the messages of a script of the page: t("text"), t(["text", "text of many"])."""
-    for one, first, many in re.findall(rf"\bt\((?:{STRING}|\[{STRING}, {STRING}\])", text):
-        yield _unescaped(one or first), _unescaped(many), ""
+    for single, first, many in re.findall(rf"\bt\((?:{STRING}|\[{STRING}, {STRING}\])", text):
+        yield _unescaped(single or first), _unescaped(many), ""
 
 
 def literals_of_script(text: str) -> Iterator[str]:
@@ -96,7 +96,7 @@ LETTERS = {"ₚ": "_p", "\N{GREEK SMALL LETTER ALPHA}": "alpha", "π": "pi", "ω
 
 
 def texts_of_templates(script: str) -> Iterator[str]:
-    """Yield what the templates html`...` of a script state: texts between tags and expressions, labels of elements."""
+    """Yield the texts of the templates html`...` of a script: between tags and expressions, and labels of elements."""
     for start in re.finditer(r"\bhtml`", script):
         text, _ = _template(script, start.end())
         for label in re.findall(LABEL, text):

@@ -1,4 +1,4 @@
-"""What the core of the package takes on disk: the table of docs/install.md, by the Python that has it installed."""
+"""Disk space of the core of the package: the table of docs/install.md, from the installed distributions."""
 
 import re
 from importlib.metadata import Distribution, distribution, requires
@@ -7,22 +7,22 @@ _NAME = re.compile(r"[\w.-]+")
 
 
 def megabytes(name: str) -> float:
-    """Size of what a distribution installed, without the code that Python compiles when it runs [MB]."""
+    """Return the size of an installed distribution, without compiled bytecode [MB]."""
     files = [file for file in distribution(name).files or () if file.suffix != ".pyc"]
     return sum(path.stat().st_size for file in files if (path := file.locate()).is_file()) / 1e6  # type: ignore[union-attr]
 
 
 def needed(name: str) -> list[str]:
     """Distributions that one needs here, itself first, each once."""
-    found: list[str] = []
+    names: list[str] = []
     waiting = [name]
     while waiting:
-        one = waiting.pop(0).lower().replace("_", "-")
-        if one in found or not _is_here(one):
+        distribution_name = waiting.pop(0).lower().replace("_", "-")
+        if distribution_name in names or not _is_here(distribution_name):
             continue
-        found.append(one)
-        waiting += [_NAME.match(line)[0] for line in requires(one) or () if "extra ==" not in line]  # type: ignore[index]
-    return found
+        names.append(distribution_name)
+        waiting += [_NAME.match(line)[0] for line in requires(distribution_name) or () if "extra ==" not in line]  # type: ignore[index]
+    return names
 
 
 def _is_here(name: str) -> bool:
@@ -30,20 +30,22 @@ def _is_here(name: str) -> bool:
 
 
 def rows() -> list[tuple[str, float, dict[str, float]]]:
-    """Dependencies of the core in their order: name, size, and what each is the first to bring, with its size [MB]."""
+    """Return the dependencies of the core: name, size, additional dependencies with sizes [MB]."""
     core = [_NAME.match(line)[0] for line in requires("rocking") or () if "extra ==" not in line]  # type: ignore[index]
     counted = set(core)
     table = []
     for name in core:
-        brought = [each for each in needed(name)[1:] if each not in counted]
+        brought = [dependency for dependency in needed(name)[1:] if dependency not in counted]
         counted |= set(brought)
-        table.append((name, megabytes(name), {each: megabytes(each) for each in brought}))
+        table.append((name, megabytes(name), {dependency: megabytes(dependency) for dependency in brought}))
     return table
 
 
 if __name__ == "__main__":
-    found = rows()
-    for name, size, brought in found:
-        print(f"{name:<12} {size:6.1f} MB ", ", ".join(f"{each} {more:.1f}" for each, more in brought.items()))
-    total = sum(size + sum(brought.values()) for _, size, brought in found)
+    table = rows()
+    for name, size, brought in table:
+        print(
+            f"{name:<12} {size:6.1f} MB ", ", ".join(f"{dependency} {more:.1f}" for dependency, more in brought.items())
+        )
+    total = sum(size + sum(brought.values()) for _, size, brought in table)
     print(f"{'rocking':<12} {megabytes('rocking'):6.1f} MB\nall together {total + megabytes('rocking'):.0f} MB")

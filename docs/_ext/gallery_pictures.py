@@ -147,13 +147,13 @@ def thumbnails(app: Sphinx) -> None:
     for section, scripts in SECTIONS.items():
         folder = Path(app.srcdir) / "gallery" / section / "images"
         for script in scripts:
-            number, frame, part = PARTS.get(script, (1, 0, (0.0, 0.0, 1.0, 1.0)))
+            number, frame, crop = PARTS.get(script, (1, 0, (0.0, 0.0, 1.0, 1.0)))
             (source,) = folder.glob(f"sphx_glr_{script}_{number:03}.*")
             (thumbnail,) = (folder / "thumb").glob(f"sphx_glr_{script}_thumb.*")
             with Image.open(source) as picture:
                 picture.seek(frame)
                 shown = picture.convert("RGB")
-            box = [round(edge * size) for edge, size in zip(part, 2 * shown.size, strict=True)]
+            box = [round(edge * size) for edge, size in zip(crop, 2 * shown.size, strict=True)]
             shown = shown.crop(box)
             shown = shown.crop(ImageChops.difference(shown, Image.new("RGB", shown.size, "white")).getbbox())
             inner = ImageOps.pad(shown, _THUMBNAIL, Image.Resampling.LANCZOS, "white")
@@ -162,13 +162,13 @@ def thumbnails(app: Sphinx) -> None:
 
 def notebook(blocks: Any, conf: dict[str, Any], folder: Any) -> dict[str, Any]:
     """Return the notebook of a script, in which a cell that writes pictures shows them."""
-    made: dict[str, Any] = _plain_notebook(blocks, conf, folder)
-    for cell in made["cells"]:
+    document: dict[str, Any] = _plain_notebook(blocks, conf, folder)
+    for cell in document["cells"]:
         names = dict.fromkeys(NAMED.findall("".join(cell["source"]))) if cell["cell_type"] == "code" else ()
         if names:
             shown = ", ".join(f'Image("{name}")' for name in names)
             cell["source"] = [*cell["source"], f"\n\nfrom IPython.display import Image\n\ndisplay({shown})"]
-    return made
+    return document
 
 
 _plain_notebook = gen_rst.jupyter_notebook

@@ -1,6 +1,6 @@
-"""Equations as MathML, which browsers draw by themselves: no script, no font to fetch, read aloud by screen readers.
+"""Equations as MathML for browsers: no script, no font, and accessible to screen readers.
 
-An equation with the label `eq-NUMBER` bears that number, which code cites, wherever it stands.
+An equation with the label `eq-NUMBER` has that number, which code cites.
 """
 
 import html
@@ -25,7 +25,7 @@ THIN = "0.167em"
 
 
 def mathml(equation: str, display: str = "inline") -> str:
-    """Return an equation in LaTeX as MathML; one that the converter does not know is refused."""
+    """Return an equation in LaTeX as MathML; an unknown command is an error."""
     text = convert(equation, display=display).replace(' xmlns="http://www.w3.org/1998/Math/MathML"', "")
     try:
         tree = ElementTree.fromstring(text)
@@ -39,7 +39,7 @@ def mathml(equation: str, display: str = "inline") -> str:
 
 
 def mend(tree: ElementTree.Element, block: bool) -> None:
-    """Mend what browsers, which follow MathML Core, do not take from latex2mathml as it is meant."""
+    """Correct output of latex2mathml that MathML Core renders differently."""
     for element in list(tree.iter()):
         mend_letter(element)
         mend_primes(element)
@@ -63,7 +63,7 @@ def mend_letter(element: ElementTree.Element) -> None:
 
 
 def mend_primes(element: ElementTree.Element) -> None:
-    """Write a prime beside its letter, where fonts have raised it already."""
+    """Write a prime on the line of its letter, since fonts raise it already."""
     if element.tag not in {"msup", "msubsup"} or set(element[-1].text or " ") - {"\u2032", "\u2033"}:
         return
     letter, prime = element[0], element[-1]
@@ -93,7 +93,7 @@ def mend_operator(element: ElementTree.Element) -> None:
 
 
 def mend_spaces(row: ElementTree.Element, block: bool) -> None:
-    """Space the names of functions, and signs that belong to what follows."""
+    """Add space around function names, and remove space after prefix signs."""
     before = None
     for child, after in zip_longest(row, list(row)[1:]):
         name = child
@@ -111,7 +111,7 @@ def mend_spaces(row: ElementTree.Element, block: bool) -> None:
 
 
 def opens(before: ElementTree.Element | None) -> bool:
-    """Whether what stands behind this begins something."""
+    """Return True if the previous element begins an expression."""
     if before is None or before.tag == "mspace":
         return True
     return before.tag == "mo" and before.text not in {")", "]", "}", "|", "\u2032"}
@@ -126,17 +126,17 @@ def inline(self: HTML5Translator, node: nodes.math) -> None:
 def displayed(self: HTML5Translator, node: nodes.math_block) -> None:
     """Write an equation on a line of its own, with its number."""
     label = node.get("label") or ""
-    place, number = f"equation-{html.escape(label)}", number_of(label)
-    self.body.append(f'<div class="equation" id="{place}">' if label else '<div class="equation">')
+    anchor, number = f"equation-{html.escape(label)}", number_of(label)
+    self.body.append(f'<div class="equation" id="{anchor}">' if label else '<div class="equation">')
     self.body.append(mathml(node.astext(), "block"))
-    self.body.append(f'<a class="eqno" href="#{place}">({number})</a></div>' if number else "</div>")
+    self.body.append(f'<a class="eqno" href="#{anchor}">({number})</a></div>' if number else "</div>")
     raise nodes.SkipNode
 
 
 def number_of(label: str) -> int | None:
     """Return the number of an equation."""
-    found = re.fullmatch(r"eq-(\d+)", label)
-    return int(found[1]) if found else None
+    match = re.fullmatch(r"eq-(\d+)", label)
+    return int(match[1]) if match else None
 
 
 class Numbered(MathDomain):

@@ -16,12 +16,12 @@ def cleaned(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
     cells = []
     for cell in notebook.cells:
         if cell.cell_type == "code":
-            made = nbformat.v4.new_code_cell(cell.source, metadata={"tags": cell.metadata.get("tags", [])})
+            new_cell = nbformat.v4.new_code_cell(cell.source, metadata={"tags": cell.metadata.get("tags", [])})
         else:
             text = INWARD.sub(lambda link: link[1] or link[2], DOWNLOAD.sub("", cell.source))
-            made = nbformat.v4.new_markdown_cell(text)
-        made.id = f"cell-{len(cells)}"  # the same at every build
-        cells.append(made)
+            new_cell = nbformat.v4.new_markdown_cell(text)
+        new_cell.id = f"cell-{len(cells)}"  # the same at every build
+        cells.append(new_cell)
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
     return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel, "language_info": {"name": "python"}})
 
@@ -31,8 +31,8 @@ def finished(app: Sphinx, error: Exception | None) -> None:
     executed = Path(app.outdir).parent / "jupyter_execute"
     if error is None and app.builder.format == "html":
         for name in app.env.found_docs:
-            if (made := executed / f"{name}.ipynb").exists():
-                notebook = cleaned(nbformat.read(made, as_version=4))
+            if (path := executed / f"{name}.ipynb").exists():
+                notebook = cleaned(nbformat.read(path, as_version=4))
                 nbformat.validate(notebook)
                 nbformat.write(notebook, Path(app.outdir) / f"{name}.ipynb")
 

@@ -120,5 +120,5 @@ def documented(path: str, value: object) -> str:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before Sphinx reads them."""
-    app.connect("builder-inited", lambda each: write(Path(each.srcdir) / "reference"))
+    app.connect("builder-inited", lambda builder: write(Path(builder.srcdir) / "reference"))
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -33,9 +33,9 @@ def texts(node: nodes.Element) -> Iterator[str]:
 def entries(tree: nodes.document, address: str) -> Iterator[dict[str, str]]:
     """Yield each section and documented name of a page: title, page title, index terms, address and text."""
     page = next((title.astext() for title in tree.findall(nodes.title)), address)
-    for node in tree.findall(lambda each: isinstance(each, _INNER)):
+    for node in tree.findall(lambda child: isinstance(child, _INNER)):
         heading = next(
-            (each for each in node.children if isinstance(each, (nodes.title, addnodes.desc_signature))), None
+            (child for child in node.children if isinstance(child, (nodes.title, addnodes.desc_signature))), None
         )
         if heading is None:
             continue

@@ -26,14 +26,14 @@ class RecordFormats(SphinxDirective):
         rows = [
             (
                 f"`{name}`",
-                each.title,
-                ", ".join(f"`{suffix}`" for suffix in each.suffixes),
-                "yes" if each.states_unit else "no: `units=`",
-                "yes" if each.states_time_step else "no: `time_step=`",
+                record_format.title,
+                ", ".join(f"`{suffix}`" for suffix in record_format.suffixes),
+                "yes" if record_format.states_unit else "no: `units=`",
+                "yes" if record_format.states_time_step else "no: `time_step=`",
             )
-            for name, each in every.items()
+            for name, record_format in every.items()
         ]
-        notes = [f"`{name}`\n: {each.notes}\n" for name, each in every.items() if each.notes]
+        notes = [f"`{name}`\n: {record_format.notes}\n" for name, record_format in every.items() if record_format.notes]
         heading = ("name", "source", "extensions", "unit in the file", "time step in the file")
         text = "\n".join([table(heading, rows), "", "**Notes**", "", *notes])
         return self.parse_text_to_nodes(text)

@@ -58,7 +58,7 @@ class Claim:
 
     path: str
     test: str
-    words: str
+    description: str
     kind: str = ""
     against: str = ""
     within: str = ""
@@ -71,54 +71,58 @@ class Claim:
 
 @cache
 def claims(root: Path = ROOT) -> list[Claim]:
-    """Claims of all tests that are marked, and of those that should be."""
-    found = []
+    """Return the claims of all marked tests, and of tests without a required mark."""
+    marked = []
     for path in sorted((root / "tests").rglob("test_*.py")):
-        found += claims_of(path.read_text("utf-8"), path.relative_to(root).as_posix())
-    return found
+        marked += claims_of(path.read_text("utf-8"), path.relative_to(root).as_posix())
+    return marked
 
 
 def claims_of(source: str, path: str) -> list[Claim]:
-    """Claims of one file."""
+    """Return the claims of one file."""
     tree = ast.parse(source)
-    tests = [each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name.startswith("test_")]
-    beside = [each for each in tree.body if each not in tests]
+    tests = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")]
+    others = [node for node in tree.body if node not in tests]
     of_file: dict[str, str] = {}
-    for each in beside:
-        if isinstance(each, ast.Assign) and ast.unparse(each.targets[0]) == "pytestmark":
-            of_file |= _mark(each.value)
-    shared, found = _numbers(beside), []
+    for node in others:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark":
+            of_file |= _mark(node.value)
+    shared, marked = _numbers(others), []
     for test in tests:
         own = {key: value for call in test.decorator_list for key, value in _mark(call).items()}
         if not own and not of_file.get("kind") and path.split("/")[1] not in ALL_MARKED:
             continue
-        words = " ".join((ast.get_docstring(test) or "").split("\n\n")[0].split())
-        said = {key: of_file[key] for key in of_file if key == "room" or "kind" not in own} | own
-        known = {key: said.pop(key) for key in ("kind", "against", "within", "control", "doi", "room") if key in said}
-        found.append(Claim(path, test.name, words, **known, unknown=tuple(said), numbers=shared | _numbers([test])))
-    return found
+        description = " ".join((ast.get_docstring(test) or "").split("\n\n")[0].split())
+        marks = {key: of_file[key] for key in of_file if key == "room" or "kind" not in own} | own
+        known_fields = {
+            key: marks.pop(key) for key in ("kind", "against", "within", "control", "doi", "room") if key in marks
+        }
+        marked.append(
+            Claim(path, test.name, description, **known_fields, unknown=tuple(marks), numbers=shared | _numbers([test]))
+        )
+    return marked
 
 
 def _mark(node: ast.expr) -> dict[str, str]:
     for call in ast.walk(node):
         if isinstance(call, ast.Call) and ast.unparse(call.func) == "pytest.mark.verifies":
-            words = zip(("kind", "against"), map(ast.literal_eval, call.args), strict=False)
-            return dict(words) | {str(word.arg): ast.literal_eval(word.value) for word in call.keywords}
+            values = zip(("kind", "against"), map(ast.literal_eval, call.args), strict=False)
+            return dict(values) | {str(word.arg): ast.literal_eval(word.value) for word in call.keywords}
     return {}
 
 
-def _numbers(found: list[Any]) -> frozenset[float]:
-    """Numbers in code; a text counts if it is a number."""
-    values = [each.value for node in found for each in ast.walk(node) if isinstance(each, ast.Constant)]
+def _numbers(roots: list[Any]) -> frozenset[float]:
+    """Return the numbers in code, including numeric texts."""
+    values = [constant.value for node in roots for constant in ast.walk(node) if isinstance(constant, ast.Constant)]
     plain = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
     return frozenset(map(float, plain)) | {float(v) for v in values if isinstance(v, str) and v.isdecimal()}
 
 
-def faults(found: list[Claim]) -> list[str]:
+def faults(marked: list[Claim]) -> list[str]:
     """Return the faults of marks."""
     wrong = []
-    for path in dict.fromkeys(claim.path for claim in found):
-        here = [claim for claim in found if claim.path == path]
+    for path in dict.fromkeys(claim.path for claim in marked):
+        here = [claim for claim in marked if claim.path == path]
         kinds = {claim.test: claim.kind for claim in here}
         wrong += [f"{path}::{claim.test} {fault}" for claim in here for fault in _faults(claim, kinds)]
     return wrong
@@ -128,7 +132,7 @@ def _faults(claim: Claim, kinds: dict[str, str]) -> Iterator[str]:
     if not claim.kind:
         yield "has no mark that says what it verifies"
         return
-    if not claim.words:
+    if not claim.description:
         yield "does not say in its docstring what it proves"
     if claim.kind not in KINDS:
         yield f"is of the unknown kind {claim.kind!r}"
@@ -147,10 +151,10 @@ def _faults(claim: Claim, kinds: dict[str, str]) -> Iterator[str]:
         yield f"names the control {claim.control!r}, which is no negative control of its file"
 
 
-def figures(words: str) -> list[float]:
-    """Numbers in words, but for nought."""
-    found = [float(word.replace(",", "")) for word in re.findall(r"\d[\d,]*(?:\.\d+)?(?:e-?\d+)?", words)]
-    return [number for number in found if number]
+def figures(text: str) -> list[float]:
+    """Return the numbers in a text, except zero."""
+    numbers = [float(word.replace(",", "")) for word in re.findall(r"\d[\d,]*(?:\.\d+)?(?:e-?\d+)?", text)]
+    return [number for number in numbers if number]
 
 
 # ---- results of the last run -----------------------------------------------------------------------------------------
@@ -171,29 +175,29 @@ def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
     """Return the results per test and the date of a file of pytest's ``--junitxml``; nothing without a file."""
     if not path.exists():
         return {}, ""
-    found: dict[tuple[str, str], Outcome] = {}
+    by_test: dict[tuple[str, str], Outcome] = {}
     tree = ElementTree.parse(path).getroot()
     for case in tree.iter("testcase"):
         key = case.get("classname", "").replace(".", "/") + ".py", case.get("name", "").partition("[")[0]
-        outcome = found.setdefault(key, Outcome())
-        ended = {each.tag for each in case}
-        outcome.failed += bool(ended & {"failure", "error"})
-        outcome.skipped += "skipped" in ended
-        outcome.passed += not ended & {"failure", "error", "skipped"}
-        for each in case.iter("property"):
-            if each.get("name") == "deviation":
-                outcome.measured = max(outcome.measured or 0.0, float(each.get("value", "nan")))
-    return found, next(tree.iter("testsuite")).get("timestamp", "")[:10]
+        outcome = by_test.setdefault(key, Outcome())
+        tags = {node.tag for node in case}
+        outcome.failed += bool(tags & {"failure", "error"})
+        outcome.skipped += "skipped" in tags
+        outcome.passed += not tags & {"failure", "error", "skipped"}
+        for recorded in case.iter("property"):
+            if recorded.get("name") == "deviation":
+                outcome.measured = max(outcome.measured or 0.0, float(recorded.get("value", "nan")))
+    return by_test, next(tree.iter("testsuite")).get("timestamp", "")[:10]
 
 
 def how_closely(claim: Claim) -> str:
     """Return tolerance, measured deviation, and failures."""
     outcome = outcomes()[0].get((claim.path, claim.test), Outcome())
-    said = [claim.within] if claim.within else []
-    said += [] if outcome.measured is None else [f"measured {outcome.measured:.2g}"]
-    said += [f"failed in {outcome.failed} cases"] if outcome.failed else []
-    said += ["skipped in the last run"] if outcome.skipped and not outcome.passed else []
-    return "; ".join(said)
+    parts = [claim.within] if claim.within else []
+    parts += [] if outcome.measured is None else [f"measured {outcome.measured:.2g}"]
+    parts += [f"failed in {outcome.failed} cases"] if outcome.failed else []
+    parts += ["skipped in the last run"] if outcome.skipped and not outcome.passed else []
+    return "; ".join(parts)
 
 
 # ---- figures that files of this project state -----------------------------------------------------------------------
@@ -226,10 +230,10 @@ def stated(name: str) -> str:
     if name in COUNTED:
         return COUNTED[name]()
     path, pattern = STATED[name]
-    found = re.search(pattern, (ROOT / path).read_text("utf-8"))
-    if found is None:
+    match = re.search(pattern, (ROOT / path).read_text("utf-8"))
+    if match is None:
         raise LookupError(f"docs/_ext/verified.py looks for the {name} in {path}, which no longer says them")
-    return f"{int(found[1]):,}" if found[1].isdecimal() else found[1]
+    return f"{int(match[1]):,}" if match[1].isdecimal() else match[1]
 
 
 def _peer(name: str, word: str) -> str:
@@ -248,21 +252,21 @@ def _settings() -> str:
 
 def _records() -> str:
     trees = (ast.parse(path.read_text("utf-8")) for path in (ROOT / "tests").rglob("test_*.py"))
-    functions = (each for tree in trees for each in ast.walk(tree) if isinstance(each, ast.FunctionDef))
-    return str(sum("shared_records" in [argument.arg for argument in each.args.args] for each in functions))
+    functions = (node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+    return str(sum("shared_records" in [argument.arg for argument in node.args.args] for node in functions))
 
 
 def _errata() -> str:
     from rocking.evidence import errata
 
-    return str(sum(each.found for each in errata()))
+    return str(sum(erratum.found for erratum in errata()))
 
 
 def _verdicts() -> str:
     from rocking.evidence import claims as of_the_paper
 
-    found = Counter(each.verdict for each in of_the_paper())
-    return f"of {found.total()} claims " + ", ".join(f"{count} {verdict}" for verdict, count in found.most_common())
+    counts = Counter(claim.verdict for claim in of_the_paper())
+    return f"of {counts.total()} claims " + ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common())
 
 
 def _measured() -> str:
@@ -325,7 +329,7 @@ COUNTED = {
 
 
 def table(look: str, head: list[str], rows: list[list[list[nodes.Node] | str]], widths: list[int]) -> nodes.table:
-    """A table of words, or of nodes, that manual.css draws."""
+    """Return a table of texts or nodes, in the style of manual.css."""
     group = nodes.tgroup(cols=len(head))
     group += [nodes.colspec(colwidth=width) for width in widths]
     group += nodes.thead("", _line(head))
@@ -338,26 +342,30 @@ def _line(cells: Sequence[list[nodes.Node] | str]) -> nodes.row:
     return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", *cell)) for cell in filled))
 
 
-def words(text: str) -> list[nodes.Node]:
+def text_nodes(text: str) -> list[nodes.Node]:
     """Words of a docstring, with code between backticks."""
-    parts = enumerate(re.split(r"`+", text))
-    return [nodes.literal(part, part) if k % 2 else nodes.Text(part) for k, part in parts if part]
+    pieces = enumerate(re.split(r"`+", text))
+    return [nodes.literal(piece, piece) if k % 2 else nodes.Text(piece) for k, piece in pieces if piece]
 
 
 def row(claim: Claim) -> list[list[nodes.Node] | str]:
     """Return the row of a claim: text and test, reference, tolerance, control."""
     where = f"{claim.path.removeprefix('tests/')}::{claim.test}"
     test = nodes.literal(where, where, ids=[nodes.make_id(where)])
-    against = [nodes.strong(claim.kind, claim.kind), nodes.Text(": " if claim.against else ""), *words(claim.against)]
+    against = [
+        nodes.strong(claim.kind, claim.kind),
+        nodes.Text(": " if claim.against else ""),
+        *text_nodes(claim.against),
+    ]
     if claim.doi:
         address = f"https://doi.org/{claim.doi}"
         link = nodes.reference(address, f"doi:{claim.doi}", refuri=address, internal=False)
         against += [nodes.Text(" ("), link, nodes.Text(")")]
     control: list[nodes.Node] = [nodes.Text("in the test")] if claim.control == "within" else []
     if claim.control.startswith("test_"):
-        place = nodes.make_id(where.removesuffix(claim.test) + claim.control)
-        control = [nodes.reference("", "another test", refid=place, internal=True)]
-    return [[*words(claim.words), nodes.Text(" "), test], against, how_closely(claim), control]
+        anchor = nodes.make_id(where.removesuffix(claim.test) + claim.control)
+        control = [nodes.reference("", "another test", refid=anchor, internal=True)]
+    return [[*text_nodes(claim.description), nodes.Text(" "), test], against, how_closely(claim), control]
 
 
 class Claims(SphinxDirective):
@@ -374,27 +382,28 @@ class Claims(SphinxDirective):
             here.sort(key=lambda claim: (list(KINDS).index(claim.kind), claim.path))
             head = ["claim and test", "reference", "tolerance", "negative control"]
             return [table("claims", head, [row(claim) for claim in here], [45, 25, 15, 15])]
-        each = Counter((claim.room, claim.kind) for claim in claims())
+        by_kind = Counter((claim.room, claim.kind) for claim in claims())
         count = Counter(claim.kind for claim in claims())
         kinds = table(
             "kinds", ["kind", "tests", "meaning"], [[k, str(count[k]), w] for k, w in KINDS.items()], [20, 10, 70]
         )
         rows = [
-            [room, *(str(each[room, k] or "") for k in KINDS), str(sum(each[room, k] for k in KINDS))] for room in ROOMS
+            [room, *(str(by_kind[room, k] or "") for k in KINDS), str(sum(by_kind[room, k] for k in KINDS))]
+            for room in ROOMS
         ]
         return [kinds, table("counts", ["subject", *KINDS, "all"], rows, [20] + [6] * (len(KINDS) + 1))]
 
 
 class ClaimRole(SphinxRole):
-    """One claim in a sentence, by FILE::TEST: its words, and how closely."""
+    """One claim as a sentence, by FILE::TEST, with its tolerance."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return words, figure and test."""
-        (claim,) = [each for each in claims() if f"{each.path.rpartition('/')[2]}::{each.test}" == self.text]
+        """Return description, figure and test."""
+        (claim,) = [marked for marked in claims() if f"{marked.path.rpartition('/')[2]}::{marked.test}" == self.text]
         figure = f"tolerance {how_closely(claim)}; " if claim.within else ""
-        plain = claim.words.removeprefix("REF: ").rstrip(".")
-        said = nodes.Text(f"{plain[:1].upper()}{plain[1:]} ({figure}")
-        return [said, nodes.literal(claim.path, claim.path.removeprefix("tests/")), nodes.Text(")")], []
+        plain = claim.description.removeprefix("REF: ").rstrip(".")
+        sentence = nodes.Text(f"{plain[:1].upper()}{plain[1:]} ({figure}")
+        return [sentence, nodes.literal(claim.path, claim.path.removeprefix("tests/")), nodes.Text(")")], []
 
 
 class Stated(SphinxRole):
@@ -406,7 +415,7 @@ class Stated(SphinxRole):
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Register with Sphinx; wrong marks end it here, for a failure amid pages can leave their kernels waiting."""
+    """Register with Sphinx; wrong marks end the build here, since a later failure can leave kernels running."""
     if wrong := faults(claims()):
         raise ExtensionError("\n".join(wrong))
     app.add_directive("claims", Claims)

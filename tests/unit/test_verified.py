@@ -50,7 +50,7 @@ def test_a_mark_is_read():
     """Words, kind and figures of the test, its room from the file; numbers of other tests are not its own."""
     right, wrong = claims_of(GOOD, PATH)
     assert faults([right, wrong]) == []
-    assert right.words == "It is right, as always."
+    assert right.description == "It is right, as always."
     assert (right.room, right.kind, right.control) == ("bodies", "closed form", "test_wrong")
     assert (wrong.room, wrong.kind, wrong.control) == ("bodies", "negative control", "")
     assert 3.0 in wrong.numbers
