@@ -32,7 +32,7 @@ def test_flips_on_disk_are_found_and_mended(finished, shards):
         for k in hit:
             flip(paths(finished)[k], int(random.integers(8 * paths(finished)[k].stat().st_size)))
         assert len(finished.verify().damaged) == 5
-        with pytest.raises(CampaignDamagedError, match="run the campaign again: it is computed anew"):
+        with pytest.raises(CampaignDamagedError, match="run the campaign again to compute it"):
             finished.results()
         summary = finished.run(workers=1)
         assert (summary.computed, len(summary.set_aside)) == (5, 5)
@@ -145,7 +145,7 @@ def test_refusals_of_arguments(finished, tmp_path):
         ({"workers": 0}, "workers must be a whole number"),
         ({"executor": "processes", "workers": True}, "workers must be a whole number"),
         ({"executor": "processes", "start_method": "magic"}, "start_method must be one of"),
-        ({"start_method": "fork"}, "goes with"),
+        ({"start_method": "fork"}, "applies to"),
         ({"progress": 3}, "progress must be a function"),
         ({"order_seed": -1}, "order_seed must be a whole number"),
     ]
