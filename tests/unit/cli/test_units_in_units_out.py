@@ -30,10 +30,10 @@ def test_map_in_g_and_degrees(printed, drawn, tmp_path):
     """A map over PGA in g and alpha in degrees has those units on its axes and in its sentences."""
     axes = ("--x", "pga=0.1g:1.5g:8", "--y", "slenderness_angle=5deg:20deg:6")
     out = printed("map", *SIZE, PULSE, *axes, "--output", str(tmp_path / "map.png"))
-    assert "pga, 0.1 to 1.5 g" in out
-    assert "slenderness_angle, 5 to 20 deg" in out
+    assert "pga 0.1 to 1.5 g" in out
+    assert "slenderness_angle 5 to 20 deg" in out
     assert "m/s2" not in out.replace("3 m/s2", "")
-    assert "slenderness_angle = 5 deg" in out
+    assert "slenderness_angle 5 deg" in out
     (figure,) = drawn
     labels = figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
     assert labels[0] == "peak ground acceleration [g]"
@@ -60,7 +60,7 @@ def test_without_a_unit_nothing_changes(printed, drawn, tmp_path):
     """Negative control: numbers without a unit are in m/s2, and so is the picture."""
     axes = ("--x", "pga=1:15:8", "--y", "slenderness_angle=0.1:0.3:6")
     out = printed("map", *SIZE, PULSE, *axes, "--output", str(tmp_path / "map.png"))
-    assert "pga, 1 to 15 m/s2" in out
+    assert "pga 1 to 15 m/s2" in out
     assert drawn[0].axes[0].get_xlabel() == "peak ground acceleration [m/s$^2$]"
 
 
@@ -111,7 +111,7 @@ RADIUS = "slenderness angle 14.04 deg, R 1030.8 mm, p 2.6712 rad/s"  # R = sqrt(
 def test_block_in_mm_is_told_in_mm(printed, command, more, record):
     """A block and a record that are given in mm and g are described in mm and g, by every command alike."""
     out = printed(command, *IN_MM, "--motion", record, *more)
-    assert ("Block 500 x 2000 mm" if command == "simulate" else RADIUS) in out
+    assert (RADIUS if command == "fragility" else "Block 500 x 2000 mm") in out
     assert " m," not in out
     if command == "simulate":
         assert "third, 1.99 s, PGA 0.33 g" in out
