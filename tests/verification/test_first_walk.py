@@ -88,7 +88,7 @@ def test_the_walk(tmp_path, monkeypatch, printed):
     assert "Recommended model" in printed("restitution", "lean.toml", "--recommend")
     assert "a student's idea" in printed("models", "mymodel.py:SpreadImpulse")
     own = ("--restitution", "mymodel.py:SpreadImpulse")
-    text = printed("restitution", "lean.toml", *own, "--restitution", "ked")
+    text = printed("restitution", "lean.toml", *own, "--restitution", "ked", "--details")
     left, right = map(float, re.findall(r"spread-impulse\S*\s+(0\.\d+)", text))
     assert left == pytest.approx(expected("left"), abs=2e-6)  # six digits are printed
     assert right == pytest.approx(expected("right"), abs=2e-6)
@@ -96,7 +96,7 @@ def test_the_walk(tmp_path, monkeypatch, printed):
 
     both = printed("map", "lean.toml", *MAP.split(), *own, "--restitution", "housner", "--output", "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-    flipped, cells = map(int, re.search(r"in (\d+) of ([\d,]+) cells", both).groups())
+    flipped, cells = map(int, re.search(r"differs in (\d+) of ([\d,]+) cells", both).groups())
     outcomes = []
     for model in (own[1], "housner"):
         printed("map", "lean.toml", *MAP.split(), "--restitution", model, "--output", "one.nc")

@@ -39,13 +39,13 @@ def test_kinds_with_and_without():
 @pytest.mark.parametrize(
     ("kind", "second", "words"),
     [
-        ("histories", "maps={}/b.nc", "what must be one of histories, .*, report, picture, got 'maps'"),
+        ("histories", "maps={}/b.nc", "CONTENT must be one of histories, .*, report, picture, got 'maps'"),
         ("histories", "fragility={}/b.nc", 'nothing to export because a campaign of kind "histories" has no'),
         ("histories", "{}/b.doc", r"histories can be written as .* got '\.doc'"),
         ("histories", "{}/none/b.nc", "no folder"),
         ("histories", "report={}/b.html", "report is for inventories"),
         ("histories", "{}/b.png", 'A campaign of kind "histories" has no figure; export its table'),
-        ("histories", "{}/a.nc", "names a.nc twice"),
+        ("histories", "{}/a.nc", "a.nc is given twice"),
         ("overturning-map", "picture={}/b.nc", r"a picture must be \.png, \.svg, \.pdf, got '\.nc'"),
         ("overturning-map", "{}/none/b.png", "no folder"),
     ],
@@ -62,7 +62,7 @@ def test_all_is_checked_before_anything_is_written(finished, tmp_path, kind, sec
     ("how", "words"),
     [
         ({"restitution": "ked"}, r"restitution must be one of 0\.9, got 'ked'"),
-        ({"crossing_curves": "refuse"}, "crossing_curves goes with"),
+        ({"crossing_curves": "refuse"}, "--crossing-curves is for"),
     ],
 )
 def test_options_of_a_picture(finished, tmp_path, how, words):
