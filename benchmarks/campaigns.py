@@ -67,8 +67,8 @@ def two_workers(count: int = 400_000, repeats: int = 3) -> float:
     """Speed-up of two worker processes over one, from their first finished chunk to the last one."""
     work = records(count)
     pairs = [tuple(_working(work, workers) for workers in (1, 2)) for _ in range(repeats)]
-    one, two = (statistics.median(column) for column in zip(*pairs, strict=True))
-    return one / two
+    single, double = (statistics.median(column) for column in zip(*pairs, strict=True))
+    return single / double
 
 
 def growth(counts: tuple[int, ...] = (10_000, 100_000, 1_000_000, 10_000_000)) -> list[tuple[int, float, int]]:

@@ -70,7 +70,7 @@ def histories(count: int = COUNT, seed: int = 2024, highest: float = 8.0) -> His
     alpha = np.arctan(1.0 / slenderness)
     # what a block needs to overturn grows with its size against the period of the shaking
     severity = np.exp(rng.normal(0.05, 0.75, count)) * (0.9 + 0.35 * size**0.6)
-    peaks = np.array([np.abs(each).max() for each in records])
+    peaks = np.array([np.abs(values).max() for values in records])
     scale = severity * g * np.tan(alpha) / peaks
     return Histories(records, alpha, np.sqrt(0.75 * g / size), 1.0 - 1.5 * np.sin(alpha) ** 2, size, scale)
 

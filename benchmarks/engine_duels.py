@@ -94,8 +94,8 @@ def shares(batch: Histories, repeats: int) -> list[Row]:
             table_rows.append(Row(description, "peak of the core", "not counted: no compiler", _goal(goal)))
             continue
         peak, spent = engine_peak.beside(work, repeats)
-        each, speed = spent / done.steps, done.total / spent
-        cost = f"{each * 1e9:.1f} ns an active step of {done.total / done.steps:.0f} operations"
+        step_time, speed = spent / done.steps, done.total / spent
+        cost = f"{step_time * 1e9:.1f} ns an active step of {done.total / done.steps:.0f} operations"
         if peak is None:
             table_rows.append(Row(description, "peak of the core", f"{cost}; peak not measured", _goal(goal)))
             continue

@@ -48,8 +48,8 @@ def threads(batch: Histories, repeats: int) -> Row:
 
 def growth(counts: tuple[int, ...] = COUNTS) -> list[Row]:
     """Memory and time of campaigns of more and more histories, each in a process of its own."""
-    found = [json.loads(_process("-m", "benchmarks.engine_growth", str(count))) for count in counts]
-    spent = [each["cpu"] for each in found]
+    measured = [json.loads(_process("-m", "benchmarks.engine_growth", str(count))) for count in counts]
+    spent = [run["cpu"] for run in measured]
     # laying out the motions is paid once, so what counts is the cost of every further history
     cost = (np.diff(spent) / np.diff(counts) * 1e6).tolist()
     even, once = max(cost) / min(cost), spent[0] - cost[0] * 1e-6 * counts[0]
@@ -57,22 +57,22 @@ def growth(counts: tuple[int, ...] = COUNTS) -> list[Row]:
     linear = Row(
         f"Time of {numbers} histories",
         "-",
-        f"{', '.join(f'{each:.1f}' for each in cost)} us a further history: within {100.0 * (even - 1.0):.0f} %;"
+        f"{', '.join(f'{value:.1f}' for value in cost)} us a further history: within {100.0 * (even - 1.0):.0f} %;"
         f" {once * 1e3:.0f} ms once, to lay out the motions",
         "within 15 %",
         even <= 1.15,
     )
-    if any(each["memory"] is None for each in found):
+    if any(run["memory"] is None for run in measured):
         return [linear, Row(f"Memory of {numbers} histories", "-", "not measured on this system", "flat")]
-    memory = [(each["memory"] - each["results"]) / 1e6 for each in found]
+    memory = [(run["memory"] - run["results"]) / 1e6 for run in measured]
     grown = memory[-1] - memory[0]
     return [
         linear,
         Row(
             f"Memory of {numbers} histories, beside their results",
             "-",
-            f"{', '.join(f'{each:.0f}' for each in memory)} MB (the results take"
-            f" {found[-1]['results'] / counts[-1]:.0f} bytes a history)",
+            f"{', '.join(f'{value:.0f}' for value in memory)} MB (the results take"
+            f" {measured[-1]['results'] / counts[-1]:.0f} bytes a history)",
             "flat: grows by < 32 MB",
             grown < 32.0,
         ),
@@ -98,12 +98,12 @@ def single(batch: Histories) -> list[Row]:
 
     # overturned or at rest a block is followed no further: the weakest shaking under which it rocks to the end
     scales = np.arange(2.5, 10.0, 0.02).tolist()
-    scale = next((each for each in scales if rocks_on(respond(each))), scales[-1])
+    scale = next((factor for factor in scales if rocks_on(respond(factor))), scales[-1])
     response = respond(scale)
     spent = statistics.median(cpu_seconds(lambda: respond(scale)) for _ in range(301))
-    found = [json.loads(_process("-c", FIRST)) for _ in range(5)]
+    starts = [json.loads(_process("-c", FIRST)) for _ in range(5)]
     late, wall = (
-        statistics.median(each[0][k] - statistics.median(later[k] for later in each[1:]) for each in found)
+        statistics.median(times[0][k] - statistics.median(later[k] for later in times[1:]) for times in starts)
         for k in range(2)
     )
     return [

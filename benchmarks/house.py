@@ -121,13 +121,13 @@ def imports(folder: Path) -> dict[str, set[str]]:
 
 def _imported(name: str, tree: ast.Module, modules: dict[str, ast.Module]) -> Iterator[str]:
     # a package's table of its own exports is no arrow
-    named = set() if name.count(".") and _is_package(name, modules) else {each for each in modules if "." in each}
+    named = set() if name.count(".") and _is_package(name, modules) else {module for module in modules if "." in module}
     for node in _executed(tree):
         if isinstance(node, ast.Import):
-            yield from (each.name for each in node.names if each.name in modules)
+            yield from (alias.name for alias in node.names if alias.name in modules)
         elif isinstance(node, ast.ImportFrom) and node.module in modules:
-            for each in node.names:
-                yield _home(node.module, each.name, modules)
+            for alias in node.names:
+                yield _home(node.module, alias.name, modules)
         elif isinstance(node, ast.Constant) and node.value in named:
             yield str(node.value)
 
@@ -144,7 +144,7 @@ def _executed(tree: ast.AST) -> Iterator[ast.AST]:
                 inside += node.orelse
                 continue
             if isinstance(node, ast.ClassDef):
-                inside += [part for each in node.body for part in _of_method(each)]
+                inside += [part for statement in node.body for part in _of_method(statement)]
                 continue
             yield node
             inside.append(node)
@@ -252,7 +252,7 @@ def facts_stated_twice(folder: Path) -> dict[str, list[str]]:
     modules = trees(folder)
     return {
         "keys of answers that quantities.py does not name": [
-            f"{place} {key}" for key, place in keys_of_answers(modules).items() if not is_named(key)
+            f"{location} {key}" for key, location in keys_of_answers(modules).items() if not is_named(key)
         ],
         "modules and scripts that declare the width of a block": widths(modules, scripts),
         "sentences of ours that are read back": sentences_read(modules),
@@ -270,10 +270,12 @@ def options() -> dict[str, list[str]]:
 
     def collect(command: Any, name: str) -> None:
         if hasattr(command, "commands"):
-            for key, each in command.commands.items():
-                collect(each, f"{name} {key}".strip())
+            for key, subcommand in command.commands.items():
+                collect(subcommand, f"{name} {key}".strip())
         else:
-            by_command[name] = [each.opts[-1] for each in command.params if each.param_type_name == "option"]
+            by_command[name] = [
+                parameter.opts[-1] for parameter in command.params if parameter.param_type_name == "option"
+            ]
 
     collect(typer.main.get_command(application()), "")
     return by_command
@@ -286,13 +288,13 @@ def deep_imports(folder: Path) -> tuple[int, int]:
     deep: dict[str, set[str]] = defaultdict(set)
     for name, tree in trees(folder).items():
         for node in ast.walk(tree):
-            wanted = (
+            names = (
                 [node.module or ""] if isinstance(node, ast.ImportFrom)
-                else [each.name for each in node.names] if isinstance(node, ast.Import) else []
+                else [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             )  # fmt: skip
-            deep[name].update(each for each in wanted if each in modules and each not in faces)
-    found = {name: each for name, each in deep.items() if each}
-    return len(found), len(set().union(*found.values()) if found else ())
+            deep[name].update(module for module in names if module in modules and module not in faces)
+    imported = {name: deep_modules for name, deep_modules in deep.items() if deep_modules}
+    return len(imported), len(set().union(*imported.values()) if imported else ())
 
 
 def equations_cited(rooms: tuple[str, ...]) -> tuple[int, int]:
@@ -312,12 +314,12 @@ def measures() -> list[Measure]:
     arrows = imports(SOURCE)
     twice = sorted(name for name, count in kinds.items() if count > 1)
     loops, up = circles(arrows), upward(arrows)
-    spoken, asked, stated = options(), choices_of_mechanics(SOURCE), facts_stated_twice(SOURCE)
-    distinct = {option for each in spoken.values() for option in each}
+    spoken, choices, stated = options(), choices_of_mechanics(SOURCE), facts_stated_twice(SOURCE)
+    distinct = {option for names in spoken.values() for option in names}
     tests = lines(TESTS)[0]
     files, inner = deep_imports(TESTS)
     count = len(trees(SOURCE))
-    found = [
+    counts = [
         ("lines of Python under src", every, 60_000),
         ("lines of code", code, 36_000),
         ("lines of docstrings", docstrings, 13_000),
@@ -326,16 +328,19 @@ def measures() -> list[Measure]:
         (f"class names defined twice ({', '.join(twice) or 'none'})", len(twice), 0),
         ("circles, lazy ones too", len(loops), 0),
         ("arrows upward", len(up), 0),
-        *((f"outside the choice of mechanics: {what}", len(places), 0) for what, places in asked.items()),
-        *((what, len(places), 3 if "width" in what else 0) for what, places in stated.items()),
+        *(
+            (f"outside the choice of mechanics: {description}", len(places), 0)
+            for description, places in choices.items()
+        ),
+        *((description, len(places), 3 if "width" in description else 0) for description, places in stated.items()),
         ("names in rk", len(rocking.__all__), 32),
         ("options of rocking simulate", len(spoken["simulate"]), 22),
         ("distinct options", len(distinct), 55),
-        *((f"files passed: {what}", passed, most) for what, passed, most in files_passed()),
+        *((f"files passed: {description}", passed, most) for description, passed, most in files_passed()),
         ("lines of tests", tests, 36_000),
         (f"test files that import inner modules ({inner} of them)", files, 100),
     ]
-    table = [Measure(what, f"{value:,}", f"<= {most:,}", value <= most) for what, value, most in found]
+    table = [Measure(description, f"{value:,}", f"<= {most:,}", value <= most) for description, value, most in counts]
     citations, equations = equations_cited(("dynamics", "statistics", "studies"))
     table.append(
         Measure(
@@ -347,10 +352,10 @@ def measures() -> list[Measure]:
     )
     for loop in loops:
         print("circle:", " ".join(loop))
-    for what, places in (asked | stated).items():
-        print(*(f"{what}: {place}" for place in places), sep="\n", end="\n" if places else "")
-    for one, other in up:
-        print(f"upward: {one} -> {other}")
+    for description, places in (choices | stated).items():
+        print(*(f"{description}: {location}" for location in places), sep="\n", end="\n" if places else "")
+    for module, other in up:
+        print(f"upward: {module} -> {other}")
     return table
 
 
@@ -360,7 +365,7 @@ def main() -> bool:
         ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
     ).stdout.strip()
     print(f"The house at {version or 'an unnamed state'}\n\n| measure | measured | goal | |\n|---|---|---|---|")
-    found = measures()
-    for each in found:
-        print(f"| {each.what} | {each.measured} | {each.goal} | {'met' if each.met else 'missed'} |")
-    return all(each.met for each in found)
+    results = measures()
+    for result in results:
+        print(f"| {result.what} | {result.measured} | {result.goal} | {'met' if result.met else 'missed'} |")
+    return all(result.met for result in results)

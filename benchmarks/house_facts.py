@@ -38,9 +38,9 @@ def keys_of_answers(trees: Mapping[str, ast.Module]) -> dict[str, str]:
 
 
 def _keys(node: ast.AST) -> Iterator[ast.Constant]:
-    for part in ast.walk(node):
-        if isinstance(part, ast.Dict):
-            yield from (key for key in part.keys if isinstance(key, ast.Constant) and isinstance(key.value, str))
+    for child in ast.walk(node):
+        if isinstance(child, ast.Dict):
+            yield from (key for key in child.keys if isinstance(key, ast.Constant) and isinstance(key.value, str))
 
 
 def sentences_read(trees: Mapping[str, ast.Module]) -> list[str]:
@@ -53,8 +53,8 @@ def sentences_read(trees: Mapping[str, ast.Module]) -> list[str]:
         f"{name}:{call.lineno}"
         for name, tree in trees.items()
         for foreign in [_foreign(tree, own)]
-        for spoken, part in _spoken(tree)
-        for call in ast.walk(part)
+        for spoken, child in _spoken(tree)
+        for call in ast.walk(child)
         if isinstance(call, ast.Call) and id(call) not in foreign
         and last_name(call.func) in _SPLITS and _reads(call, spoken)
     ]  # fmt: skip
@@ -64,11 +64,13 @@ def _foreign(tree: ast.AST, own: set[str]) -> set[int]:
     """Return the nodes in which an error is handled, or taken, that is not stated to be of a class of ours."""
     kinds = [(node, node.type) for node in ast.walk(tree) if isinstance(node, ast.ExceptHandler)]
     functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    kinds += [(node, each.annotation) for node in functions for each in node.args.args if each.arg == "error"]
+    kinds += [
+        (node, argument.annotation) for node in functions for argument in node.args.args if argument.arg == "error"
+    ]
     return {
-        id(part)
-        for node, kind in kinds if kind is not None and not own & {last_name(each) for each in ast.walk(kind)}
-        for part in ast.walk(node)
+        id(inner)
+        for node, kind in kinds if kind is not None and not own & {last_name(child) for child in ast.walk(kind)}
+        for inner in ast.walk(node)
     }  # fmt: skip
 
 
@@ -127,7 +129,9 @@ def modules_named(trees: Mapping[str, ast.Module]) -> list[str]:
 def _is_ours(argument: ast.AST) -> bool:
     """Return whether the name of a module is put together from a package of ours."""
     parts = argument.values if isinstance(argument, ast.JoinedStr) else []
-    return any("rocking." in str(getattr(part, "value", "")) or "__package__" in ast.dump(part) for part in parts)
+    return any(
+        "rocking." in str(getattr(argument, "value", "")) or "__package__" in ast.dump(argument) for argument in parts
+    )
 
 
 def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str]:
@@ -146,16 +150,22 @@ def widths(trees: Mapping[str, ast.Module], scripts: Iterable[Path]) -> list[str
 
 def _declares(node: ast.AST) -> bool:
     if isinstance(node, ast.ClassDef):
-        return {last_name(each.target) for each in node.body if isinstance(each, ast.AnnAssign)} >= _SIZES
+        return {
+            last_name(statement.target) for statement in node.body if isinstance(statement, ast.AnnAssign)
+        } >= _SIZES
     if isinstance(node, ast.arguments):
-        options = {each.arg for each in (*node.args, *node.kwonlyargs) if "Option" in ast.dump(each.annotation or each)}
+        options = {
+            argument.arg
+            for argument in (*node.args, *node.kwonlyargs)
+            if "Option" in ast.dump(argument.annotation or argument)
+        }
         return options >= _SIZES
     if isinstance(node, ast.Dict):
         pairs = zip(node.keys, node.values, strict=True)
         described = {getattr(key, "value", None) for key, value in pairs if _is_described(value)}
         return described >= _SIZES
     if isinstance(node, ast.Tuple | ast.Set | ast.List):
-        names = [getattr(each, "value", None) for each in node.elts]
+        names = [getattr(element, "value", None) for element in node.elts]
         return set(names) >= _SIZES and len(names) > 4
     return False
 

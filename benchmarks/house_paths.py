@@ -92,10 +92,12 @@ def followed(before: str, asked: str) -> list[str]:
     script = _FOLLOW.replace("BEFORE", before).replace("ASKED", asked)
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=folder)
-    line = next(each for each in done.stdout.splitlines() if each.startswith("FOLLOWED"))
+    line = next(text for text in done.stdout.splitlines() if text.startswith("FOLLOWED"))
     return json.loads(line.removeprefix("FOLLOWED "))
 
 
 def files_passed() -> list[tuple[str, int, int]]:
     """Return each question, the files in its path, and their largest allowed number."""
-    return [(what, len(followed(before, asked)), most) for what, (before, asked, most) in QUESTIONS.items()]
+    return [
+        (description, len(followed(before, asked)), most) for description, (before, asked, most) in QUESTIONS.items()
+    ]

@@ -71,7 +71,10 @@ class Histories:
         """By time stepping; friction: a factor on it."""
         bodies = time_stepping.Bodies.of(self.bodies, friction * self.friction)
         up = time_stepping.tracks(bodies, np.stack(self.grounds), self.spacing, step, self.duration).up
-        last = [body.poses[body.under(tuple(each))] for body, each in zip(self.bodies, up[-1].tolist(), strict=True)]
+        last = [
+            body.poses[body.under(tuple(direction))]
+            for body, direction in zip(self.bodies, up[-1].tolist(), strict=True)
+        ]
         first = [body.poses[body.under((0.0, 0.0, 1.0))] for body in self.bodies]
         peak = np.arccos(np.clip(up[..., 2].min(axis=0), -1.0, 1.0))
         return Verdicts(np.not_equal(last, first), np.array(last, dtype=float), peak, np.zeros(len(last)))

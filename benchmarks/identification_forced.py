@@ -195,7 +195,7 @@ def identified(number: int, kind: str = "rotation", *, friction: bool = False, s
         "friction": (found.forced.friction, case.get("friction", fit.problem.demand(fit.fit.x))),
         "held": (estimated(fit.shared((MEAN, 1.0)), 1.0), case["r"]),  # by feet that are believed to hold
     }  # fmt: skip
-    row |= {name: bool(each.low <= value and not value > each.high) for name, (each, value) in true.items()}
+    row |= {name: bool(estimate.low <= value and not value > estimate.high) for name, (estimate, value) in true.items()}
     row |= {
         "width": found.mean.high - found.mean.low,
         "impacts": len(found.impacts),

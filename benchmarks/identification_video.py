@@ -83,8 +83,12 @@ def filmed(path: Path, case: dict[str, Any], number: int, rate: float, lasts: fl
     texture = 25.0 * gaussian_filter(random.normal(size=(400, 400)), 2.0) * 7.0 if case["textured"] else None
     video = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), rate, (COLUMNS, ROWS), True)
     for n in range(int(lasts * rate)):
-        seen = [float(response.at(min(max((n + OPEN * part) / rate, 0.0), end))) for part in (-0.33, 0.0, 0.33)]
-        frame = gaussian_filter(np.mean([drawn(case, each, texture) for each in seen], axis=0), case["blur"])
+        rotations = [
+            float(response.at(min(max((n + OPEN * fraction) / rate, 0.0), end))) for fraction in (-0.33, 0.0, 0.33)
+        ]
+        frame = gaussian_filter(
+            np.mean([drawn(case, rotation, texture) for rotation in rotations], axis=0), case["blur"]
+        )
         frame = frame if edit is None else edit(frame, n / rate)
         grey = np.clip(frame + case["noise"] * random.normal(size=frame.shape), 0.0, 255.0).astype(np.uint8)
         video.write(cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR))

@@ -113,7 +113,9 @@ def swapped(mutant: Mutant) -> tuple[types.FunctionType, types.CodeType] | None:
     found: Any = importlib.import_module(mutant.path.removeprefix("src/").removesuffix(".py").replace("/", "."))
     code = compile(new, str(ROOT / mutant.path), "exec")
     for name in names:
-        codes = [part for part in code.co_consts if isinstance(part, types.CodeType) and part.co_name == name]
+        codes = [
+            constant for constant in code.co_consts if isinstance(constant, types.CodeType) and constant.co_name == name
+        ]
         found = vars(found).get(name)
         if len(codes) != 1 or found is None:
             return None

@@ -325,7 +325,9 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
             free.put(worker)
 
     with ThreadPoolExecutor(workers) as pool, ledger.open("a", encoding="utf-8") as out:
-        for entry in filter(None, (each.result() for each in as_completed([pool.submit(judge, one) for one in left]))):
+        for entry in filter(
+            None, (future.result() for future in as_completed([pool.submit(judge, mutant) for mutant in left]))
+        ):
             known[str(entry["key"])] = entry | {"first": known.get(str(entry["key"]), {}).get("first", entry["killed"])}
             noticed[str(entry["key"]).partition(":")[0]][str(entry["by"])] += 1
             out.write(json.dumps(entry) + "\n")
@@ -480,9 +482,9 @@ def page(
         text += [f"- {file}: {name}: {'noticed' if killed else 'SURVIVED'}" for file, name, killed in made]
     # the page of all packages comes first, then one part per sample of some packages
     first_part, *others = re.split(r"(?m)^(?=## )", (Path(__file__).parent / PAGE).read_text(encoding="utf-8"))
-    others = [part for part in others if not part.startswith(heading + "\n")]
+    others = [section for section in others if not section.startswith(heading + "\n")]
     parts = ["\n".join(text), *others] if whole else [first_part, *others, "\n".join(text)]
-    table.keep(PAGE, "\n\n".join(part.strip() for part in parts).splitlines())
+    table.keep(PAGE, "\n\n".join(section.strip() for section in parts).splitlines())
     return low >= 0.85
 
 

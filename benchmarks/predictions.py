@@ -62,10 +62,10 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
 
 def scored(rows: list[dict[str, float]]) -> dict[str, Forecasts]:
     """Return the scores of the predictions, of those that take the friction for known, and of the logistic."""
-    said, ignorant, fell, motion, pga, pgv = (np.array([row[key] for row in rows]) for key in KEYS)
-    logistic = logistic_left_out(np.log(np.column_stack([pga, pgv])), fell, motion)
-    given = {"predict": said, "friction taken for known": ignorant, "logistic, a motion left out": logistic}
-    return {name: Forecasts(each, fell, motion) for name, each in given.items()}
+    predicted, ignorant, overturned, motion, pga, pgv = (np.array([row[key] for row in rows]) for key in KEYS)
+    logistic = logistic_left_out(np.log(np.column_stack([pga, pgv])), overturned, motion)
+    by_method = {"predict": predicted, "friction taken for known": ignorant, "logistic, a motion left out": logistic}
+    return {name: Forecasts(probabilities, overturned, motion) for name, probabilities in by_method.items()}
 
 
 def resumed(
@@ -77,7 +77,7 @@ def resumed(
     **settings: int,
 ) -> Iterator[dict[str, Any]]:
     """Yield every case, from the file of an earlier run unless the code has changed."""
-    folders = [ROOT / "src" / "rocking" / each for each in rooms]
+    folders = [ROOT / "src" / "rocking" / room for room in rooms]
     sources = sorted([Path(source), *(file for folder in folders for file in folder.rglob("*.py"))])
     digest = hashlib.sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()
     head = json.dumps({"sources": digest, **settings})

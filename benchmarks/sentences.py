@@ -56,8 +56,8 @@ def sources() -> dict[str, list[tuple[str, int, str]]]:
                     ]
 
     add("README", [ROOT / "README.md"])
-    for part, patterns in DOCS.items():
-        add(part, [path for pattern in patterns for path in sorted((ROOT / "docs").glob(f"{pattern}.md"))])
+    for section, patterns in DOCS.items():
+        add(section, [path for pattern in patterns for path in sorted((ROOT / "docs").glob(f"{pattern}.md"))])
     add("changes", [ROOT / "CHANGELOG.md", *sorted((ROOT / "docs/changes").glob("*.md"))])
     python = [path for path in PROSE["files"]([ROOT / "src"]) if path.suffix == ".py"]
     add("docstrings: public", python, "docstrings", r"\n +Parameters\n")

@@ -154,13 +154,16 @@ def speed() -> list[Row]:
     """Times and their ratios."""
     if not spatial_mujoco.installed():
         return [Row("Histories in space", "MuJoCo", "skipped: mujoco is not installed", "-")]
-    found = spatial_speed.modes()
-    spent = spatial_speed.times(found)
-    sensible = [each for each in found if each.sensible]
-    rival = min(sensible, key=lambda each: spent[each.words]) if sensible else None
+    candidates = spatial_speed.modes()
+    spent = spatial_speed.times(candidates)
+    sensible = [candidate for candidate in candidates if candidate.sensible]
+    rival = min(sensible, key=lambda candidate: spent[candidate.words]) if sensible else None
     rows = []
     if "batch" in spent:
-        rows += [_row("Batched engine", spent["batch"], each, spent[each.words], goal=each is rival) for each in found]
+        rows += [
+            _row("Batched engine", spent["batch"], candidate, spent[candidate.words], goal=candidate is rival)
+            for candidate in candidates
+        ]
     if rival is not None:
         rows.append(_row("Reference engine (Python)", spent["reference"], rival, spent[rival.words], goal=False))
     return rows

@@ -30,14 +30,14 @@ class Peer:
 PEERS = (
     Peer(
         "MuJoCo",
-        lambda case: [spatial_mujoco.run(case, each) for each in spatial_mujoco.RUNS],
+        lambda case: [spatial_mujoco.run(case, run) for run in spatial_mujoco.RUNS],
         spatial_mujoco.installed,
         spatial_mujoco.RUNS[-1].friction,
         True,
     ),
     Peer(
         "Bullet",
-        lambda case: [spatial_bullet.run(case, each) for each in spatial_bullet.RUNS],
+        lambda case: [spatial_bullet.run(case, run) for run in spatial_bullet.RUNS],
         spatial_bullet.installed,
         spatial_bullet.RUNS[-1].friction,
         False,

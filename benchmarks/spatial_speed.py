@@ -86,7 +86,9 @@ class Fleet:
     def __init__(self, contact: Contact, factors: FloatArray) -> None:
         self.model = spatial_mujoco.scene(SIZE, contact)
         when = contact.step * (np.arange(round(DURATION / contact.step)) + 0.5)
-        shaking = [np.interp(when, STEP * np.arange(each.acceleration.size), each.acceleration) for each in record()]
+        shaking = [
+            np.interp(when, STEP * np.arange(motion.acceleration.size), motion.acceleration) for motion in record()
+        ]
         push = spatial_mujoco.control(spatial_mujoco.pushes(self.model, np.column_stack(shaking)))
         self.controls = factors[:, None, None] * push
         self.starts = np.repeat(spatial_mujoco.start(self.model, Case("at rest", SIZE))[None], factors.size, axis=0)
@@ -126,8 +128,8 @@ def mode(description: str, contact: Contact) -> Mode:
     setting = spatial_studies.Setting(
         "MuJoCo", description, contact.step, lambda c: spatial_mujoco.run(c, contact), True
     )
-    peaks = [each["peak"] for each in spatial_studies.shown(setting, GENERIC)]
-    good = [each for each in peaks if math.isfinite(each)]
+    peaks = [row["peak"] for row in spatial_studies.shown(setting, GENERIC)]
+    good = [peak for peak in peaks if math.isfinite(peak)]
     return Mode(description, contact, max(good), statistics.median(good), len(peaks) - len(good))
 
 
@@ -150,7 +152,7 @@ def scatter() -> str:
     """Return the scatter of histories due to the time step or the engine, as a sentence: medians over the scales."""
     factors = scales(FEW)
     coarse, fine = (Fleet(Contact(step), factors).tilts().max(axis=1) for step in (5e-4, 2.5e-4))
-    mine = np.array([each.peak_tilt for each in reference(factors)])
+    mine = np.array([response.peak_tilt for response in reference(factors)])
     words = (
         f"MuJoCo at 0.5 and at 0.25 ms {_apart(coarse, fine):.0%}, MuJoCo at 0.25 ms and ours {_apart(fine, mine):.0%}"
     )
@@ -170,7 +172,7 @@ def _apart(left: FloatArray, right: FloatArray) -> float:
 def times(chosen: list[Mode], repeats: int = REPEATS) -> dict[str, float]:
     """Median CPU seconds a history, all in turn; "batch" and "reference" are ours."""
     works: dict[str, tuple[Callable[[], object], int]] = {
-        each.words: (Fleet(each.contact, scales(FEW)), FEW) for each in chosen
+        selected.words: (Fleet(selected.contact, scales(FEW)), FEW) for selected in chosen
     }
     works["reference"] = (lambda: reference(scales(FEW)[::3]), scales(FEW)[::3].size)
     if batch_engine() is not None:

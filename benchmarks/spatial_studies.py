@@ -42,14 +42,16 @@ def settings() -> list[Setting]:
     """Ways to run the peers, each at falling steps."""
     good, loose = Contact(), Contact(steps=2.0, damping=1.0)
     slippery = replace(good, friction=10.0)
-    made = [_mujoco("damping 3, friction 0.8", good.at(step)) for step in (2e-3, 1e-3, 4e-4, 2e-4, 1e-4, 5e-5)]
-    made += [_mujoco("damping 3, 4 times softer", replace(good.at(step), steps=8.0)) for step in (2e-4, 1e-4, 5e-5)]
-    made += [_mujoco("damping 1 (default)", loose.at(step)) for step in (2e-4, 1e-4, 5e-5)]
-    made += [_mujoco("damping 3, friction 10", slippery.at(step)) for step in (2e-4, 1e-4, 5e-5)]
-    made += [_mujoco("all defaults but friction 0.8", defaults(step)) for step in (2e-3, 1e-3)]
-    made += [_bullet("friction 20", Rules(step=step)) for step in (1e-3, 4e-4, 2e-4, 1e-4)]
-    made += [_bullet("friction 0.8", Rules(step=step, friction=0.8)) for step in (4e-4, 2e-4, 1e-4)]
-    return [each for each in made if each.installed]
+    candidates = [_mujoco("damping 3, friction 0.8", good.at(step)) for step in (2e-3, 1e-3, 4e-4, 2e-4, 1e-4, 5e-5)]
+    candidates += [
+        _mujoco("damping 3, 4 times softer", replace(good.at(step), steps=8.0)) for step in (2e-4, 1e-4, 5e-5)
+    ]
+    candidates += [_mujoco("damping 1 (default)", loose.at(step)) for step in (2e-4, 1e-4, 5e-5)]
+    candidates += [_mujoco("damping 3, friction 10", slippery.at(step)) for step in (2e-4, 1e-4, 5e-5)]
+    candidates += [_mujoco("all defaults but friction 0.8", defaults(step)) for step in (2e-3, 1e-3)]
+    candidates += [_bullet("friction 20", Rules(step=step)) for step in (1e-3, 4e-4, 2e-4, 1e-4)]
+    candidates += [_bullet("friction 0.8", Rules(step=step, friction=0.8)) for step in (4e-4, 2e-4, 1e-4)]
+    return [setting for setting in candidates if setting.installed]
 
 
 def defaults(step: float) -> Contact:
@@ -91,8 +93,8 @@ def lines() -> list[str]:
     ]
     for setting in settings():
         measured = shown(setting, GENERIC)
-        good = [each for each in measured if math.isfinite(each["peak"])]
-        cells = [_spread([each[name] for each in good], share=name == "peak") for name in ("kept", "peak", "lost")]
+        good = [row for row in measured if math.isfinite(row["peak"])]
+        cells = [_spread([row[name] for row in good], share=name == "peak") for name in ("kept", "peak", "lost")]
         row = (setting.peer, setting.words, f"{1e3 * setting.step:g}", *cells, str(len(measured) - len(good)))
         text.append(f"| {' | '.join(row)} |")
     return text

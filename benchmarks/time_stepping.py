@@ -29,10 +29,10 @@ class Bodies:
     @classmethod
     def of(cls, hulls: list[Any], friction: Any) -> "Bodies":
         """Bodies that have `points`, `mass` and `inertia`; rows of fewer vertices are filled up with NaN."""
-        points = np.full((len(hulls), max(len(each.points) for each in hulls), 3), np.nan)
-        for row, each in zip(points, hulls, strict=True):
-            row[: len(each.points)] = each.points
-        mass, inertia = (np.array([getattr(each, name) for each in hulls]) for name in ("mass", "inertia"))
+        points = np.full((len(hulls), max(len(hull.points) for hull in hulls), 3), np.nan)
+        for row, hull in zip(points, hulls, strict=True):
+            row[: len(hull.points)] = hull.points
+        mass, inertia = (np.array([getattr(hull, name) for hull in hulls]) for name in ("mass", "inertia"))
         return cls(points, mass, inertia, np.broadcast_to(np.asarray(friction, dtype=float), mass.shape))
 
     @property

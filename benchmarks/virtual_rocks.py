@@ -126,7 +126,7 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, Any]:
     solid, shaken = rock(number), [motion(k) for k in range(motions)]
     # what a scan says, which way the rock stands, and nothing else
     prediction = predict(solid, shaken, azimuth=0.0, count=count, contributions=False, seed=number)
-    peaks = [[each["x"].peak, peak_ground_velocity(each["x"])] for each in shaken]
+    peaks = [[components["x"].peak, peak_ground_velocity(components["x"])] for components in shaken]
     probabilities = prediction.chances["overturning"].per_motion
     return {
         "said": probabilities.tolist(),
@@ -153,15 +153,15 @@ def main(rocks: int = 20, count: int = 32, motions: int = 40) -> None:
     rows = list(resumed(path, rocks, foreseen, __file__, count=count, motions=motions))
     print("| rock | fell | balanced accuracy |\n|---|---|---|")
     for k, row in enumerate(rows):
-        one = Forecasts(row["said"], row["fell"])
-        right = one.balanced_accuracy if 0 < sum(row["fell"]) < len(row["fell"]) else one.accuracy
+        forecasts = Forecasts(row["said"], row["fell"])
+        right = forecasts.balanced_accuracy if 0 < sum(row["fell"]) < len(row["fell"]) else forecasts.accuracy
         cell = f"{right.value:.3f} ({right.low:.3f} to {right.high:.3f})"
         print(f"| {k} | {sum(row['fell']):.0f} of {len(row['fell'])} | {cell} |")
     print("\n| forecast | balanced accuracy | Brier | calibration z |\n|---|---|---|---|")
-    for name, each in scored(rows).items():
-        scores = (each.balanced_accuracy, each.brier)
+    for name, forecasts in scored(rows).items():
+        scores = (forecasts.balanced_accuracy, forecasts.brier)
         cells = " | ".join(f"{s.value:.3f} ({s.low:.3f} to {s.high:.3f})" for s in scores)
-        print(f"| {name} | {cells} | {each.calibration:.1f} |")
+        print(f"| {name} | {cells} | {forecasts.calibration:.1f} |")
 
 
 if __name__ == "__main__":

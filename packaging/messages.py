@@ -81,8 +81,8 @@ def literals_of_script(text: str) -> Iterator[str]:
     """Yield the strings of a script or page, those put together with + as one, and the texts between its tags."""
     for string in re.findall(STRING, re.sub(r'"\s*\+\s*"', "", text)):
         yield _unescaped(string)
-    for part in re.findall(r"[>}`]([^<>{}`$]+)(?=[<$`])", text):
-        yield html.unescape(_unescaped(" ".join(part.split())))
+    for fragment in re.findall(r"[>}`]([^<>{}`$]+)(?=[<$`])", text):
+        yield html.unescape(_unescaped(" ".join(fragment.split())))
 
 
 def _unescaped(string: str) -> str:
@@ -101,8 +101,8 @@ def texts_of_templates(script: str) -> Iterator[str]:
         text, _ = _template(script, start.end())
         for label in re.findall(LABEL, text):
             yield " ".join(_unescaped(label).split())
-        for part in re.split(r"<[^>]*>|\0", text):
-            yield " ".join(_unescaped(part).split())
+        for fragment in re.split(r"<[^>]*>|\0", text):
+            yield " ".join(_unescaped(fragment).split())
 
 
 def _template(script: str, at: int) -> tuple[str, int]:
@@ -149,9 +149,9 @@ def descriptions_of(tree: ast.AST) -> Iterator[str]:
     """Yield the descriptions of a module: its docstrings' sentences and parameters, which the server sends."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and (text := ast.get_docstring(node)):
-            for part in re.split(r"\n\s*\n|\n(?=\w[\w, ]* : )", text):
-                whole = part.partition("\n    ")[2] or part
-                yield from (sentence.removeprefix("Return ") for sentence in (whole, *re.split(r"(?<=\.)\s", whole)))
+            for section in re.split(r"\n\s*\n|\n(?=\w[\w, ]* : )", text):
+                body = section.partition("\n    ")[2] or section
+                yield from (sentence.removeprefix("Return ") for sentence in (body, *re.split(r"(?<=\.)\s", body)))
 
 
 def extracted() -> tuple[set[Key], set[str]]:
