@@ -28,7 +28,10 @@ def width(types: Mapping[str, Any]) -> int:
 
 
 def _kinds(header: Any) -> dict[str, np.dtype[Any]]:
-    return {name: np.dtype(kind) for name, kind in header["columns"]}
+    try:
+        return {name: np.dtype(kind) for name, kind in header["columns"]}
+    except (SyntaxError, TypeError, ValueError) as error:
+        raise CampaignDamagedError("its header cannot be read") from error
 
 
 DEFAULT_CHUNK = 65536

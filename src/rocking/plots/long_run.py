@@ -132,12 +132,14 @@ def basins_picture(results: Any) -> "Figure":
     Returns
     -------
     matplotlib.figure.Figure
-        One map per restitution for one amplitude; one curve per restitution for several.
+        One map per restitution for one amplitude or one speed; otherwise one curve per restitution.
     """
     from scipy.stats import beta
 
     shown = _by_restitution(results)
-    if next(iter(shown.values())).sizes["amplitude_ratio"] > 1:
+    sizes = next(iter(shown.values())).sizes
+    upward = "amplitude_ratio" if sizes["speed_ratio"] == 1 else "speed_ratio"
+    if sizes["amplitude_ratio"] > 1 and upward == "speed_ratio":
         figure, (axes,) = new_figure(SINGLE, 2.4)
         for k, (label, data) in enumerate(shown.items()):
             safe = (data["final_state"] != 0).sum(dim=("ground_phase", "speed_ratio")).values
@@ -155,16 +157,15 @@ def basins_picture(results: Any) -> "Figure":
 
     figure, columns = _panels(shown, 2.6)
     for data, (axes,) in zip(shown.values(), columns, strict=True):
-        phases, speeds = data["ground_phase"].values, data["speed_ratio"].values
-        extent = (0.0, 2.0 * np.pi, 0.0, speeds[-1] + speeds[0])
-        axes.imshow(
-            data["final_state"][0].values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest",
-            cmap=ListedColormap([color for color, _ in _FATES]), vmin=-0.5, vmax=3.5,
-        )  # fmt: skip
-        places = np.argwhere(data["is_uncertain"][0].values)
-        axes.plot(phases[places[:, 0]], speeds[places[:, 1]], "x", color=INK, markersize=2)
+        cells = data.transpose(upward, "ground_phase", ...)
+        kinds, uncertain = (cells[name].values[..., 0] for name in ("final_state", "is_uncertain"))
+        phases, heights = data["ground_phase"].values, data[upward].values
+        options: Any = {"cmap": ListedColormap([color for color, _ in _FATES]), "vmin": -0.5, "vmax": 3.5}
+        axes.pcolormesh(phases, heights, kinds, shading="nearest", rasterized=True, **options)
+        rows, across_ = np.nonzero(uncertain)
+        axes.plot(phases[across_], heights[rows], "x", color=INK, markersize=2)
         axes.set_xticks([0.0, np.pi, 2.0 * np.pi], ["0", r"$\pi$", r"$2\pi$"])
-    _label(columns, "ground_phase", _LABELS["speed_ratio"])
+    _label(columns, "ground_phase", _LABELS[upward])
     legend_below(figure, [patch(color, name) for color, name in _FATES[:3]], 3)
     return figure
 

@@ -8,18 +8,8 @@ from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.errors import InvalidValueError
+from rocking.studies.longrun import study
 from rocking.studies.longrun.basins import cells
-from rocking.studies.longrun.study import (
-    AXES,
-    Branches,
-    Cells,
-    Diagram,
-    Exponents,
-    SectionTask,
-    long_run_study,
-    random_states,
-    systems_of,
-)
 from rocking.studies.longrun.system import Harmonic
 
 if TYPE_CHECKING:
@@ -75,8 +65,8 @@ def poincare(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> poincare(block, motion, "housner", cycles=(50, 10)).sizes["period_number"]
     10
     """
-    task = SectionTask(_states(starts, seed), _cycles(cycles), checks.one_of("at", at, ("period", "impact")))
-    return _computed(systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
+    task = study.SectionTask(_states(starts, seed), _cycles(cycles), checks.one_of("at", at, ("period", "impact")))
+    return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
 
 
 def bifurcation(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -131,13 +121,13 @@ def bifurcation(  # noqa: PLR0913 - every one of them is a question that users a
     >>> bool((diagram["attractor"].sel(amplitude_ratio=0.9) == 0).all())  # at rest below uplift
     True
     """
-    checks.one_of("axis", axis, tuple(AXES))
+    checks.one_of("axis", axis, tuple(study.AXES))
     numbers = checks.finite("values", values, "-", minimum=1)
     checks.increasing("values", numbers)
     for sweep in sweeps:
         checks.one_of("sweeps", sweep, ("none", "up", "down"))
-    task = Diagram(axis, numbers, _states(starts, seed), tuple(sweeps), _cycles(cycles), exponents)
-    return _computed(systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
+    task = study.Diagram(axis, numbers, _states(starts, seed), tuple(sweeps), _cycles(cycles), exponents)
+    return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
 
 
 def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -178,8 +168,8 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
     True
     """
     settled, kept = _cycles(cycles)
-    task = Exponents(checks.whole("orbits", orbits, 1), settled, kept, checks.whole("seed", seed))
-    return _computed(systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
+    task = study.Exponents(checks.whole("orbits", orbits, 1), settled, kept, checks.whole("seed", seed))
+    return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
 
 
 def basin(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -230,7 +220,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> dict(basin(block, motion, "ked", phases=8, speeds=4).sizes)
     {'amplitude_ratio': 1, 'ground_phase': 8, 'speed_ratio': 4}
     """
-    systems = systems_of(body, excitation, restitution, linear=linear, gravity=gravity)
+    systems = study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity)
     if amplitudes is None:
         amplitudes = [next(iter(systems.values())).amplitude_ratio]
     counts = [axis if isinstance(axis, int) else 1 for axis in (phases, speeds)]
@@ -239,7 +229,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
         if not isinstance(given, int):
             grid[k] = np.atleast_1d(checks.real_array(name, given))
     ratios = np.atleast_1d(checks.positive_array("amplitudes", amplitudes, "-"))
-    task = Cells(ratios, grid[0], grid[1], checks.whole("impacts", impacts, 1), small, check)
+    task = study.Cells(ratios, grid[0], grid[1], checks.whole("impacts", impacts, 1), small, check)
     return _computed(systems, task, threads)
 
 
@@ -291,13 +281,13 @@ def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that use
     """
     checks.one_of("axis", axis, ("amplitude", "frequency", "restitution"))
     points, doublings = checks.whole("points", points, 16), checks.whole("doublings", doublings, 0, 8)
-    task = Branches(axis, (float(limits[0]), float(limits[1])), doublings, points)
-    return _computed(systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, None)
+    task = study.Branches(axis, (float(limits[0]), float(limits[1])), doublings, points)
+    return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, None)
 
 
 def _states(starts: Any, seed: int) -> FloatArray:
     if isinstance(starts, int):
-        return random_states(checks.whole("starts", starts, 1), checks.whole("seed", seed))
+        return study.random_states(checks.whole("starts", starts, 1), checks.whole("seed", seed))
     states = np.atleast_2d(checks.real_array("starts", starts))
     if states.ndim != 2 or states.shape[1] != 2:
         raise InvalidValueError(parameter="starts", allowed="a number or an array of shape (starts, 2)", value=starts)
@@ -309,5 +299,5 @@ def _cycles(cycles: tuple[int, int]) -> tuple[int, int]:
 
 
 def _computed(systems: Any, task: Any, threads: int | None) -> "xr.Dataset":
-    dataset: xr.Dataset = long_run_study(systems, task).computed(threads=threads)
+    dataset: xr.Dataset = study.long_run_study(systems, task).computed(threads=threads)
     return dataset

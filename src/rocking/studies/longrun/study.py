@@ -19,26 +19,11 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.rows import Rows
 from rocking.outcome import UNCOUNTED
 from rocking.studies.histories import Histories, checked_range
-from rocking.studies.longrun import attractors, basins
+from rocking.studies.longrun import attractors, basins, orbits
+from rocking.studies.longrun import system as engine
 from rocking.studies.longrun.exponents import ALIGNED, lyapunov_exponents
-from rocking.studies.longrun.orbits import (
-    Branch,
-    OrbitNotFoundError,
-    PeriodicOrbit,
-    branch_off,
-    continue_orbit,
-    symmetric_orbit,
-)
-from rocking.studies.longrun.system import (
-    NONE,
-    OVERTURNED,
-    Harmonic,
-    HarmonicRocking,
-    Numerics,
-    Parameter,
-    over_impacts,
-    over_periods,
-)
+from rocking.studies.longrun.orbits import Branch, OrbitNotFoundError, PeriodicOrbit
+from rocking.studies.longrun.system import NONE, OVERTURNED, Harmonic, HarmonicRocking, Numerics, Parameter
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import changed_body
 from rocking.studies.sensitivity.restitutions import label_of, named_restitutions
@@ -236,7 +221,7 @@ class Exponents(Task):
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
         draws = np.random.default_rng(self.seed).random((16 * self.orbits, 2)) * [2.0 * math.pi, 1.0]
         starts = _started(system, draws)  # those that overturn at once are of no attractor
-        alive = over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == 0
+        alive = engine.over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == 0
         starts = starts[np.argsort(~alive, kind="stable")[: self.orbits]]
         options: Any = {"settled": self.settled, "kept": self.kept, "numerics": numerics}
         result = lyapunov_exponents(system, starts=starts, **options)
@@ -348,11 +333,11 @@ class Branches(Task):
     def branches(self, system: HarmonicRocking) -> list[Branch]:
         """Return the branches that exist."""
         parameter: Any = self.axis
-        branch = _both_ways(symmetric_orbit(system), self.limits, parameter)
+        branch = _both_ways(orbits.symmetric_orbit(system), self.limits, parameter)
         found = [branch]
         for kind in ("pitchfork", *["period doubling"] * (self.doublings - 1))[: self.doublings]:
             try:
-                found.append(branch_off(found[-1].first(kind), self.limits, parameter=parameter, step=0.02))
+                found.append(orbits.branch_off(found[-1].first(kind), self.limits, parameter=parameter, step=0.02))
             except OrbitNotFoundError:
                 break
         return found
@@ -369,7 +354,7 @@ class Branches(Task):
 
 def _both_ways(orbit: PeriodicOrbit, limits: tuple[float, float], parameter: Parameter) -> Branch:
     """Return the branch through an orbit, from its end at lower values, beyond a fold, to that at higher ones."""
-    ways = [continue_orbit(orbit, limits, parameter=parameter, increasing=up) for up in (False, True)]
+    ways = [orbits.continue_orbit(orbit, limits, parameter=parameter, increasing=up) for up in (False, True)]
     return Branch(
         parameter, [*ways[0].orbits[:0:-1], *ways[1].orbits], [*ways[0].bifurcations[::-1], *ways[1].bifurcations]
     )
@@ -407,15 +392,9 @@ class LongRunHistories(Histories):
     def content(self) -> dict[str, Any]:
         """Return systems and task as plain values, and a hash of the last digits of the engine."""
         systems = [
-            {
-                "sides": system.sides.tolist(),
-                "sine": system.sine.tolist(),
-                "factors": system.factors.tolist(),
-                "linear": system.linear,
-                "body": repr(system.body),
-            }
-            for system in self.systems
-        ]
+            {"sides": system.sides.tolist(), "sine": system.sine.tolist(), "factors": system.factors.tolist(),
+             "linear": system.linear, "body": repr(system.body)} for system in self.systems
+        ]  # fmt: skip
         task = {entry.name: _plain(getattr(self.task, entry.name)) for entry in fields(self.task)}
         return {"systems": systems, "task": {"kind": type(self.task).__name__, **task}, "digits": _digits()}
 
@@ -463,7 +442,7 @@ def _digits() -> str:
     from rocking.bodies import Block
 
     system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 1.5, 2.0, restitution=0.9)
-    flights = over_impacts(system, np.linspace(0.1, 6.0, 8), 0.5, 3)
+    flights = engine.over_impacts(system, np.linspace(0.1, 6.0, 8), 0.5, 3)
     return hashlib.sha256(flights.speed.tobytes() + flights.jacobian.tobytes()).hexdigest()[:16]
 
 
