@@ -124,9 +124,9 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
 def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str | None:
     """Return the command with the same result, quoted for a shell; None if an input file is necessary.
 
-    >>> block = {"units": "cm", "width": 50.0, "height": 200.0}
+    >>> block = {"units": "m", "width": 0.5, "height": 2.0}
     >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})
-    'rocking simulate --width 50.0 --height 200.0 --units cm --motion sine:amplitude=3,period=0.8 --restitution ked'
+    'rocking simulate --width 0.5 --height 2.0 --units m --motion sine:amplitude=3,period=0.8 --restitution calibrated'
     """
     body, start, restitution = _body(inputs["body"]), _start(inputs, record), _restitution(inputs)
     if body is None or start is None or restitution is None:
