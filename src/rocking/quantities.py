@@ -579,7 +579,7 @@ _LONG_RUN = (
     Quantity("period_number", "1", "number of the period of the ground motion"),
     Quantity("orbit", "1", "index of the orbit"),
     Quantity("branch", "1", "index of the branch: 0 is the symmetric branch"),
-    Quantity("point", "1", "index of the orbit on the branch; bifurcations first"),
+    Quantity("orbit_number", "1", "index of the orbit on the branch; bifurcations first"),
     Quantity(
         "attractor",
         "1",

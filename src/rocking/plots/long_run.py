@@ -191,7 +191,7 @@ def orbits_picture(results: Any) -> "Figure":
         axis = next(name for name in _LABELS if name in data.data_vars and name not in {"ground_phase", "speed_ratio"})
         for number in range(data.sizes["branch"]):
             branch = data.isel(branch=number)
-            curve = branch.isel(point=np.flatnonzero(branch["branch_point"].values == 0))
+            curve = branch.isel(orbit_number=np.flatnonzero(branch["branch_point"].values == 0))
             for is_stable, style in ((1, "-"), (0, (0, (3, 2)))):
                 y = curve["speed_ratio"].where(curve["is_stable"] == is_stable)
                 axes.plot(curve[axis], y, linestyle=style, color=COLORS[number % 6], linewidth=0.9)

@@ -314,7 +314,9 @@ class Branches(Task):
     def coordinates(self) -> dict[str, Column]:
         return {
             "branch": along("branch", np.arange(self.doublings + 1), "1", "branch; 0 is the symmetric one"),
-            "point": along("point", np.arange(self.points), "1", "orbit along the branch, bifurcations first"),
+            "orbit_number": along(
+                "orbit_number", np.arange(self.points), "1", "orbit along the branch, bifurcations first"
+            ),
         }
 
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
@@ -347,7 +349,7 @@ class Branches(Task):
         return [
             {name: BRANCH_POINTS[int(point[name])] if name == "branch_point" else point[name].item() for name in names}
             for branch in range(self.doublings + 1)
-            for point in (results.isel(branch=branch, point=k) for k in range(self.points // 2))
+            for point in (results.isel(branch=branch, orbit_number=k) for k in range(self.points // 2))
             if int(point["branch_point"])
         ]
 
