@@ -34,6 +34,7 @@ from rocking.studies.longrun.basins import LOST as OVERTURNED_CELL
 SLENDERNESS, MODELS = (2, 3, 4, 6, 8, 10), ("housner", "ked", "calibrated")
 LOWEST, HIGHEST, TOP_SPEED = 0.2, 6.0, 2.0  # amplitude ratios; speeds of starts over alpha p
 BASIN_FREQUENCY, BASIN_AMPLITUDE = 3.0, 1.5
+SMALLEST_PEAK = 0.01  # over alpha, of motions with an exponent: smaller ones are rests with slow last impacts
 BIFURCATIONS = ("fold", "pitchfork", "first_doubling", "second_doubling")
 _LIMITS = (0.0, 100.0)  # amplitudes of continuations
 
@@ -184,6 +185,7 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
     """Return one case."""
     system = _system(slenderness, model, frequency)
     rest, rest_kind, _ = _attractors(system, effort.amplitudes(effort.step_at_rest), np.zeros((1, 3)), (300, 200))
+    is_small = rest.peak.values[0, :, 0] < SMALLEST_PEAK
     overturning = rest.amplitude.values[rest_kind[:, 0] == LOST]
     cells = (np.arange(effort.starts) + 0.5) / effort.starts
     starts = start_states(system, cells * 2.0 * math.pi, cells * TOP_SPEED)
@@ -211,7 +213,8 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
         slenderness, model, frequency, numbers,
         {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
         is_complex, is_chaotic.any(axis=1), _points(amplitudes, found, is_one | is_multi | is_chaotic),
-        np.column_stack([rest.amplitude.values, rest.exponent.values[0, :, 0] / system.p]), cascade,
+        np.column_stack([rest.amplitude.values, np.where(is_small, np.nan, rest.exponent.values[0, :, 0] / system.p)]),
+        cascade,
     )  # fmt: skip
 
 

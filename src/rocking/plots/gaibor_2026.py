@@ -141,8 +141,8 @@ def _thresholds(result: GaiborReproduction) -> "Figure":
         for model, row in zip(MODELS[1:], values[1:], strict=True):
             gap = 100.0 * np.abs(np.divide(row, values[0]) - 1.0)
             right.loglog(SLENDERNESS, gap, **_look(model), marker=MARKS[k], ms=3.0)
-    right.loglog(SLENDERNESS, 120.0 / np.array(SLENDERNESS, dtype=float) ** 4, color=GREY, lw=0.6)
-    right.text(2.1, 1.6, r"$(h/b)^{-4}$", color=GREY, fontsize=7)
+    right.loglog(SLENDERNESS, 20.0 / np.array(SLENDERNESS, dtype=float) ** 4, color=GREY, lw=0.6)
+    right.text(2.1, 0.2, r"$(h/b)^{-4}$", color=GREY, fontsize=7)
     right.set_xticks(SLENDERNESS, list(map(str, SLENDERNESS)))
     right.minorticks_off()
     _name(left, "loss of symmetry, first period doubling")
@@ -207,7 +207,7 @@ def _basins(result: GaiborReproduction) -> "Figure":
 CAPTIONS = {
     "bifurcations": "Attractors over amplitude at frequency {value} p: rotation at the ends of periods, all starts.",
     "exponents": "Largest Lyapunov exponent over amplitude at frequency {value} p, from rest. A gap is a body that "
-    "overturns or comes to rest; a rest erases memory.",
+    "overturns, comes to rest or moves less than 0.01 alpha; a rest erases memory.",
     "cascades": "Attractor and largest exponent after the second period doubling, followed until it overturns.",
     "thresholds": "Loss of symmetry, first period doubling and fold over slenderness, and the difference from Housner.",
     "prevalence": "Fraction of amplitudes with an attractor of several periods or chaos. Bars: one amplitude.",
