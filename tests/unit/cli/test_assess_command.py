@@ -65,7 +65,7 @@ def test_a_report_is_signed(printed, tmp_path):
     printed(*BODY, *QUICK, PULSE, *(word for each in signed for word in ("--set", each)),
             "--output", html, "--output", pdf)  # fmt: skip
     text = html.read_text(encoding="utf-8")
-    for words in ("Archive", "A. E.", "1 May", "signature", "no safety factor", "Housner 1963", "Measures", "<svg"):
+    for words in ("Archive", "A. E.", "1 May", "signature", "No safety factor", "Housner 1963", "Measures", "<svg"):
         assert words in text
     assert pdf.read_bytes().startswith(b"%PDF")
 
