@@ -19,7 +19,7 @@ from rocking.plots.style import SINGLE
 from rocking.studies.longrun import symmetric_orbit
 from rocking.studies.longrun.study import Cells, LongRunHistories, random_states
 
-pytestmark = pytest.mark.verifies("behaviour")
+pytestmark = pytest.mark.verifies("behaviour", room="studies")
 BLOCK = rk.Block(width=1.0, height=2.0)
 BODY = {"units": "m", "width": 1.0, "height": 2.0}
 

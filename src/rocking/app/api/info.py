@@ -182,7 +182,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
         ],
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": listed_measures(),
-        "axes": [{**_quantity(entry), "usual": entry.usual} for entry in axes().values()],
+        "axes": [{**_quantity(entry, entry.meaning), "usual": entry.usual} for entry in axes().values()],
         "study_kinds": [
             {
                 "name": kind,
@@ -207,11 +207,11 @@ def listed_measures() -> list[dict[str, str]]:
     """Return the measures of intensity that have names."""
     from rocking.motions.intensity import measures
 
-    return [_quantity(measure) for measure in measures().values()]
+    return [_quantity(measure, measure.words) for measure in measures().values()]
 
 
-def _quantity(quantity: Any) -> dict[str, str]:
-    return {"name": quantity.name, "words": quantity.words, "unit": quantity.unit}
+def _quantity(quantity: Any, words: str) -> dict[str, str]:
+    return {"name": quantity.name, "words": words, "unit": quantity.unit}
 
 
 def _models() -> list[dict[str, Any]]:
