@@ -220,7 +220,7 @@ def test_a_study_without_a_form_of_its_own(studies: Any, shot: Any) -> None:
 
 def test_a_study_without_ground_motion(studies: Any, shot: Any) -> None:
     """A basin needs no motion; its summary and its picture are shown."""
-    studies.get_by_role("radio", name="basins").check(force=True)
+    studies.get_by_role("radio", name="Basins").check(force=True)
     studies.get_by_label("phases").fill("12")
     studies.get_by_label("speeds").fill("12")
     studies.locator("#study-name").fill("small basin")

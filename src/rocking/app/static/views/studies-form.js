@@ -11,6 +11,7 @@ const QUESTIONS = { map: MapQuestion, fragility: FragilityQuestion, spectrum: Sp
 /** @type {{ [table: string]: string | undefined }} */
 const LABELS = {
   map: "Overturning map", fragility: "Fragility", spectrum: "Rocking spectra", histories: "Histories", minimum: "Minimum accelerations",
+  bifurcation: "Bifurcation diagram", orbits: "Periodic orbits", lyapunov: "Lyapunov exponents", basins: "Basins",
 };
 
 /** One kind of study for each table, in the order of the labels. @param {Server.Info} info @returns {Map<string, Server.KindOfStudy>} */
