@@ -8,6 +8,7 @@ import rocking as rk
 from rocking import examples
 from rocking.campaigns.jobs import Job, analyses, export
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import geometric
 from rocking.spec.questions import questions
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
@@ -49,7 +50,7 @@ def sines():
 def spectra():
     """The spectra of one call."""
     pulses = [rk.pulses.sine(4.0, 0.5), rk.pulses.sine(4.0, 0.7), rk.pulses.ricker(4.0, 0.9)]
-    return rocking_spectrum(pulses, [0.15, 0.3], np.geomspace(1.5, 9, 6))
+    return rocking_spectrum(pulses, [0.15, 0.3], geometric(1.5, 9, 6))
 
 
 def many():
