@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.answers import Answer, Display
 from rocking.cli.page import Page
-from rocking.dynamics.mechanics_base import in_space
+from rocking.dynamics.mechanics import restitution_label
 from rocking.errors import RockingError
 from rocking.quantities import Quantity
 from rocking.restitution.headline import headline, label_of
@@ -35,18 +35,13 @@ def with_models(compute: Callable[["StudyProblem"], Any], problem: "StudyProblem
     return result, others
 
 
-def model_label(name: str, body: Any) -> str:
-    """Return the label of a restitution model in the result of a body: with -3d for a 3D body."""
-    return label_of(name, in_space=in_space(body))
-
-
 def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any = None) -> dict[str, Any]:
     """Return the sentence on the restitution model of a result, and the values of the compared models by label."""
     values_of_models = {
-        model_label(name, body): {"error": str(result)} if isinstance(result, RockingError) else facts(result)
+        restitution_label(name, body): {"error": str(result)} if isinstance(result, RockingError) else facts(result)
         for name, result in others.items()
     }
-    return {"headline": headline(label, in_space=in_space(body)), "other_models": values_of_models}
+    return {"headline": headline(restitution_label(label, body)), "other_models": values_of_models}
 
 
 def show_models(page: Page, answer: Answer, display: Display, label: str, own: dict[str, Any]) -> None:

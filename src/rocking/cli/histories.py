@@ -9,9 +9,10 @@ from pydantic import BaseModel
 
 from rocking.answers import Answer, Display
 from rocking.cli import options
-from rocking.cli.compared import model_facts, model_label, overturned, show_models, with_models
+from rocking.cli.compared import model_facts, overturned, show_models, with_models
 from rocking.cli.exports import DATASET, Exports
 from rocking.cli.page import Page, bar, deliver
+from rocking.dynamics.mechanics import restitution_label
 from rocking.outcome import contact_words, lost_contact, mode_shares
 from rocking.spec.fields import Values, kinds_of
 from rocking.spec.question import BodyQuestion, StudyQuestion
@@ -101,7 +102,7 @@ class HistoriesAnswer:
 
     @property
     def _labels(self) -> list[str]:
-        return [model_label(name, self.problem.bodies[0]) for name in self.problem.restitutions]
+        return [restitution_label(name, self.problem.bodies[0]) for name in self.problem.restitutions]
 
     def draw(self) -> Any:
         return self.problem.document.plot(_Finished(self.problem, self.dataset), None)

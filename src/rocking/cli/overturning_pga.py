@@ -7,12 +7,13 @@ import typer
 
 from rocking.answers import Answer, AnswerRows, Display
 from rocking.cli import options
-from rocking.cli.compared import model_facts, model_label, show_models, with_models
+from rocking.cli.compared import model_facts, show_models, with_models
 from rocking.cli.exports import DRAWN, Export, Exports, write_records
 from rocking.cli.help import HOW
 from rocking.cli.numbers import beside_g
 from rocking.cli.page import MOST_ROWS, Page, bar, deliver, sentence
 from rocking.conventions import g, percent
+from rocking.dynamics.mechanics import restitution_label
 from rocking.messages import Message
 from rocking.quantities import closely
 from rocking.spec.construction import COMPLEMENTARITY
@@ -107,7 +108,7 @@ class MinimumAnswer:
     def label(self) -> str:
         model = self.problem.restitution
         name = COMPLEMENTARITY if model is None else str(getattr(model, "label", model))
-        return model_label(name, self.problem.bodies[0])
+        return restitution_label(name, self.problem.bodies[0])
 
     def answer(self) -> Answer:
         """Return every crossing, and the intervals between them."""

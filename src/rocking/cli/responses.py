@@ -6,10 +6,11 @@ from typing import Any
 
 from rocking.answers import Answer, Display
 from rocking.bodies import Body
-from rocking.cli.compared import by_foot, grouped, model_label, spanned
+from rocking.cli.compared import by_foot, grouped, spanned
 from rocking.cli.page import Page, sentence
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
 from rocking.dynamics import SpatialStart
+from rocking.dynamics.mechanics import restitution_label
 from rocking.errors import RockingError
 from rocking.messages import Message
 from rocking.motions.motion import GroundMotion
@@ -55,7 +56,7 @@ def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, detai
     models = dict(list(problem.restitutions.items())[1:])
     if not problem.mechanics.is_compared:
         is_default = next(iter(problem.restitutions)) == DEFAULT_RESTITUTION
-        models = {model_label(name, problem.body): name for name in COMPARED_RESTITUTIONS if is_default}
+        models = {restitution_label(name, problem.body): name for name in COMPARED_RESTITUTIONS if is_default}
     elif not listed:
         from rocking.evidence._coefficient_table import default_models
 

@@ -13,11 +13,12 @@ from rocking.answers import Answer, Display
 from rocking.bodies import Body
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
-from rocking.cli.compared import model_facts, model_label, show_models
+from rocking.cli.compared import model_facts, show_models
 from rocking.cli.exports import DRAWN, Export, Exports
 from rocking.cli.page import Page, bar, deliver
 from rocking.cli.spelling import UsageError
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
+from rocking.dynamics.mechanics import restitution_label
 from rocking.errors import RockingError, located
 from rocking.motions.components import leading
 from rocking.motions.summary import MotionSummary, peak_names, support_of
@@ -202,7 +203,7 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
                         raise
                     responses[name] = error
     own = responses.pop(label)
-    return SeveralAnswer(problem.body, listed, own, display, model_label(label, problem.body), responses)
+    return SeveralAnswer(problem.body, listed, own, display, restitution_label(label, problem.body), responses)
 
 
 def _followed(problem: "ResponseProblem", motions: list[Any], law: Any, progress: Any) -> list[Any]:

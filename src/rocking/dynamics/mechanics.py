@@ -14,6 +14,7 @@ from rocking.dynamics.mechanics_base import Mechanics, in_space
 from rocking.dynamics.plane.mechanics import PlaneRocking
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space.mechanics import SpaceRocking
+from rocking.restitution.headline import label_of
 
 MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())
 
@@ -28,6 +29,11 @@ def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
     several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
     plane = [body for body in several if isinstance(body, Body)]
     return mechanics_for(next(iter(plane or filter(in_space, several)), None), friction)
+
+
+def restitution_label(name: str, body: Any) -> str:
+    """Return the label of a restitution model in the result of a body: with -3d for a 3D body."""
+    return label_of(name, in_space=in_space(body))
 
 
 def mechanics_of(settings: Settings) -> Mechanics:
