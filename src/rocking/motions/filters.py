@@ -71,8 +71,10 @@ def geometric(low: FloatArray | float, high: FloatArray | float, count: int) -> 
     [1.0, 10.0, 100.0]
     """
     first, last = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
-    logarithms = logarithm(np.atleast_1d(last / first)).reshape(first.shape)
-    result = first[..., None] * exponential(logarithms[..., None] * np.linspace(0.0, 1.0, count))
+    span = (logarithm(last) - logarithm(np.maximum(first, np.finfo(np.float64).tiny)))[..., None]
+    x = np.linspace(0.0, 1.0, count)
+    nearest = np.where(x < 0.5, first[..., None], last[..., None])  # the ratio of the ends may overflow
+    result = nearest * exponential(span * np.where(x < 0.5, x, x - 1.0))
     result[..., :1], result[..., -1:] = first[..., None], last[..., None] if count > 1 else first[..., None]
     return np.asarray(result)
 

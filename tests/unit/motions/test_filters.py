@@ -55,6 +55,7 @@ def test_numbers_in_equal_ratios(monkeypatch):
     assert (numbers[:, 0] == low).all()
     assert (numbers[:, -1] == high).all()
     assert filters.geometric(2.0, 9.0, 1).tolist() == [2.0]
+    assert filters.geometric(1e-300, 1e300, 3) == pytest.approx([1e-300, 1.0, 1e300], rel=1e-12)
     monkeypatch.setattr(filters, "compiled", lambda: None)
     np.testing.assert_array_equal(filters.geometric(low, high, 50), numbers)
 
