@@ -60,7 +60,7 @@ def test_speeds(door: Callable[..., Any], share: float) -> None:
     [
         (None, "needs friction"),
         (1.001, r"onto the left foot must be in \[0, 1\], got 1.001: the impact would create energy"),
-        ({"left": 0.9, "right": 0.9, "both": 0.9}, "restitution by side must be"),
+        ({"left": 0.9, "right": 0.9, "both": 0.9}, "restitution by side is"),
         ({"left": 0.9, "right": None}, r"restitution\['right'\] must be a number"),
         ({"left": 0.9, "right": 1.5}, r"onto the right foot must be in"),
         (SPEED([0.0, 1.0], [0.5, 1.0], times=1.2), "would create energy"),

@@ -52,19 +52,19 @@ def test_facts_are_translated_where_they_are_messages():
     }
     text = "{parameter} must be {allowed}, got {value}"
     assert say(Message(text, facts)) == "Breite der Standfläche muss im Bereich [0,001; 100] m sein, ist aber 0,5"
-    assert say("{title} is empty", title="width") == "width ist leer"
+    assert say("{file}: the file is empty", file="a.csv") == "a.csv: die Datei ist leer"
     assert str(Message(text, facts)) == "base_width must be in [0.001, 100] m, got 0.5"
 
 
 def test_an_error_is_one_message():
     """Places, fault and hint, as the error itself says them in English."""
-    error = InvalidValueError(parameter="height", allowed=Range(0.0, 1.0, "m"), value=2.5, hint="wrong unit?").at(
+    error = InvalidValueError(parameter="height", allowed=Range(0.0, 1.0, "m"), value=2.5, hint="check the unit").at(
         "a.csv", 3
     )
-    assert str(error.sentence) == str(error) == "a.csv, line 3: height must be in [0, 1] m, got 2.5; wrong unit?"
+    assert str(error.sentence) == str(error) == "a.csv, line 3: height must be in [0, 1] m, got 2.5; check the unit"
     assert (
         language("de")(error.sentence)
-        == "a.csv, line 3: Höhe muss im Bereich [0; 1] m sein, ist aber 2,5; falsche Einheit?"
+        == "a.csv, line 3: Höhe muss im Bereich [0; 1] m sein, ist aber 2,5; prüfen Sie die Einheit"
     )
 
 

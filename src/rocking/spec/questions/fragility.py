@@ -63,7 +63,7 @@ class FragilityTable(JobTable):
     im: Text = key("intensity measure: pga, pgv, arias, sa(0.5) and more", "pga")
     levels: Numbers | None = key("intensity levels, in the unit of the intensity measure")
     limit_states: list[Annotated[Positive | Literal["rocking", "overturning"], WrapValidator(_one_state)]] = key(
-        "limit states: rotation / slenderness angle, rocking, overturning; numbers alone include the other two",
+        "limit states: rotation / slenderness angle; rocking and overturning are included",
         [0.5],
     )
     tolerance: float | None = key("relative width of the last intervals: width / level [-]", None, ge=0.0, le=0.1)

@@ -69,7 +69,9 @@ _CONSEQUENCES = {
     "high": Message("high", context="consequence"),
 }
 
-_NO_ROCKING = Message("at {level} it does not rock in {motions}", many="at {level} it rocks in 0 of {motions}")
+_NO_ROCKING = Message(
+    "at {level} it does not rock in {motions}", many="at {level} it does not rock in any of {motions}"
+)
 _STILL = Message("at {level} no uplift in {motions}", many="at {level} no uplift in {motions}")
 _OVERTURNS = Message(
     "at {level} it rocks, and overturns in {motions}",

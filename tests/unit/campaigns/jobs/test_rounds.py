@@ -345,7 +345,12 @@ def test_forecast_is_of_the_first_round():
         ("map", "refine = 1", "refine = 13", "map.refine"),
         ("map", "values = [1.5, 3.0, 4.5]", "values = [1.5]", r"map\.refine: frequency_ratio must have at least 2"),
         ("map", "value = 0.9", "values = [0.8, 0.9]", "one restitution"),
-        ("map", "value = 0.9", "[restitution.distribution]\nmean = 0.9\ndeviation = 0.1", "drawn at random"),
+        (
+            "map",
+            "value = 0.9",
+            "[restitution.distribution]\nmean = 0.9\ndeviation = 0.1",
+            "a random restitution has no boundary",
+        ),
         ("minimum", "max_pga = 25.0", "min_pga = 50.0\nmax_pga = 25.0", "minimum: min_pga must be below max_pga"),
         ("minimum", "bisections = 1", "bisections = 13", r"minimum\.bisections"),
         ("minimum", "[minimum]", "[fragility]\n[minimum]", "does not accept"),
