@@ -242,5 +242,5 @@ def test_commands(run, answered):
     assert modes[0] != modes[2]
     code, _, err = run(*words, *axes, *ways[0], *ways[1])
     assert code == 2
-    assert "say the same" in err
+    assert "set the same key" in err
     assert answered(*words, *axes, *ways[0], "--restitution", "complementarity")["mode"] != modes[0]

@@ -137,7 +137,7 @@ def test_cloud(run, answered, motions):
     assert result["regression"]["slope"] == found.regression.slope
     assert answer["uplift_threshold"] is None
     page = run(*SIZE, *FAMILY, "--analysis", "cloud", "--scale", "4", "--im", "pgv", "--details")[1]
-    assert f"slope {found.regression.slope:.3g} over ln(pgv)" in page
+    assert f"slope {found.regression.slope:.3g}, scatter" in page
     assert "no level of this measure alone decides" in page
 
 
