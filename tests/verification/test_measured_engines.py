@@ -80,7 +80,7 @@ def test_hops_on_a_bed_are_told(points):
 @pytest.mark.verifies("negative control")
 def test_a_bed_that_changes_with_the_speed_is_told():
     """Slow impacts lose less on a soft bed; heard sharply, one mean for all is refused, and what to try is said."""
-    assert "try trend=True" in str(on_bed(400.0, 1.0, 5, 2e-5)[0].refused[0])
+    assert "use trend=True" in str(on_bed(400.0, 1.0, 5, 2e-5)[0].refused[0])
 
 
 def on_hull(azimuth, duration, friction=0.6):
