@@ -8,6 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.cli.spectrum import _angles, _periods
+from rocking.motions.filters import geometric
 from rocking.spec.fields import Values
 
 COMMAND = "spectrum"
@@ -21,7 +22,7 @@ def test_json_is_the_python_call(answered):
     """Modes and peaks of both motions are those of the study, bit by bit; counts add up to the blocks."""
     told = answered(SINE, "--motion", COSINE, *FEW, "--scale", "1.5")
     motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
-    found = rk.rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), np.geomspace(1, 8, 9), scale=1.5)
+    found = rk.rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), geometric(1, 8, 9), scale=1.5)
     assert told["mode"] == found["mode"].values.tolist()
     assert told["peak_ratio"] == found["peak_ratio"].values.tolist()
     assert told["motions"] == [motion.name for motion in motions]
@@ -48,7 +49,7 @@ def test_page_and_files(printed, tmp_path):
     with files[1].open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
-    found = rk.rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), np.geomspace(1, 8, 9))
+    found = rk.rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), geometric(1, 8, 9))
     assert [float(row["peak_rotation [rad]"]) for row in rows] == found["peak_rotation"].values.ravel().tolist()
 
 
