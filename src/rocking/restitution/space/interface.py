@@ -179,7 +179,7 @@ def edge_coefficient(
     >>> from rocking.bodies.solid import Solid, box, cylinder
     >>> round(edge_coefficient(Solid(box(1.0, 1.0, 4.0)), "housner"), 12)
     0.911764705882
-    >>> round(edge_coefficient(Solid(cylinder(1.0, 2.0))), 12)
+    >>> round(edge_coefficient(Solid(cylinder(1.0, 2.0)), "ked"), 12)
     0.837210880308
     """
     base = solid.base
