@@ -100,7 +100,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     >>> from rocking.restitution.space import impact_in_space
     >>> prism = Solid(box(1.0, 1.0, 2.0))
     >>> edges = prism.base.edges
-    >>> result = impact_in_space(prism, -edges[0].direction, pivot=edges[0], onto=prism.base.opposite(0))
+    >>> result = impact_in_space(prism, -edges[0].direction, pivot=edges[0], onto=prism.base.opposite(0), model="ked")
     >>> energies = unit_energies(result, 24)
     >>> round(float(energies.left.sum() / energies.before.sum()), 3), round(result.energy_ratio, 3)
     (0.689, 0.689)
