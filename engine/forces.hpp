@@ -1,6 +1,6 @@
 // The force of the ground on a rocking body: with q = m R^2 / I_o, e = (u' / p)^2 and M = u'' / p^2, over the weight m g
 //     N = 1 + a_z / g - q (M S + e C),   s H = s a_x / g - q (M C - e S).
-// N below zero would be a ground that pulls: the body loses contact. Both are looked at where steps start, so at every
+// N < 0 is a tensile contact force: the body loses contact. Both are looked at where steps start, so at every
 // sample and after every uplift and impact, just before every impact, and where the motion ends, up to where a body that
 // overturns passes over its foot for good, this instant included.
 #pragma once

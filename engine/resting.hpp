@@ -196,7 +196,7 @@ void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
             continue;
         }
         const std::int64_t k = (at - lane.first) / stride;
-        if (D == 1 && !Z) {  // samples that cannot lift it, many at once
+        if (D == 1 && !Z) {  // skips blocks of samples that cannot cause uplift of the body
             const std::int64_t block_end = lane.first + (k / kBlock + 1) * kBlock;
             const std::int64_t heard = first_loud(at, std::min(stop, block_end) + 1, std::fabs(lane.ax), calm);
             if (heard > at + 1) {

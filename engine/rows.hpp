@@ -1,4 +1,4 @@
-// Rows into lanes, and results out of them.
+// Copies rows of the input into SIMD lanes, and results from the lanes.
 #pragma once
 #include "kernel.hpp"
 

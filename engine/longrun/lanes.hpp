@@ -178,7 +178,7 @@ class Lanes {
         }
     }
 
-    // n-th root to some per cent, from operations with defined rounding alone.
+    // Approximate n-th root (error of a few per cent). Uses only operations with defined rounding.
     static double root(double x, int n) {
         int exponent;
         const double mantissa = std::frexp(x, &exponent), power = (exponent - 2.0 + 2.0 * mantissa) / n, below = std::floor(power);

@@ -6,7 +6,7 @@
 
 namespace rocking::spatial {
 
-// of k of a landing: first and last azimuth of an interval, Chebyshev coefficients over it
+// Numbers per interval of the impulse position k: first azimuth, last azimuth, Chebyshev coefficients.
 constexpr int kPosition = 35;
 // of a body: mass, p, size, lift, radius, centre (3), inertia (9); of a row: coefficient, scale, horizon, attitude (4), velocity (3)
 constexpr int kBodyNumbers = 17, kBodyPlaces = 6, kRowNumbers = 10, kRowChoices = 3;

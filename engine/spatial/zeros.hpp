@@ -31,7 +31,7 @@ inline double first_fall(const double* c, int order) {
     return rocking::ROCKING_ISA::first_zero<kMostOrder>(padded);
 }
 
-// `started`: a gap that has just opened, whose zero at its start does not count, with coefficients up to `floor` taken as none.
+// `started`: True if the gap has just opened; the zero at its start is ignored. Coefficients up to `floor` count as 0.
 inline double first_zero(const double* c, int order, bool started, double floor) {
     double most = 0.0;
     for (int k = 0; k <= order; ++k) most = greater(most, std::fabs(c[k]));

@@ -102,7 +102,7 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
 
 
 def of_quiet(peak: float) -> tuple[str, ...]:
-    """Return the doubt about a record with a very small peak ground acceleration [m/s2]."""
+    """Return a warning if the peak ground acceleration is very small [m/s2]."""
     if peak >= MIN_PGA:
         return ()
     return (

@@ -87,7 +87,7 @@ def _refused(error: HTTPException) -> JsonAnswer:
 
 
 def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exception], Awaitable[JsonAnswer]]:
-    # no thread for it: a server that ends would not wait for one
+    # async, without a worker thread: at shutdown the server does not wait for threads
     async def handle(request: Request, error: Exception) -> JsonAnswer:
         return answer(error)
 

@@ -65,7 +65,7 @@ _LARGEST = 2**63
 
 
 class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made of the fields of a block
-    """A unit of length, and one table of the body, or width and height."""
+    """Input of a body: unit of length, and either one body table or width and height."""
 
     @model_validator(mode="before")
     @classmethod

@@ -51,7 +51,7 @@ class ServerSettings:
     host: str = "127.0.0.1"  # address to listen on
     port: int = DEFAULT_PORT  # port to listen on
     folder: Path = field(default_factory=data_folder)  # data folder: records, studies, the key for scripts
-    allow_remote: bool = False  # whether an address that other machines reach is allowed
+    allow_remote: bool = False  # True to allow addresses that are accessible from other machines
     workers: int | None = None  # processes per study; default: of the campaign
     limits: Limits = Limits()  # size limits
 

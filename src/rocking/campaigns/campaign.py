@@ -27,7 +27,7 @@ from rocking.studies.histories import Histories
 
 @dataclass(frozen=True)
 class Campaign:
-    """A large number of histories in a folder; a run continues after an interruption or a damage.
+    """A large number of histories, stored in a folder. A run continues after an interruption or after damage to files.
 
     `create` makes a campaign, `open` continues it. The results are equal to the last bit for any workers, chunk size,
     order and interruptions.

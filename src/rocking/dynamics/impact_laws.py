@@ -60,7 +60,7 @@ class ImpactLaw:
         return 1.0 if factors is None else float(factors.max())
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the factor for an impact.
+        """Return the factor on the coefficient of restitution for one impact.
 
         Parameters
         ----------

@@ -91,7 +91,7 @@ class Mechanics(ABC):
     """A mechanics: equations of motion with the bodies and settings for which they hold."""
 
     name: ClassVar[str]  # identifier
-    in_plane: ClassVar[bool] = True  # True if the ground has one horizontal component
+    in_plane: ClassVar[bool] = True  # True if the ground motion has one horizontal component only
     slides: ClassVar[bool] = False  # True if bodies slide, hop and fly; the restitution may then be None
     is_compared: ClassVar[bool] = False  # True if studies compare restitutions, linear equations and engines
     title: ClassVar[str]  # as a noun

@@ -38,7 +38,7 @@ class Contender:
 
     name: str  # name in the league
     parameters: tuple[str, ...]  # names of the fitted parameters; empty for an unfitted model
-    # for a `DataSet` and selections of its rows: the least-squares model of r for each selection
+    # function: from a `DataSet` and row selections, one least-squares model of r per selection
     fit: Callable[[DataSet, Sequence[BoolArray]], list[RestitutionModel]]
 
 

@@ -43,7 +43,7 @@ class Nodes:
     eta: FloatArray  # interface factor [-]
     k: FloatArray  # position of the impulse [-]
     log_s: FloatArray  # logarithm of the scatter scale
-    gamma: FloatArray  # power of the loss in the scatter [-]
+    gamma: FloatArray  # exponent of the energy loss in the scatter model [-]
 
 
 NODES = Nodes(_ETA, _K, _LOG_S, _GAMMA)

@@ -251,7 +251,7 @@ def _stable_error() -> tuple[str, str]:
 
 
 def _with_mass(model: int, sign: float) -> tuple[str, str]:
-    """Test the steps of the relative error at equal slenderness, from S to M and from M to L."""
+    """Test the change of the relative error with size (S to M, M to L) at equal slenderness."""
     groups = [truth(name) for name in "SML"]
     ratio = groups[0][0].slenderness
     errors = np.array([relative_error(group[model], group[0].coefficient) for group in groups])  # type: ignore[arg-type]

@@ -85,7 +85,7 @@ Kind = Literal["body", "motion", "list", "question", "job"]
 
 @dataclass(frozen=True)
 class Example:
-    """An example of the package; all are invented, except bodies with a source of their dimensions in the file.
+    """A built-in example. All examples are invented, except bodies whose file states the source of the dimensions.
 
     Parameters
     ----------

@@ -239,7 +239,7 @@ class Clicks:
     """Times of impacts; some impacts may be missing."""
 
     measured: FloatArray
-    impacts: IntArray  # impact number of each time
+    impacts: IntArray  # index of the impact at each time
 
     @property
     def count(self) -> int:

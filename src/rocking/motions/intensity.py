@@ -341,7 +341,7 @@ class IntensityMeasure:
         return values
 
     def scaled(self, values: FloatArray, factor: Any) -> FloatArray:
-        """Return the measure of scaled motions.
+        """Return the intensity measure of the scaled motions.
 
         Parameters
         ----------

@@ -136,7 +136,7 @@ class _Bed:
         return tuple(sum((far**n - near**n) / n for near, far in full) for n in (1, 2, 3))
 
     def first_section(self, edge: float) -> int:
-        """Return the section of the base in which the pressure ends at first."""
+        """Return the index of the base section that contains the initial end of the pressure zone."""
         section = bisect_right(self.edges, edge)
         if section == 0 or self.edges[section - 1] != edge:
             return section

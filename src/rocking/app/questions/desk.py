@@ -338,7 +338,7 @@ class QuestionDesk:
             self._process = None
             if self._state(question.id) in {"stopped", None}:
                 return
-            if self._closed:  # in good order: this beginning does not count
+            if self._closed:  # regular shutdown: do not count this start
                 self._become(replace(question, state="waiting", starts=question.starts - 1))
                 return
             seconds = (datetime.now(UTC) - begun).total_seconds()

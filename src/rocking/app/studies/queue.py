@@ -165,4 +165,4 @@ class StudyQueue:
                     reason = (isinstance(error, OSError) and error.strerror) or type(error).__name__
                     _LOG.warning("study %s could not be begun", study.folder.id, exc_info=True)
                     study.become(FAILED, f"its process could not be started ({reason}); resume it")
-                    self._wake.set()  # there is room for the next one
+                    self._wake.set()  # a process is free: start the next study

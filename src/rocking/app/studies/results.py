@@ -287,7 +287,7 @@ def _curve(fit: Any, fine: FloatArray, shared: Any) -> dict[str, Any]:
     try:
         low, high = fit.band(fine, 0.95, "profile" if fit.counts.cluster_trials is None else "bootstrap")
     except InvalidValueError as error:
-        # a curve of few motions has no band: the points show how little is known
+        # a curve from few motions has no confidence band; the points are shown instead
         return {**curve, "band": str(error)}
     return {**curve, "low": low, "high": high, "band": "95 % of the curve at each level"}
 

@@ -250,7 +250,7 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
 
 
 async def _gone(socket: WebSocket) -> None:
-    """Return when the browser has disconnected; its messages are ignored."""
+    """Wait until the browser disconnects; ignore its messages."""
     while True:
         message = await socket.receive()
         if message["type"] == "websocket.disconnect":

@@ -115,7 +115,7 @@ class HostedStudy:
     process: StudyProcess | None = None  # who computes it now
     begun: int = 0  # begun, done: histories of the rounds that have begun, and finished ones, at the last look [-]
     done: int = 0
-    rate: float = 0.0  # histories a second, at the last look [1/s]
+    rate: float = 0.0  # histories per second at the last update [1/s]
     estimate: Estimate | None = None  # time that is left, at the last look; None while that is not known
     cancelled: bool = False  # cancelled, left: whether a user wants it to stop, and whether it is being deleted
     left: bool = False

@@ -150,7 +150,7 @@ class StudyFolder:
             complete = False
         message = "" if complete else "the server was closed; finished simulations are kept, and the study continues"
         meta = replace(meta, state=DONE if complete else WAITING, message=message)
-        with suppress(OSError):  # a full disk: the next start finds out again
+        with suppress(OSError):  # ignore a full disk; the next start computes the state again
             self.write(meta)
         return meta
 

@@ -177,7 +177,7 @@ class Polytope:
             rate = chords @ lever
             gap = np.where(rate > 0.0, np.maximum(-(chords @ down), 0.0) / np.where(rate > 0.0, rate, 1.0), np.inf)
             first = int(np.argmin(gap))  # Eq. 245
-            if not math.isfinite(gap[first]):  # on a summit, any direction
+            if not math.isfinite(gap[first]):  # local maximum of the height: any direction leads down
                 return int(self.sides[edges[first], 0])
             turned = down + float(gap[first]) * lever
             down = turned / np.linalg.norm(turned)

@@ -242,7 +242,7 @@ class Shape(ABC):
         """Return the shape mirrored, x -> -x."""
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return volumes [m3] and centres [m] of units that fill the shape, about `divisions` per direction.
+        """Return volumes [m3] and centres [m] of the volume elements of the shape, about `divisions` per direction.
 
         The result is None for shapes that need voxels.
         """

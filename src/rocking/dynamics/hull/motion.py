@@ -147,7 +147,7 @@ class StepResult(NamedTuple):
     """Result of a step, with its stages."""
 
     state: State
-    error: float  # size of the local error over that of the body [-]
+    error: float  # norm of the local error / size of the body [-]
     samples: list[tuple[float, State, Rates]]  # start, two stages and end, with the fraction of the step
 
 

@@ -88,7 +88,7 @@ def azimuth(quaternion: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class SpatialStart:
-    """Start of a body in space; a value out of range gives the history an error status.
+    """Initial state of a 3D body. A value out of range causes an error status of the history.
 
     Parameters
     ----------

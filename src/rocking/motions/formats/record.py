@@ -107,7 +107,7 @@ class Source:
         return line < len(self.lines) and self.lines[line].startswith(mark)
 
     def expected(self, line: int, content: str) -> RecordError:
-        """Return the error of a line with other content, or of a file that ends before it."""
+        """Return the error for an unexpected line, or for a file that ends before this line."""
         return self.error(min(line, len(self.lines) - 1), "{content} expected", content=content)
 
 

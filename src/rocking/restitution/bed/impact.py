@@ -120,7 +120,7 @@ class BedImpact:
 
     @property
     def coefficient(self) -> float:
-        """Ratio theta_dot_after / theta_dot_before by `emergent` [-]."""
+        """Ratio theta_dot_after / theta_dot_before from the result `emergent` [-]."""
         return self.emergent.coefficient
 
     @property

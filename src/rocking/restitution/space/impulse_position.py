@@ -43,7 +43,7 @@ class BaseLanding:
 
 
 class ImpulsePosition(ABC):
-    """Position k of a landing of the full base by direction."""
+    """Impulse position k as a function of the landing direction, for a landing on the full base."""
 
     # breaks: azimuths at which a foot changes, in order [rad]
 

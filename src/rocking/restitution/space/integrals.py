@@ -52,7 +52,7 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
 
 
 def exact_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
-    """Return the exact integral of a part with flat faces about a level line; None for other shapes."""
+    """Return the exact KED integral of a polyhedral part about a horizontal axis; None for other shapes."""
     if not isinstance(part.shape, Polyhedron):
         return None
     if isinstance(part.shape, Prism) and np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:

@@ -31,7 +31,7 @@ TOLERANCE = 1e-6  # Largest probability by which a worse state may be likelier t
 
 @dataclass(frozen=True)
 class FragilityCurve:
-    """The lognormal probability of one state.
+    """Lognormal fragility curve of one limit state.
 
     Parameters
     ----------

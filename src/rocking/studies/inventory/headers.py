@@ -16,7 +16,7 @@ from rocking.studies.inventory.columns import (
 )  # fmt: skip
 from rocking.studies.inventory.sheets import Cell, Sheet
 
-_HIGHEST = 50  # rows above the header
+_HIGHEST = 50  # largest number of rows above the header
 _TALLEST = 4
 _SAMPLE = 200  # examined rows below the header
 

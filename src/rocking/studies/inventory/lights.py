@@ -146,7 +146,7 @@ class Thresholds:
     def light(
         self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0, slid: int = 0
     ) -> Light:
-        """Return the light from the counts of motions.
+        """Return the rating from the numbers of motions with uplift and with overturning.
 
         Parameters
         ----------

@@ -376,7 +376,7 @@ def _plain(rank: int, verdict: Verdict, assessment: Assessment) -> dict[str, Any
 # quantities by the keys of a stored description
 _STATED = {"pga_m_s2": "pga", "pgv_m_s": "pgv", "time_step_s": "time_step"}
 
-# JSON names of a direction's results that differ from the attributes
+# JSON keys of directional results, if different from the attribute name
 _PLAIN = {
     "count": "motions",
     "median_rotation": "median_rotation_over_angle", "high_rotation": "high_rotation_over_angle",

@@ -168,7 +168,7 @@ def uncertainty_exponent(
     seed: int = 0,
     numerics: Numerics = DEFAULTS,
 ) -> UncertaintyExponent:
-    """Return the uncertainty exponent of the boundary between starts that overturn and others.
+    """Return the uncertainty exponent of the basin boundary between overturning and non-overturning initial states.
 
     Parameters
     ----------

@@ -443,7 +443,7 @@ def fragility_sensitivity(
     seed: int = 0,
     **options: Any,
 ) -> Sensitivity:
-    """Return the sensitivity of fragility by multiple stripes to the restitution.
+    """Return the sensitivity of multiple-stripe fragility curves to the restitution model.
 
     Parameters
     ----------

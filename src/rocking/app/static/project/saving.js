@@ -50,7 +50,7 @@ export const createProjects = (app, first) => {
     note();
     return document;
   };
-  // For a reload: version and content of this tab, and whether it has unsaved changes.
+  // State saved for a reload: version and content of this tab, and a flag for unsaved changes.
   const note = () =>
     remember({ id: here.value.id, version: here.value.version, more: changed.size > 0 || sent.length > 0, sent, last });
   const tell = () => channel?.postMessage({ id: here.value.id, version: here.value.version });

@@ -15,7 +15,7 @@ import { t } from "/app/words.js";
 
 const WAYS = [["record", "Record file"], ["pulse", "Pulse"], ["synthetic", "Synthetic"]];
 const EDITORS = { record: Record, pulse: Pulse, synthetic: Synthetic };
-// Of itself no record is chosen: a file has to be given.
+// No default record: the user must select a file.
 const USUAL = { record: () => null, pulse: usualPulse, synthetic: usualSynthetic };
 
 const LEAN = "No motion is selected. The body starts from an initial rotation. Choose a motion to shake the body.";

@@ -20,7 +20,7 @@ const lastOf = ({ rotation, falls }) => (falls ? rotation.end + SETTLE : quietAf
 const quietAfter = (track) => {
   let k = track.values.length - 1;
   while (k > 0 && Math.abs(track.values[k]) < 1e-6) k -= 1;
-  return k ? Math.min(track.time[k] + SETTLE, track.end) : track.end; // all of it, of a body that never moved
+  return k ? Math.min(track.time[k] + SETTLE, track.end) : track.end; // complete duration if the body does not move
 };
 
 /** @param {Actor} actor */

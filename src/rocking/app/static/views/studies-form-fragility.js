@@ -1,4 +1,4 @@
-/** Form of a fragility: motions, intensity measure, levels and limit state. */
+/** Input form of a fragility analysis: motions, intensity measure, levels and limit state. */
 import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { pretty } from "/app/format.js";
 import { Choice, NumberField, Segmented } from "/parts/fields.js";
