@@ -129,8 +129,7 @@ def steps() -> dict[str, dict[str, Any]]:
             if has_level and measure.power and measure.is_listed and not measure.needs_body
         ]
         measures = {
-            measure.name: _facts_of_key(f"To this {measure.words} [{measure.unit}]", None, float)
-            for measure in scalable
+            measure.name: _facts_of_key(f"{measure.words} [{measure.unit}]", None, float) for measure in scalable
         }
         facts[name] = {"words": _summary(step), "one": has_level, "keys": {**_documented(step, keys), **measures}}
     return facts
