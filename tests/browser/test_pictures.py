@@ -258,6 +258,7 @@ def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Call
 STATIC = Path(str(files("rocking"))) / "app" / "static"
 ASKED = re.compile(r"picture/|\.png\b|export\.\$\{\w+\}.*(svg|png)|drawing/picture-tools")
 OF_THE_SERVER = {
+    "views/studies-counts.js",
     "views/studies-fragility.js",
     "questions/parts.js",
     "views/compare-studies.js",
