@@ -46,7 +46,7 @@ def test_a_scan_stands_and_settles(
     expect(outcome.get_by_test_id("verdict")).to_contain_text(f"{len(answer['stable'])} stable poses")
     before = seen(page)
     assert len(np.unique(before.reshape(-1, 3), axis=0)) > 200  # shaded and coloured, not an empty ground
-    outcome.get_by_label("Stable pose").select_option("0")
+    outcome.get_by_label("Stable pose", exact=True).select_option("0")
     expect(words).to_contain_text("Pose 0")
     page.wait_for_timeout(1500)  # it turns for 0.7 s
     assert (np.abs(seen(page) - before).max(axis=2) > 30).mean() > 0.02
@@ -54,7 +54,7 @@ def test_a_scan_stands_and_settles(
     # in that pose it is asked again: what stands then is as high as the pose was
     outcome.get_by_role("button", name="Use pose 0").click()
     section = page.locator("#view-space")
-    expect(section).to_contain_text("Stands in pose 0 of the last answer")
+    expect(section).to_contain_text("Pose 0 of the last result")
     section.get_by_role("button", name="Compute", exact=True).click()
     expect(words).to_contain_text("Pose 0")
     expect(outcome).to_have_attribute("data-state", "done")
