@@ -19,6 +19,7 @@ from rocking.dynamics.plane import fast_engine as plane_engine
 from rocking.dynamics.space import SpatialBody, SpatialStart
 from rocking.dynamics.space import fast_engine as space_engine
 from rocking.dynamics.space.batch import batch_in_space
+from rocking.motions.filters import geometric
 from rocking.restitution.bed import ContactBed, KelvinVoigt
 
 STEP = 0.015625
@@ -201,6 +202,7 @@ RESULTS: dict[str, Callable[[], list[Any]]] = {
     "plane, response": response,
     "plane, contact": contact,
     "plane, coefficients": coefficients,
+    "levels in equal ratios": lambda: [geometric(np.array([2.0, 0.3]), np.array([9.0, 0.7]), 500)],
     "motions, corrected": corrected,
     "examples": of_examples,
     "bed, reference": lambda: bed("reference"),

@@ -45,7 +45,7 @@ OTHER = {
 QUICK = [
     "space, polygon, reference", "space, round base, reference", "space, batch", "plane, reference", "plane, fast",
     "plane, contact", "plane, coefficients", "motions, corrected", "space, impacts and moments", "bed, fast",
-    "examples",
+    "examples", "levels in equal ratios",
 ]  # fmt: skip
 NAMES = QUICK if os.environ.get("ROCKING_CAMPAIGN") != "1" else []
 

@@ -127,8 +127,8 @@ class GaiborReproduction:
 
     def lost(self, slenderness: int, model: str) -> float:
         """Return the fraction of the cells of a basin that overturn."""
-        found = self.basins[slenderness, model]
-        return float((found.kind == OVERTURNED_CELL).mean())
+        basin = self.basins[slenderness, model]
+        return float((basin.kind == OVERTURNED_CELL).mean())
 
     def claims(self) -> tuple[Claim, ...]:
         """Return the statements of the abstract in their senses, with verdicts."""
@@ -192,7 +192,7 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
     r = float(system.sides[2])
     cycles = (max(150, math.ceil(11.0 / abs(math.log(r)))), 130)
     amplitudes = effort.amplitudes(effort.step)
-    found, kind, period = _attractors(system, amplitudes, starts, cycles)
+    diagram, kind, period = _attractors(system, amplitudes, starts, cycles)
     is_chaotic, is_multi, is_one = (
         kind == IRREGULAR,
         (kind == PERIODIC) & (period > 1),
@@ -212,7 +212,7 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
     return HarmonicCase(
         slenderness, model, frequency, numbers,
         {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
-        is_complex, is_chaotic.any(axis=1), _points(amplitudes, found, is_one | is_multi | is_chaotic),
+        is_complex, is_chaotic.any(axis=1), _points(amplitudes, diagram, is_one | is_multi | is_chaotic),
         np.column_stack([rest.amplitude.values, np.where(is_small, np.nan, rest.exponent.values[0, :, 0] / system.p)]),
         cascade,
     )  # fmt: skip
@@ -222,8 +222,8 @@ def _attractors(
     system: HarmonicRocking, amplitudes: FloatArray, starts: FloatArray, cycles: tuple[int, int]
 ) -> tuple[Any, Any, Any]:
     """Return diagram, kinds and periods, shape (amplitudes, starts); irregular is chaos, after 2,000 more periods."""
-    found = bifurcation(system, amplitudes, starts=starts, cycles=cycles, exponents=True)
-    kind, period = found.kind.values[0].copy(), found.period.values[0].copy()
+    diagram = bifurcation(system, amplitudes, starts=starts, cycles=cycles, exponents=True)
+    kind, period = diagram.kind.values[0].copy(), diagram.period.values[0].copy()
     doubtful = np.flatnonzero((kind == IRREGULAR).any(axis=1))
     if len(doubtful):
         longer = bifurcation(
@@ -235,13 +235,13 @@ def _attractors(
         kind[doubtful], period[doubtful] = (
             np.where(rows, *pair) for pair in ((new, kind[doubtful]), (longer.period.values[0], period[doubtful]))
         )
-    return found, kind, period
+    return diagram, kind, period
 
 
-def _points(amplitudes: FloatArray, found: Any, is_kept: Any) -> FloatArray:
+def _points(amplitudes: FloatArray, diagram: Any, is_kept: Any) -> FloatArray:
     """Return amplitude and rotation of the last 32 periods of attractors, each point once."""
     rows, columns = np.nonzero(is_kept)
-    rotation = np.round(found.rotation.values[0][rows, columns, -32:], 3)
+    rotation = np.round(diagram.rotation.values[0][rows, columns, -32:], 3)
     return np.unique(np.column_stack([np.repeat(amplitudes[rows], rotation.shape[1]), rotation.ravel()]), axis=0)
 
 
@@ -250,11 +250,11 @@ def main_branch(system: HarmonicRocking) -> list[Bifurcation]:
     scale = (1.0 + system.frequency_ratio**2) / 5.0
     orbit = symmetric_orbit(system.changed("amplitude", 1.2 * scale))
     fold = continue_orbit(orbit, _LIMITS, increasing=False, stop=_is("fold")).first("fold")
-    found = [fold, continue_orbit(orbit, _LIMITS, step=0.05, stop=_is("pitchfork")).first("pitchfork")]
+    bifurcations = [fold, continue_orbit(orbit, _LIMITS, step=0.05, stop=_is("pitchfork")).first("pitchfork")]
     for step in (0.03, 0.01):
-        branch = branch_off(found[-1], _LIMITS, step=step, stop=_is("period doubling"))
-        found.append(branch.first("period doubling"))
-    return found
+        branch = branch_off(bifurcations[-1], _LIMITS, step=step, stop=_is("period doubling"))
+        bifurcations.append(branch.first("period doubling"))
+    return bifurcations
 
 
 def _is(kind: str) -> Callable[[Bifurcation], bool]:
@@ -267,17 +267,17 @@ def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[s
     values = second.value + np.linspace(0.0, second.value - first.value, number + 1)[1:]
     orbit = second.orbit
     starts = start_states(orbit.system, [orbit.phase], [orbit.speed])
-    found = bifurcation(orbit.system, values, starts=starts, memory="up", cycles=(200, 200), exponents=True)
-    kind, exponent = found.kind.values[0, :, 0], found.exponent.values[0, :, 0]
+    diagram = bifurcation(orbit.system, values, starts=starts, memory="up", cycles=(200, 200), exponents=True)
+    kind, exponent = diagram.kind.values[0, :, 0], diagram.exponent.values[0, :, 0]
     end = int(np.argmax(np.append(kind == LOST, True)))
     is_chaotic = (kind == IRREGULAR) & (exponent > 0.0) & (np.arange(number) < end)
-    rotation = found.rotation.values[0, :end, 0, -64:]
+    rotation = diagram.rotation.values[0, :end, 0, -64:]
     p = orbit.system.p
     points = np.column_stack([np.repeat(column[:end], 64) for column in (values, exponent / p)])
     cascade = np.insert(points, 1, rotation.ravel(), axis=1)
     step, exponents = float(values[1] - values[0]), (math.nan, math.nan)
     for at in np.argsort(np.where(is_chaotic, -exponent, np.inf))[: min(8, is_chaotic.sum())]:
-        last = [found[name].values[0, at, 0, -1] for name in ("rotation", "velocity")]
+        last = [diagram[name].values[0, at, 0, -1] for name in ("rotation", "velocity")]
         rows = np.tile([starts[0, 0], last[0] * orbit.system.alpha, last[1] * orbit.system.alpha * p], (16, 1))
         rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # chaos makes these orbits independent
         system = orbit.system.changed("amplitude", float(values[at]))

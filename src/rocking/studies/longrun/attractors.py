@@ -119,8 +119,8 @@ def bifurcation(
     settled, kept = checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
     starts = np.zeros((1, 3)) if starts is None else np.atleast_2d(checks.real_array("starts", starts))
     options: Any = {"memory": memory, "cycles": (settled, kept), "exponents": exponents, "numerics": numerics}
-    each = np.broadcast_to(starts, (len(values), *starts.shape))
-    tables = [arrays([system.changed(parameter, v) for v in values.tolist()], each, **options)
+    states = np.broadcast_to(starts, (len(values), *starts.shape))
+    tables = [arrays([system.changed(parameter, v) for v in values.tolist()], states, **options)
               for system in named.values()]  # fmt: skip
     data = {}
     for name in tables[0]:

@@ -133,7 +133,7 @@ def checked_ends(
 ) -> Any:
     """Return the kinds of histories, and those with another step error, shape (2, rows)."""
     steps = [numerics, replace(numerics, step_error=30.0 * numerics.step_error)][: 1 + check]
-    kinds = [ends_of(system, phase, speed, impacts=impacts, small=small, numerics=each) for each in steps]
+    kinds = [ends_of(system, phase, speed, impacts=impacts, small=small, numerics=step) for step in steps]
     return np.array([kinds[0], kinds[-1]])
 
 

@@ -115,7 +115,7 @@ class Diagram(Task):
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
         systems = [_at(system, self.axis, value) for value in self.values.tolist()]
         options: Any = {"cycles": self.cycles, "exponents": self.exponents, "numerics": numerics}
-        starts = np.array([_started(each, self.starts) for each in systems])
+        starts = np.array([_started(system, self.starts) for system in systems])
         sweeps = [attractors.arrays(systems, starts, memory=memory, **options) for memory in self.sweeps]
         whole = {new: np.stack([sweep[old] for sweep in sweeps]) for new, old in _NAMES.items() if old in sweeps[0]}
         modes = np.array([-2, -1, -1, -1, UNCOUNTED, -3])[whole["attractor"]]
@@ -336,13 +336,15 @@ class Branches(Task):
         """Return the branches that exist."""
         parameter: Any = self.axis
         branch = _both_ways(orbits.symmetric_orbit(system), self.limits, parameter)
-        found = [branch]
+        branches = [branch]
         for kind in ("pitchfork", *["period doubling"] * (self.doublings - 1))[: self.doublings]:
             try:
-                found.append(orbits.branch_off(found[-1].first(kind), self.limits, parameter=parameter, step=0.02))
+                branches.append(
+                    orbits.branch_off(branches[-1].first(kind), self.limits, parameter=parameter, step=0.02)
+                )
             except OrbitNotFoundError:
                 break
-        return found
+        return branches
 
     def findings(self, system: HarmonicRocking, results: "xr.Dataset") -> list[dict[str, Any]]:
         names = ("branch", "branch_point", AXES[self.axis], "ground_phase", "speed_ratio", "impacts_of_orbit")
