@@ -2,7 +2,7 @@
 PYTHON ?= python3
 OUT ?= demo-output
 # tests/verification/test_same_bits.py compares results of every kind under the same settings
-PORTABLE := src/rocking/restitution/space src/rocking/dynamics/space tests/unit/dynamics/test_reference.py \
+PORTABLE := src/rocking/restitution/space src/rocking/dynamics/rolling tests/unit/dynamics/test_reference.py \
 	tests/verification/test_spatial_round_shaken.py::test_a_lift_from_rest_is_no_fall tests/verification/test_planar_regimes.py
 VENV := .venv
 BIN := $(VENV)/bin

@@ -18,11 +18,11 @@ from scipy.spatial import ConvexHull
 from benchmarks import spatial_mujoco, table
 from benchmarks.table import Row
 from rocking.conventions import FloatArray, g
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.ground import HullGround, frame
-from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.motion import standing
-from rocking.dynamics.hull.settings import HullSettings
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.ground import HullGround, frame
+from rocking.dynamics.frictional.histories import hull_histories
+from rocking.dynamics.frictional.motion import standing
+from rocking.dynamics.frictional.settings import HullSettings
 from rocking.motions import GroundMotion
 
 BATCH = 50

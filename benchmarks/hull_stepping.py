@@ -11,10 +11,10 @@ from scipy import stats
 
 from benchmarks import hull, time_stepping
 from rocking.conventions import BoolArray, FloatArray
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.ground import HullGround
-from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.settings import HullSettings
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.ground import HullGround
+from rocking.dynamics.frictional.histories import hull_histories
+from rocking.dynamics.frictional.settings import HullSettings
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 

@@ -20,11 +20,11 @@ import rocking as rk
 from benchmarks.predictions import resumed
 from rocking.conventions import FloatArray, g
 from rocking.dynamics import RandomRestitution
-from rocking.dynamics.contact.base import ContactState, Mode, PlaneBase
-from rocking.dynamics.contact.engine import ContactEngine
-from rocking.dynamics.contact.impact_resolution import GroundContact
-from rocking.dynamics.contact.response import ContactResponse
 from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.plane_frictional.base import ContactState, Mode, PlaneBase
+from rocking.dynamics.plane_frictional.engine import ContactEngine
+from rocking.dynamics.plane_frictional.impact_resolution import GroundContact
+from rocking.dynamics.plane_frictional.response import ContactResponse
 from rocking.identification import RotationSeries
 from rocking.identification.forced import answer, fit_forced
 from rocking.identification.forced_friction import with_sliding

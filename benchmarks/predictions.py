@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 import rocking as rk
+from rocking.decision.prediction import predict
 from rocking.motions.integrals import peak_ground_velocity
-from rocking.prediction import predict
 from rocking.restitution._implied import energy_bound
 from rocking.statistics.scores import Forecasts, logistic_left_out
 
@@ -73,7 +73,7 @@ def resumed(
     cases: int,
     made: Callable[..., dict[str, Any]],
     source: str,
-    rooms: tuple[str, ...] = ("prediction", "dynamics/contact", "dynamics/hull", "evidence"),
+    rooms: tuple[str, ...] = ("prediction", "dynamics/plane_frictional", "dynamics/frictional", "evidence"),
     **settings: int,
 ) -> Iterator[dict[str, Any]]:
     """Yield every case, from the file of an earlier run unless the code has changed."""

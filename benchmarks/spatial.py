@@ -9,7 +9,7 @@ from benchmarks.spatial_cases import CASES, Case
 from benchmarks.spatial_friction import demands
 from benchmarks.spatial_tracks import Measures, Windows, windows
 from benchmarks.table import Row
-from rocking.dynamics.space import SpatialResponse
+from rocking.dynamics.rolling import SpatialResponse
 
 PACKAGES = ("numpy", "mujoco", "pybullet")
 COMMAND = "python -m benchmarks spatial"

@@ -8,7 +8,7 @@ from benchmarks import spatial_bullet, spatial_mujoco
 from benchmarks.spatial_cases import Case
 from benchmarks.spatial_friction import demands
 from benchmarks.spatial_tracks import Measures, Track, Windows, measured, track_of, windows
-from rocking.dynamics.space import ContactMode, SpatialResponse
+from rocking.dynamics.rolling import ContactMode, SpatialResponse
 
 FLOOR = {"landing": 1e-3, "kept": 2e-3, "peak": 5e-3, "lost": 1e-2, "direction": 0.5}
 """What the reading itself may cost, beside a peer's own spread: landings last up to 4 steps and energies are read two

@@ -94,7 +94,7 @@ def _step(bullet: Any, box: int, field: list[float]) -> tuple[float, ...]:
 
 
 def _track(case: Case, time: FloatArray, states: FloatArray) -> Track:
-    from rocking.dynamics.space import attitude
+    from rocking.dynamics.rolling import attitude
 
     quaternion = states[:, [6, 3, 4, 5]]
     quaternion /= np.linalg.norm(quaternion, axis=1)[:, None]

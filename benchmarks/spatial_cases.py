@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics import free_rocking, simulate
-from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart, attitude
+from rocking.dynamics.rolling import SpatialBody, SpatialResponse, SpatialStart, attitude
 from rocking.motions import GroundMotion
 
 GRAVITY = 9.81

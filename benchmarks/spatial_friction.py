@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.dynamics.space import SpatialResponse
+from rocking.dynamics.rolling import SpatialResponse
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from benchmarks.spatial_studies import GENERIC
 from benchmarks.timing import cpu_seconds
 from rocking.conventions import FloatArray
 from rocking.dynamics import simulate
-from rocking.dynamics.space import SpatialBody, SpatialResponse, attitude
+from rocking.dynamics.rolling import SpatialBody, SpatialResponse, attitude
 from rocking.motions import GroundMotion
 from rocking.motions.synthetic import GammaModulation, NonstationaryFilter, nonstationary_motion
 
@@ -64,7 +64,7 @@ def batch_engine() -> Callable[..., Any] | None:
     """Our compiled engine, where it was built."""
     try:
         import_module("rocking.dynamics._spatial")
-        function: Callable[..., Any] = import_module("rocking.dynamics.space.batch").batch_in_space
+        function: Callable[..., Any] = import_module("rocking.dynamics.rolling.batch").batch_in_space
     except (ImportError, AttributeError):
         return None
     return function

@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.spatial_cases import GRAVITY, Case
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import SpatialBody, SpatialResponse, attitude
+from rocking.dynamics.rolling import SpatialBody, SpatialResponse, attitude
 
 CLEAR, CLOSED = 2e-3, 1e-5  # a vertex has left the ground, has come back: shares of the size of the body
 APART = 0.05  # impacts closer than this over p are one landing

@@ -17,9 +17,9 @@ from benchmarks.spatial_mujoco import control, pushes
 from rocking.bodies.equilibria import equilibria
 from rocking.bodies.solid import Part, Polyhedron, Solid
 from rocking.conventions import FloatArray
+from rocking.decision.prediction import predict
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.synthetic import family
-from rocking.prediction import predict
 from rocking.statistics.scores import Forecasts, logistic_left_out
 
 FRICTION, BASE, CENTRE, DAMPING = (0.3, 0.8), (-0.01, 0.005), (0.97, 1.03), (0.7, 3.0)

@@ -26,7 +26,7 @@ STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
 
 # packages whose errors the page shows
 OF_PAGE = {
-    "app", "assessment", "bodies", "checks.py", "identification", "motions", "prediction", "restitution", "spec",
+    "app", "bodies", "checks.py", "decision", "identification", "motions", "restitution", "spec",
     "studies",
 }  # fmt: skip
 REFUSALS = {"Busy", "NotFound", "Refused"}  # errors without "Error" in their name

@@ -27,7 +27,7 @@ from hypothesis import strategies as st
 from scipy.special import ndtr
 
 import rocking as rk
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.rolling import SpatialBody
 from rocking.motions.formats import Component, Record
 
 Random = int | list[int] | np.random.Generator

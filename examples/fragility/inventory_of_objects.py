@@ -8,11 +8,11 @@ first. For conservators and facility managers. Knowledge of rocking is not neces
 from pathlib import Path
 
 import rocking as rk
+from rocking.decision.inventory import assess, read_inventory
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
+from rocking.decision.inventory.table import advice, model_note, sentence
 from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
-from rocking.studies.inventory import assess, read_inventory
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.table import advice, model_note, sentence
 
 # %%
 # The list is a table with one row per object. Excel files are read too. The earthquake has a peak acceleration and

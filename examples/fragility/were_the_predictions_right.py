@@ -14,9 +14,9 @@ The trials of this example are simulations with friction, feet and restitution t
 import numpy as np
 
 import rocking as rk
+from rocking.decision.prediction import score
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.plots import reliability_picture, write
-from rocking.prediction import score
 
 random = np.random.default_rng(4)
 body = rk.Block(width=0.4, height=1.6)

@@ -8,6 +8,7 @@ import pytest
 from browser_pages import DECISIVE, GENTLE, facts, link, response
 
 from rocking import checks
+from rocking.decision.inventory import parse_inventory
 from rocking.errors import InvalidValueError
 from rocking.language import page_words
 from rocking.messages import Amount, Message, as_message
@@ -15,7 +16,6 @@ from rocking.motions.summary import MotionSummary, condition
 from rocking.outcome import contact_sentence
 from rocking.plausibility import of_body
 from rocking.reports.response_facts import ModelAgreement
-from rocking.studies.inventory import parse_inventory
 
 OTHERS = ["de", "it", "zh"]
 SHOWN = """() => {

@@ -9,8 +9,8 @@ from typing import Any
 
 import rocking as rk
 from rocking.cli import main
-from rocking.dynamics.space import SpatialStart
-from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.rolling import SpatialStart
+from rocking.dynamics.rolling.batch import batch_in_space
 
 simulate = rk.simulate
 simulate_many = rk.simulate_many

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rocking as rk
-from rocking import studies
+from rocking import decision, studies
 from rocking.app.inputs import Inputs
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.dynamics import SpatialBody
@@ -19,7 +19,7 @@ BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8)
 FUNCTIONS = (
     rk.simulate, rk.free_rocking, rk.simulate_many, rk.overturning_map, rk.minimum_overturning_acceleration,
     rk.coefficient_of_restitution, rk.rocking_spectrum, rk.fragility, studies.fragility_analysis, studies.boundary,
-    studies.refined_map, studies.compare_code_methods, edge_coefficient, impact_in_space,
+    studies.refined_map, decision.compare_code_methods, edge_coefficient, impact_in_space,
 )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ def moves(body, settings, friction=None):
 """
 
 
-@pytest.mark.parametrize(("name", "count"), [("studies/map.py", 2), ("dynamics/hull/mechanics.py", 0)])
+@pytest.mark.parametrize(("name", "count"), [("studies/map.py", 2), ("dynamics/frictional/mechanics.py", 0)])
 def test_a_second_choice_of_mechanics_is_seen(name, count, tmp_path):
     """Negative control: each of the three questions is found twice in a study, and allowed where a mechanics asks."""
     path = tmp_path / "rocking" / name

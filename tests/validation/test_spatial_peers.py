@@ -24,8 +24,8 @@ from benchmarks.spatial_friction import demands
 from benchmarks.spatial_mujoco import Contact
 from benchmarks.spatial_tracks import measured, track_of, windows
 
-from rocking.dynamics.space import attitude
-from rocking.dynamics.space.impact_laws import law_of
+from rocking.dynamics.rolling import attitude
+from rocking.dynamics.rolling.impact_laws import law_of
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 

@@ -16,9 +16,9 @@ import numpy as np
 
 import rocking as rk
 from rocking.dynamics.plane import fast_engine as plane_engine
-from rocking.dynamics.space import SpatialBody, SpatialStart
-from rocking.dynamics.space import fast_engine as space_engine
-from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.rolling import SpatialBody, SpatialStart
+from rocking.dynamics.rolling import fast_engine as space_engine
+from rocking.dynamics.rolling.batch import batch_in_space
 from rocking.motions.filters import geometric
 from rocking.restitution.bed import ContactBed, KelvinVoigt
 

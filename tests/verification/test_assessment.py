@@ -5,10 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking as rk
-from rocking.assessment._assess import choices
 from rocking.bodies.solid import Solid, box
 from rocking.conventions import g
-from rocking.studies.remedies import (
+from rocking.decision.assessment._assess import choices
+from rocking.decision.remedies import (
     BISECTIONS,
     DAMPING,
     PERIODS,

@@ -10,9 +10,9 @@ from random_cases import noise_motion, section
 from scipy.integrate import solve_ivp
 
 import rocking as rk
-from rocking.dynamics.contact import GroundContact
-from rocking.dynamics.contact.base import BOTH, RIGHT, ContactState, PlaneBase, along, away, kinetic
-from rocking.dynamics.contact.impact_resolution import Struck, impact_of, shock, strike
+from rocking.dynamics.plane_frictional import GroundContact
+from rocking.dynamics.plane_frictional.base import BOTH, RIGHT, ContactState, PlaneBase, along, away, kinetic
+from rocking.dynamics.plane_frictional.impact_resolution import Struck, impact_of, shock, strike
 from rocking.outcome import Status
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")

@@ -7,9 +7,9 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
+from rocking.decision.code_methods import CODE_METHODS, compare_code_methods
+from rocking.decision.code_methods.methods import BodySides, Shaking
 from rocking.studies import MotionList, SyntheticSet, minimum_overturning_acceleration
-from rocking.studies.code_methods import CODE_METHODS, compare_code_methods
-from rocking.studies.code_methods.methods import BodySides, Shaking
 
 pytestmark = pytest.mark.verifies(room="studies")
 

@@ -8,8 +8,8 @@ import pytest
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional.body import HullBody
 from rocking.errors import InvalidValueError
 
 pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
@@ -67,7 +67,7 @@ def test_a_launched_body_flies_along_a_parabola(engine):
     assert found.impacts.size == 0
     body = HullBody.of(solid)
     first = found.trajectory.states[0]
-    axes = np.array(rk.dynamics.space.attitude.matrix(np.array(first.attitude)))
+    axes = np.array(rk.dynamics.rolling.attitude.matrix(np.array(first.attitude)))
     places = np.array(body.points) @ axes.T
     low = places[places[:, 2].argmin()]
     assert first.position[2] + low[2] == pytest.approx(0.05, abs=1e-12)
@@ -78,7 +78,7 @@ def test_a_launched_body_flies_along_a_parabola(engine):
     tensor = np.array(body.tensor)
 
     def momentum(state):
-        turned = np.array(rk.dynamics.space.attitude.matrix(np.array(state.attitude)))
+        turned = np.array(rk.dynamics.rolling.attitude.matrix(np.array(state.attitude)))
         return turned @ tensor @ np.array(state.spin)
 
     flying = [state for time, state in zip(found.trajectory.time, found.trajectory.states, strict=True) if time < 0.2]

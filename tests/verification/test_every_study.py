@@ -6,12 +6,12 @@ import pytest
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.campaigns.jobs import Job, JobFolder, analyses
+from rocking.decision.inventory import InventoryObject, assess
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.errors import InvalidValueError
 from rocking.motions import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
-from rocking.studies.inventory import InventoryObject, assess
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
 pytestmark = pytest.mark.verifies(room="studies")
 

@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 import pytest
 from random_cases import record
-from unit.studies.inventory.museum_list import LIST, write_museum_list
-from unit.studies.inventory.test_lists import open_document
+from unit.decision.inventory.museum_list import LIST, write_museum_list
+from unit.decision.inventory.test_lists import open_document
 from verification.record_mutations import mutated
 from verification.stated_by_headers import HEADERS
 from waiting import HANG
 
+from rocking.decision.inventory import read_inventory
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
-from rocking.studies.inventory import read_inventory
 
 pytestmark = pytest.mark.verifies(room="motions and records")
 

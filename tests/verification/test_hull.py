@@ -14,18 +14,18 @@ from scipy.spatial import ConvexHull
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull import motion as sliding_module
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, solve, valid
-from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import ZERO, HullGround, added, applied, back, cross, dot, frame, length, scaled
-from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.history import HullEventKind
-from rocking.dynamics.hull.motion import HullMode, State, energies, problem_of, standing, step
-from rocking.dynamics.hull.restitution import impulse_point
-from rocking.dynamics.hull.settings import HullSettings
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional import motion as sliding_module
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.contact_problem import HullContact, Problem, linear, solve, valid
+from rocking.dynamics.frictional.engine import HullEngine
+from rocking.dynamics.frictional.ground import ZERO, HullGround, added, applied, back, cross, dot, frame, length, scaled
+from rocking.dynamics.frictional.histories import hull_histories
+from rocking.dynamics.frictional.history import HullEventKind
+from rocking.dynamics.frictional.motion import HullMode, State, energies, problem_of, standing, step
+from rocking.dynamics.frictional.restitution import impulse_point
+from rocking.dynamics.frictional.settings import HullSettings
+from rocking.dynamics.rolling import SpatialBody
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
 from rocking.outcome import Outcome, Status
 

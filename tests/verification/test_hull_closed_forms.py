@@ -10,15 +10,26 @@ from scipy.spatial.transform import Rotation
 import rocking as rk
 from rocking.bodies.solid import Solid, box
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear, outline, solve, valid
-from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import HullGround, added, applied, back, cross, dot, frame, length, product, scaled
-from rocking.dynamics.hull.histories import hull_histories, results_of, start_of
-from rocking.dynamics.hull.history import HullHistory
-from rocking.dynamics.hull.motion import levelled, point_velocity, standing
-from rocking.dynamics.hull.settings import HullSettings
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.contact_problem import HullContact, Problem, linear, outline, solve, valid
+from rocking.dynamics.frictional.engine import HullEngine
+from rocking.dynamics.frictional.ground import (
+    HullGround,
+    added,
+    applied,
+    back,
+    cross,
+    dot,
+    frame,
+    length,
+    product,
+    scaled,
+)
+from rocking.dynamics.frictional.histories import hull_histories, results_of, start_of
+from rocking.dynamics.frictional.history import HullHistory
+from rocking.dynamics.frictional.motion import levelled, point_velocity, standing
+from rocking.dynamics.frictional.settings import HullSettings
 from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 

@@ -14,17 +14,17 @@ import rocking as rk
 from rocking.bodies.shapes import regular_polygon
 from rocking.bodies.solid import Part, Polyhedron, Solid, box, extrusion, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.contact_problem import HullContact, Problem, linear
-from rocking.dynamics.hull.engine import HullEngine
-from rocking.dynamics.hull.ground import HullGround, applied, cross, dot, frame, scaled
-from rocking.dynamics.hull.histories import hull_histories, start_of
-from rocking.dynamics.hull.history import HullEventKind
-from rocking.dynamics.hull.motion import State, energies, standing
-from rocking.dynamics.hull.restitution import impulse_point
-from rocking.dynamics.hull.settings import HullSettings
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.contact_problem import HullContact, Problem, linear
+from rocking.dynamics.frictional.engine import HullEngine
+from rocking.dynamics.frictional.ground import HullGround, applied, cross, dot, frame, scaled
+from rocking.dynamics.frictional.histories import hull_histories, start_of
+from rocking.dynamics.frictional.history import HullEventKind
+from rocking.dynamics.frictional.motion import State, energies, standing
+from rocking.dynamics.frictional.restitution import impulse_point
+from rocking.dynamics.frictional.settings import HullSettings
+from rocking.dynamics.rolling import SpatialBody
 from rocking.errors import PlausibilityWarning
 
 pytestmark = [

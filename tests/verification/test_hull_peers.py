@@ -13,8 +13,8 @@ from scipy import stats
 
 import rocking as rk
 from rocking.bodies.solid import Solid, box
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull.body import HullBody
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional.body import HullBody
 
 sys.path.append(str(Path(__file__).parents[2]))  # the time stepping lives beside the benchmarks
 
@@ -24,9 +24,9 @@ from benchmarks import hull_stepping, time_stepping
 from benchmarks.time_stepping import Bodies, Motion
 
 from rocking.dynamics import SpatialBody, SpatialStart
-from rocking.dynamics.hull.ground import HullGround
-from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.settings import HullSettings
+from rocking.dynamics.frictional.ground import HullGround
+from rocking.dynamics.frictional.histories import hull_histories
+from rocking.dynamics.frictional.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

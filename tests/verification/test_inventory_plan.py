@@ -8,18 +8,18 @@ import pytest
 
 from rocking import simulate, simulate_many
 from rocking.conventions import FEET
+from rocking.decision.inventory import InventoryObject, Thresholds, assess
+from rocking.decision.inventory.draws import Draws, restitutions, slenderest
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
+from rocking.decision.inventory.lights import Light
+from rocking.decision.inventory.plan import Planner, _Subject
+from rocking.decision.inventory.table import advice, plan_words
+from rocking.decision.remedies import changed
 from rocking.evidence import restitution_distribution
 from rocking.language import language
 from rocking.outcome import Outcome
 from rocking.restitution import ImpactGeometry
 from rocking.restitution.calibrated import KEPT, drawn, kept
-from rocking.studies.inventory import InventoryObject, Thresholds, assess
-from rocking.studies.inventory.draws import Draws, restitutions, slenderest
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.lights import Light
-from rocking.studies.inventory.plan import Planner, _Subject
-from rocking.studies.inventory.table import advice, plan_words
-from rocking.studies.remedies import changed
 
 pytestmark = pytest.mark.verifies(room="studies")
 

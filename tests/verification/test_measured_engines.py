@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
-from rocking.dynamics.space import SpatialStart
+from rocking.dynamics.rolling import SpatialStart
 from rocking.identification import ImpactTimes, RotationSeries, identify
 from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
 

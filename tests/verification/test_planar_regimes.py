@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.contact import (
+from rocking.dynamics.plane_frictional import (
     Regime,
     Start,
     analytic_regime,

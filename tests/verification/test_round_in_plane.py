@@ -11,13 +11,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking as rk
-from rocking.dynamics.hull import histories
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.ground import HullGround
-from rocking.dynamics.hull.histories import hull_histories
-from rocking.dynamics.hull.settings import HullSettings
-from rocking.dynamics.space import SpatialBody
-from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.frictional import histories
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.ground import HullGround
+from rocking.dynamics.frictional.histories import hull_histories
+from rocking.dynamics.frictional.settings import HullSettings
+from rocking.dynamics.rolling import SpatialBody
+from rocking.dynamics.rolling.batch import batch_in_space
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")

@@ -14,10 +14,10 @@ from random_cases import components, solid
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import SpaceBatchSettings
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, fast_engine, rolling
-from rocking.dynamics.space.batch import batch_in_space
-from rocking.dynamics.space.fast_engine import steps_of
-from rocking.dynamics.space.ground import ground_of
+from rocking.dynamics.rolling import SpatialBody, SpatialStart, attitude, fast_engine, rolling
+from rocking.dynamics.rolling.batch import batch_in_space
+from rocking.dynamics.rolling.fast_engine import steps_of
+from rocking.dynamics.rolling.ground import ground_of
 
 pytestmark = [
     pytest.mark.verifies(room="rocking in space"),

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, RoundBase, Solid, box, cylinder
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.restitution import position_on_base
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.restitution import position_on_base
+from rocking.dynamics.rolling import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import SpatialCalibrated, SpatialImpact, edge_coefficient, impact_in_space
 from rocking.restitution.space.calibrated import calibrated_position

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     ContactMode,
     SpatialBody,
     event_functions,
 )
-from rocking.dynamics.space.complementarity import SpatialState, of_impact
-from rocking.dynamics.space.impact_laws import law_of
+from rocking.dynamics.rolling.complementarity import SpatialState, of_impact
+from rocking.dynamics.rolling.impact_laws import law_of
 from rocking.outcome import Outcome, Status
 from rocking.restitution.space import spatial_models
 

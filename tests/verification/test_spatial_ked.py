@@ -12,8 +12,8 @@ import pytest
 import rocking as rk
 from rocking.bodies.solid import Corner, Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import SpatialBody, attitude
-from rocking.dynamics.space.impact_laws import law_of
+from rocking.dynamics.rolling import SpatialBody, attitude
+from rocking.dynamics.rolling.impact_laws import law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import (
     SpatialImpact,

@@ -10,8 +10,8 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.space import SpatialBody, SpatialStart, fast_engine, reference
-from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.rolling import SpatialBody, SpatialStart, fast_engine, reference
+from rocking.dynamics.rolling.batch import batch_in_space
 from rocking.restitution.space import edge_coefficient
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

@@ -11,8 +11,8 @@ import pytest
 from random_cases import components, solid
 
 import rocking as rk
-from rocking.dynamics.space import SpatialBody, fast_engine, reference
-from rocking.dynamics.space.batch import batch_in_space
+from rocking.dynamics.rolling import SpatialBody, fast_engine, reference
+from rocking.dynamics.rolling.batch import batch_in_space
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

@@ -10,12 +10,12 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     ContactMode,
     SpatialBody,
 )
-from rocking.dynamics.space.complementarity import SpatialState, of_impact
-from rocking.dynamics.space.impact_laws import law_of
+from rocking.dynamics.rolling.complementarity import SpatialState, of_impact
+from rocking.dynamics.rolling.impact_laws import law_of
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 

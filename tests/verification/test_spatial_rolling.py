@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.space.rolling import RollingFlow, value
+from rocking.dynamics.rolling.rolling import RollingFlow, value
 
 pytestmark = pytest.mark.verifies(room="rocking in space")
 

@@ -14,7 +14,7 @@ from scipy.integrate import trapezoid
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     SpatialBody,
     SpatialStart,
     attitude,
@@ -22,11 +22,11 @@ from rocking.dynamics.space import (
     event_functions,
     fast_engine,
 )
-from rocking.dynamics.space.batch import batch_in_space
-from rocking.dynamics.space.event_functions import Step
-from rocking.dynamics.space.fast_engine import steps_of
-from rocking.dynamics.space.ground import ground_of
-from rocking.dynamics.space.rolling import RollingFlow
+from rocking.dynamics.rolling.batch import batch_in_space
+from rocking.dynamics.rolling.event_functions import Step
+from rocking.dynamics.rolling.fast_engine import steps_of
+from rocking.dynamics.rolling.ground import ground_of
+from rocking.dynamics.rolling.rolling import RollingFlow
 from rocking.outcome import Outcome, Status
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     ContactMode,
     SpatialBody,
     attitude,

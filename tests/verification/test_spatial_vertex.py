@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking.bodies.solid import Corner
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import (
+from rocking.dynamics.rolling import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.space.impact_laws import law_of
-from rocking.dynamics.space.rolling import PivotFlow, value
+from rocking.dynamics.rolling.impact_laws import law_of
+from rocking.dynamics.rolling.rolling import PivotFlow, value
 from rocking.restitution.space import SpatialHousner, SpatialImpact
 
 pytestmark = pytest.mark.verifies(room="rocking in space")

@@ -12,7 +12,7 @@ from rocking.bodies.solid import Part, Solid, box
 from rocking.conventions import g
 from rocking.dynamics import HullSettings, SpatialBody, SpatialStart
 from rocking.dynamics.batch import Batch
-from rocking.dynamics.hull.restitution import RestitutionOnHull
+from rocking.dynamics.frictional.restitution import RestitutionOnHull
 from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.rows import Rows

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from rocking.assessment import BodyAssessment
     from rocking.cli.arguments import Arguments
+    from rocking.decision.assessment import BodyAssessment
+    from rocking.decision.code_methods import CalledSafe, CodeComparison
+    from rocking.decision.code_methods.methods import CodeMethod
     from rocking.spec.study import StudyProblem
-    from rocking.studies.code_methods import CalledSafe, CodeComparison
-    from rocking.studies.code_methods.methods import CodeMethod
 
 COUNT, SEED, LEVEL = 100, 1, "2"
 """Default number and seed of synthetic motions, and the level that they are scaled to."""
@@ -83,8 +83,8 @@ def code_checks(
     """Run `rocking code-checks`."""
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import TABLES
+    from rocking.decision.code_methods import compare_code_methods
     from rocking.motions.intensity import measure as measure_of
-    from rocking.studies.code_methods import compare_code_methods
 
     exports = Exports.of(output, EXPORTS)
     arguments = Arguments(context, *TABLES)
@@ -166,7 +166,7 @@ class CodesAnswer:
 
     def answer(self) -> Answer:
         """Return the result of each method for each body, and the excluded methods."""
-        from rocking.studies.code_methods import LEFT_OUT
+        from rocking.decision.code_methods import LEFT_OUT
 
         models = model_facts(self.result.restitution, self.others, _overturned)
         return self.result.answer() | {"left_out": LEFT_OUT, **models}
@@ -216,7 +216,7 @@ def _overturned(result: "CodeComparison") -> dict[str, Any]:
 
 def show_limits(page: Page, methods: "Iterable[CodeMethod]", result: "BodyAssessment | CodeComparison") -> None:
     """Write the reasons for empty rows, and the treatment of vertical motion by each method."""
-    from rocking.studies.code_methods.methods import VerticalMotion
+    from rocking.decision.code_methods.methods import VerticalMotion
 
     reasons = {name: reason for name, reason in result.outside.items() if reason}
     if reasons:

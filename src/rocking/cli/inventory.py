@@ -15,8 +15,8 @@ from rocking.cli.spelling import UsageError
 from rocking.spec.questions.inventory import InventoryTable
 
 if TYPE_CHECKING:
+    from rocking.decision.inventory.assessment import Assessment
     from rocking.spec.study import StudyProblem
-    from rocking.studies.inventory.assessment import Assessment
 
 _MOST_PLANNED, _MOST_OBJECTS = 3, 8  # printed without --details
 _MOST_REASONS = 5
@@ -127,7 +127,7 @@ def _write(assessment: "Assessment", targets: list[Path]) -> tuple[list[Path], l
 def _problem(context: typer.Context) -> "StudyProblem":
     from rocking.cli.arguments import Arguments
     from rocking.cli.study import family, in_lists, problem_of
-    from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED
+    from rocking.decision.inventory.hazard import COUNT, FAMILY, SEED
 
     arguments = Arguments(context, "motion", "settings", "inventory")
     options, named = arguments.options, arguments.options["motion"] or ()
@@ -158,15 +158,15 @@ class InventoryAnswer:
 
     def answer(self) -> Answer:
         """Return the ranked list, the plan of measures, and the basis of the assessment."""
-        from rocking.studies.inventory.table import answer_of
+        from rocking.decision.inventory.table import answer_of
 
         return answer_of(self.assessment)
 
     def show(self, page: Page) -> None:
+        from rocking.decision.inventory import table
+        from rocking.decision.inventory.lights import LIGHT_MARKS
         from rocking.dynamics.settings import NEVER_SLIDES
         from rocking.restitution.headline import headline
-        from rocking.studies.inventory import table
-        from rocking.studies.inventory.lights import LIGHT_MARKS
 
         assessment = self.assessment
         say, hazard, verdicts = table.words_of(assessment), assessment.hazard, assessment.verdicts
@@ -194,8 +194,8 @@ class InventoryAnswer:
         """Write one line per object, with the other models if they differ, and the advice with details."""
         from rich.text import Text
 
-        from rocking.studies.inventory import table
-        from rocking.studies.inventory.lights import LIGHT_MARKS
+        from rocking.decision.inventory import table
+        from rocking.decision.inventory.lights import LIGHT_MARKS
 
         assessment = self.assessment
         count = len(assessment.verdicts) if self.details else _MOST_OBJECTS
@@ -217,7 +217,7 @@ class InventoryAnswer:
 
     def _show_plan(self, page: Page, say: Any) -> None:
         """Write the first objects of the plan of measures."""
-        from rocking.studies.inventory import table
+        from rocking.decision.inventory import table
 
         plan = self.assessment.plan
         count = len(plan) if self.details else _MOST_PLANNED
@@ -231,9 +231,9 @@ class InventoryAnswer:
     def _show_details(self, page: Page, say: Any) -> None:
         """Write the definitions of the ratings, the sources, and the lines and statements of the list."""
         from rocking.cli.study import source_lines
+        from rocking.decision.inventory import table
+        from rocking.decision.inventory.lights import LIGHT_MARKS
         from rocking.motions.summary import summaries_of
-        from rocking.studies.inventory import table
-        from rocking.studies.inventory.lights import LIGHT_MARKS
 
         assessment = self.assessment
         for light, text in assessment.thresholds.sentences(say.code).items():

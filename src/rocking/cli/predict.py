@@ -16,13 +16,13 @@ from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
 from rocking.cli.study import source_lines
+from rocking.decision.prediction.likelihood import scale_words
 from rocking.errors import located
-from rocking.prediction.likelihood import scale_words
 from rocking.quantities import closely
 
 if TYPE_CHECKING:
-    from rocking.assessment import BodyAssessment
-    from rocking.prediction import Prediction
+    from rocking.decision.assessment import BodyAssessment
+    from rocking.decision.prediction import Prediction
     from rocking.spec.documents.prediction import AssessTable, PredictionDocument
     from rocking.spec.reading import InputFiles
 
@@ -256,7 +256,7 @@ class AssessmentAnswer:
         page.line("Causes, code methods, sliding and sources: --details    Report: -o report.pdf")
 
     def _show_details(self, page: Page) -> None:
-        from rocking.studies.code_methods import CODE_METHODS
+        from rocking.decision.code_methods import CODE_METHODS
 
         result = self.result
         page.rows(result.model_rows, (), _R, most=len(result.models) + 1, dense=False)

@@ -2,11 +2,8 @@ import rocking.outcome
 
 from ._simulate import free_rocking as free_rocking
 from ._simulate import simulate as simulate
-from .contact.base import Start as Start
-from .contact.response import ContactResponse as ContactResponse
-from .contact.settings import ContactSettings as ContactSettings
-from .hull.response import HullResponse as HullResponse
-from .hull.settings import HullSettings as HullSettings
+from .frictional.response import HullResponse as HullResponse
+from .frictional.settings import HullSettings as HullSettings
 from .impact_laws import ConstantRestitution as ConstantRestitution
 from .impact_laws import ImpactLaw as ImpactLaw
 from .impact_laws import RandomRestitution as RandomRestitution
@@ -15,13 +12,16 @@ from .many import simulate_many as simulate_many
 from .parameters import RockingParameters as RockingParameters
 from .parameters import RockingSide as RockingSide
 from .plane.settings import PlaneSettings as PlaneSettings
+from .plane_frictional.base import Start as Start
+from .plane_frictional.response import ContactResponse as ContactResponse
+from .plane_frictional.settings import ContactSettings as ContactSettings
 from .response import Response as Response
+from .rolling.attitude import SpatialStart as SpatialStart
+from .rolling.body import SpatialBody as SpatialBody
+from .rolling.response import SpatialResponse as SpatialResponse
+from .rolling.settings import SpaceBatchSettings as SpaceBatchSettings
+from .rolling.settings import SpaceSettings as SpaceSettings
 from .settings import Settings as Settings
-from .space.attitude import SpatialStart as SpatialStart
-from .space.body import SpatialBody as SpatialBody
-from .space.response import SpatialResponse as SpatialResponse
-from .space.settings import SpaceBatchSettings as SpaceBatchSettings
-from .space.settings import SpaceSettings as SpaceSettings
 
 Outcome = rocking.outcome.Outcome
 Status = rocking.outcome.Status

@@ -14,9 +14,9 @@ from rocking.motions.components import AnyMotion
 
 if TYPE_CHECKING:
     from rocking.bodies.solid import Solid
-    from rocking.dynamics.contact import ContactResponse, Start
-    from rocking.dynamics.hull.response import HullResponse
-    from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
+    from rocking.dynamics.frictional.response import HullResponse
+    from rocking.dynamics.plane_frictional import ContactResponse, Start
+    from rocking.dynamics.rolling import SpatialBody, SpatialResponse, SpatialStart
 
     BodyInSpace: TypeAlias = Solid | SpatialBody
 

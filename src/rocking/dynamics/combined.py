@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.base import Start, starts_of
 from rocking.dynamics.mechanics_base import Combinations, row_of
 from rocking.dynamics.parameters import COMPLEMENTARITY, is_none
+from rocking.dynamics.plane_frictional.base import Start, starts_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.components import in_plane

@@ -8,12 +8,12 @@ from typing import Any
 
 from rocking import conventions
 from rocking.bodies import Body
-from rocking.dynamics.contact.mechanics import PlaneContact
-from rocking.dynamics.hull.mechanics import HullRocking
+from rocking.dynamics.frictional.mechanics import HullRocking
 from rocking.dynamics.mechanics_base import Mechanics, in_space
 from rocking.dynamics.plane.mechanics import PlaneRocking
+from rocking.dynamics.plane_frictional.mechanics import PlaneContact
+from rocking.dynamics.rolling.mechanics import SpaceRocking
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space.mechanics import SpaceRocking
 from rocking.restitution.headline import label_of
 
 MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())

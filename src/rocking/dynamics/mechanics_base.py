@@ -207,7 +207,7 @@ class PlaneMechanics(Mechanics):
 
     def start_class(self) -> type:
         """Return the class of starts in a plane."""
-        from rocking.dynamics.contact.base import Start
+        from rocking.dynamics.plane_frictional.base import Start
 
         return Start
 
@@ -230,7 +230,7 @@ class SpatialMechanics(Mechanics):
 
     def start_class(self) -> type:
         """Return the class of starts in space."""
-        from rocking.dynamics.space.attitude import SpatialStart
+        from rocking.dynamics.rolling.attitude import SpatialStart
 
         return SpatialStart
 

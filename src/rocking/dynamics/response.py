@@ -30,10 +30,10 @@ from rocking.restitution.from_file import origin_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rocking.dynamics.contact import ContactResponse
     from rocking.dynamics.plane.dense_output import DenseOutput
     from rocking.dynamics.plane.energy_balance import GroundForces, ResponseEnergy
     from rocking.dynamics.plane.tangent import Tangent
+    from rocking.dynamics.plane_frictional import ContactResponse
 
 _ROUNDING = 1e-9
 
@@ -186,9 +186,9 @@ class Response(ResponseBase):
         InvalidValueError
             If the coefficient of restitution changes from impact to impact.
         """
-        from rocking.dynamics.contact.base import Start
-        from rocking.dynamics.contact.response import response_with_contact
-        from rocking.dynamics.contact.settings import ContactSettings
+        from rocking.dynamics.plane_frictional.base import Start
+        from rocking.dynamics.plane_frictional.response import response_with_contact
+        from rocking.dynamics.plane_frictional.settings import ContactSettings
 
         parameters, run = self.parameters, self.trajectory
         if parameters.law.kind:

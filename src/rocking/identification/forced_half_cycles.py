@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray, g
-from rocking.dynamics.contact.batch import module
 from rocking.dynamics.plane.equations import angular_acceleration, reactions
+from rocking.dynamics.plane_frictional.batch import module
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.identification.measurement import white_noise
 from rocking.motions.motion import GroundMotion

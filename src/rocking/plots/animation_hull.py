@@ -10,11 +10,11 @@ import numpy as np
 from rocking.bodies import Block, Section
 from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact import ContactResponse
-from rocking.dynamics.hull.body import HullBody
-from rocking.dynamics.hull.response import HullResponse
-from rocking.dynamics.space.attitude import matrix
-from rocking.dynamics.space.response import SpatialResponse
+from rocking.dynamics.frictional.body import HullBody
+from rocking.dynamics.frictional.response import HullResponse
+from rocking.dynamics.plane_frictional import ContactResponse
+from rocking.dynamics.rolling.attitude import matrix
+from rocking.dynamics.rolling.response import SpatialResponse
 from rocking.errors import InvalidValueError
 from rocking.plots.style import GREY, INK, PALE
 

@@ -4,13 +4,13 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import checks
 from rocking.conventions import g
+from rocking.decision.inventory.assessment import Assessment, Verdict
+from rocking.decision.inventory.lights import LIGHT_LETTERS, LIGHT_NAMES, Light
+from rocking.decision.inventory.table import words_of
 from rocking.errors import InvalidValueError
 from rocking.language import Language
 from rocking.plots.labels import plain, wrapped
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, in_journal_style, legend_below, new_figure, stroke
-from rocking.studies.inventory.assessment import Assessment, Verdict
-from rocking.studies.inventory.lights import LIGHT_LETTERS, LIGHT_NAMES, Light
-from rocking.studies.inventory.table import words_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
     Parameters
     ----------
     assessment : Assessment
-        Result of `rocking.studies.inventory.assess`.
+        Result of `rocking.decision.inventory.assess`.
     most : int
         Maximum number of plotted objects; the title contains the total number [-].
 
@@ -54,8 +54,8 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.studies.inventory import Inventory, InventoryObject, assess
-    >>> from rocking.studies.inventory.hazard import Hazard, IntensityLevel
+    >>> from rocking.decision.inventory import Inventory, InventoryObject, assess
+    >>> from rocking.decision.inventory.hazard import Hazard, IntensityLevel
     >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     >>> vase = InventoryObject(name="vase", width=0.12, depth=0.12, height=0.6)
     >>> figure = inventory_picture(assess(Inventory((vase,)), hazard))
@@ -91,7 +91,7 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
     Parameters
     ----------
     assessment : Assessment
-        Result of `rocking.studies.inventory.assess`.
+        Result of `rocking.decision.inventory.assess`.
 
     Returns
     -------
@@ -105,8 +105,8 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.studies.inventory import Inventory, InventoryObject, assess
-    >>> from rocking.studies.inventory.hazard import Hazard, IntensityLevel
+    >>> from rocking.decision.inventory import Inventory, InventoryObject, assess
+    >>> from rocking.decision.inventory.hazard import Hazard, IntensityLevel
     >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     >>> vases = [InventoryObject(name="vase", width=0.12, depth=0.12, height=h) for h in (0.3, 0.6)]
     >>> figure = inventory_distribution(assess(Inventory(tuple(vases)), hazard))

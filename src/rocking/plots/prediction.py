@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
-from rocking.assessment import BodyAssessment
 from rocking.conventions import percent
+from rocking.decision.assessment import BodyAssessment
+from rocking.decision.prediction import Prediction, Validation
 from rocking.plots.labels import plain, plain_log
 from rocking.plots.style import (
     COLORS,
@@ -21,7 +22,6 @@ from rocking.plots.style import (
     patch,
     stroke,
 )
-from rocking.prediction import Prediction, Validation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def prediction_picture(prediction: Prediction) -> "Figure":
     Parameters
     ----------
     prediction : Prediction
-        Result of `rocking.prediction.predict`.
+        Result of `rocking.decision.prediction.predict`.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def reliability_picture(validation: Validation) -> "Figure":
     Parameters
     ----------
     validation : Validation
-        Result of `rocking.prediction.score`.
+        Result of `rocking.decision.prediction.score`.
 
     Returns
     -------
@@ -135,7 +135,7 @@ def reliability_picture(validation: Validation) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.prediction import score
+    >>> from rocking.decision.prediction import score
     >>> pga = [1.0, 2.0, 3.0, 4.0]
     >>> validation = score([0.1, 0.4, 0.7, 0.9], [0, 0, 1, 1], ["a", "a", "b", "b"], pga=pga, pgv=pga)
     >>> [panel.get_xlabel() for panel in reliability_picture(validation).axes]

@@ -6,8 +6,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.dynamics.contact.response import ContactResponse
-from rocking.dynamics.contact.shenton import friction_demand, regime_map
+from rocking.dynamics.plane_frictional.response import ContactResponse
+from rocking.dynamics.plane_frictional.shenton import friction_demand, regime_map
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 from rocking.plots.style import (

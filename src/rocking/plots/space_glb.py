@@ -12,7 +12,7 @@ from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.surfaces import TriangleSurface, placed_points
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.response import HullResponse
+from rocking.dynamics.frictional.response import HullResponse
 from rocking.plots.animation_hull import HullScene
 from rocking.version import SOFTWARE
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.hull.ground import frame
-from rocking.dynamics.hull.response import HullResponse
-from rocking.dynamics.space.response import SpatialResponse
+from rocking.dynamics.frictional.ground import frame
+from rocking.dynamics.frictional.response import HullResponse
+from rocking.dynamics.rolling.response import SpatialResponse
 from rocking.outcome import ContactMode, Outcome
 from rocking.plots.style import DASHED, DOUBLE, GREY, INK, PALE, headline, in_journal_style, legend_above, new_figure
 

@@ -6,10 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rocking.assessment import BodyAssessment
-from rocking.assessment._assess import DIRECTIONS, POINTS, REACH
-from rocking.assessment.answer import StandingSolid, just_above
 from rocking.conventions import FEET
+from rocking.decision.assessment import BodyAssessment
+from rocking.decision.assessment._assess import DIRECTIONS, POINTS, REACH
+from rocking.decision.assessment.answer import StandingSolid, just_above
+from rocking.decision.code_methods import CODE_METHODS, LEFT_OUT
+from rocking.decision.prediction.likelihood import scale_words
+from rocking.decision.remedies import ASSUMED, CALIBRATED
 from rocking.dynamics import simulate
 from rocking.evidence.measurements import provenance
 from rocking.motions.components import leading
@@ -22,7 +25,6 @@ from rocking.plots.prediction import assessment_picture, prediction_picture
 from rocking.plots.response import response_picture
 from rocking.plots.solid import equilibria_picture
 from rocking.plots.spatial import spatial_picture
-from rocking.prediction.likelihood import scale_words
 from rocking.reports.body_blocks import repairs_of
 from rocking.reports.document import (
     Block,
@@ -39,8 +41,6 @@ from rocking.reports.document import (
 from rocking.reports.motion_sources import motion_sources, peak_display
 from rocking.reports.response_document import body_table
 from rocking.restitution import models
-from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
-from rocking.studies.remedies import ASSUMED, CALIBRATED
 from rocking.version import SOFTWARE
 
 _PLANE = "plane body"

@@ -2,9 +2,9 @@
 
 from functools import partial
 
+from rocking.decision.prediction import Prediction, Validation
+from rocking.decision.prediction.likelihood import scale_words
 from rocking.plots.prediction import prediction_picture, reliability_picture
-from rocking.prediction import Prediction, Validation
-from rocking.prediction.likelihood import scale_words
 from rocking.reports.body_blocks import body_blocks
 from rocking.reports.document import (
     Content,

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.assessment import BodyAssessment
+from rocking.decision.assessment import BodyAssessment
+from rocking.decision.prediction import Prediction
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.identification import Identification
-from rocking.prediction import Prediction
 from rocking.reports._assessment import assessment_content
 from rocking.reports._identification import identification_content, trials_content
 from rocking.reports._predictions import prediction_content, validation_content

@@ -3,23 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from rocking.conventions import g
-from rocking.language import Language
-from rocking.motions.summary import provenance_rows, summaries_of
-from rocking.reports.document import (
-    Block,
-    Cell,
-    Document,
-    Paragraph,
-    Picture,
-    ReportSection,
-    ReportTable,
-    software_and_data,
-    table,
-)
-from rocking.statistics.counts import share_interval
-from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
-from rocking.studies.inventory.lights import LIGHT_MARKS, Light
-from rocking.studies.inventory.table import (
+from rocking.decision.inventory.assessment import Assessment, DirectionResult, Verdict
+from rocking.decision.inventory.lights import LIGHT_MARKS, Light
+from rocking.decision.inventory.table import (
     DIRECTION_NAMES,
     PLAN_NOTE,
     advice,
@@ -37,6 +23,20 @@ from rocking.studies.inventory.table import (
     untranslated,
     words_of,
 )
+from rocking.language import Language
+from rocking.motions.summary import provenance_rows, summaries_of
+from rocking.reports.document import (
+    Block,
+    Cell,
+    Document,
+    Paragraph,
+    Picture,
+    ReportSection,
+    ReportTable,
+    software_and_data,
+    table,
+)
+from rocking.statistics.counts import share_interval
 
 MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
 """Colour of a rating; its letter and its word are next to it."""

@@ -8,13 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from rocking.errors import InvalidValueError, MissingExtraError, extra
-from rocking.motions.summary import provenance_rows, summaries_of
-from rocking.reports.document import render_pdf, write_html
-from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inventory_document
-from rocking.studies.inventory.assessment import Assessment
-from rocking.studies.inventory.lights import LIGHT_NAMES, Light
-from rocking.studies.inventory.table import (
+from rocking.decision.inventory.assessment import Assessment
+from rocking.decision.inventory.lights import LIGHT_NAMES, Light
+from rocking.decision.inventory.table import (
     COLUMNS,
     PLAN_NOTE,
     answer_of,
@@ -27,6 +23,10 @@ from rocking.studies.inventory.table import (
     stated,
     words_of,
 )
+from rocking.errors import InvalidValueError, MissingExtraError, extra
+from rocking.motions.summary import provenance_rows, summaries_of
+from rocking.reports.document import render_pdf, write_html
+from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inventory_document
 from rocking.tables import escaped
 from rocking.tables.table import writing, written_whole
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from rocking.answers import Display
+from rocking.decision.prediction import Prediction
 from rocking.motions.summary import MotionSummary, peak_names, provenance_rows
-from rocking.prediction import Prediction
 from rocking.quantities import QUANTITIES, Quantity, closely
 from rocking.reports.document import ReportTable, answer_table, table
 

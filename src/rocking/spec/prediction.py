@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body, Solid
+from rocking.decision.prediction import Prediction, predict
+from rocking.decision.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.errors import InvalidValueError, located
-from rocking.prediction import Prediction, predict
-from rocking.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import components_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles
 
 if TYPE_CHECKING:
-    from rocking.assessment import BodyAssessment
+    from rocking.decision.assessment import BodyAssessment
     from rocking.spec.documents.prediction import AssessTable, PredictedBody, PredictionDocument
 
 
@@ -44,7 +44,7 @@ class PredictionProblem:
         threads: int | None = None,
     ) -> "BodyAssessment":  # fmt: skip
         """Return the assessment of the body with the options of the table."""
-        from rocking.assessment import assess
+        from rocking.decision.assessment import assess
         from rocking.spec.restitution_tables import RestitutionTable
 
         ground = {"normal_restitution", "normal_restitution_law"}
@@ -80,7 +80,7 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
     ground = document.settings.model_dump(exclude_none=True, exclude={"engine"})
     options = {**document.predict.model_dump(exclude_none=True), **ground}
     if "pga" in options:
-        from rocking.studies.inventory.hazard import IntensityLevel
+        from rocking.decision.inventory.hazard import IntensityLevel
 
         options["pga"] = IntensityLevel.of("PGA", options["pga"]).value
     model = options.get("restitution")

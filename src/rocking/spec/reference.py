@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from rocking.bodies.formats import schema
+from rocking.decision.inventory import Thresholds
 from rocking.dynamics import ContactSettings, PlaneSettings, SpaceSettings
 from rocking.spec.documents.identification import IdentifyTable, MeasurementTable
 from rocking.spec.documents.prediction import AssessTable, PredictTable
@@ -23,7 +24,6 @@ from rocking.spec.questions import questions
 from rocking.spec.questions.inventory import ThresholdsTable
 from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 from rocking.spec.settings_tables import StudySettingsTable
-from rocking.studies.inventory import Thresholds
 
 _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "response": (ResponseTable, "`rocking simulate`"),

@@ -10,13 +10,13 @@ import numpy as np
 from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.formats import FORMATS
+from rocking.decision.prediction import Prediction, Validation, predict, score
+from rocking.decision.prediction._score import EVENTS, Outcomes, RefusedRow, Trial, column, is_outcomes
 from rocking.errors import InvalidValueError, RockingError, located
 from rocking.exported import Exported
 from rocking.messages import by_key
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
-from rocking.prediction import Prediction, Validation, predict, score
-from rocking.prediction._score import EVENTS, Outcomes, RefusedRow, Trial, column, is_outcomes
 from rocking.spec.bodies import any_body_of
 from rocking.spec.construction import motion_of
 from rocking.spec.prediction import options_of

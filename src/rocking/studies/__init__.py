@@ -1,4 +1,4 @@
-"""Many histories: overturning maps, rocking spectra, minimum accelerations, fragility, inventories, sensitivity."""
+"""Many histories: overturning maps, rocking spectra, minimum accelerations, fragility, sensitivity."""
 
 from lazy_loader import attach_stub
 

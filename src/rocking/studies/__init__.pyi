@@ -3,7 +3,6 @@ from ._rocking_spectrum import rocking_spectrum as rocking_spectrum
 from .adaptive_grid import refined_map as refined_map
 from .axis import axes as axes
 from .boundaries import boundary as boundary
-from .code_methods import compare_code_methods as compare_code_methods
 from .fragility import compare_measures as compare_measures
 from .fragility import fragility_analysis as fragility_analysis
 from .histories import Histories as Histories

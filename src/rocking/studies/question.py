@@ -17,9 +17,9 @@ from rocking.dynamics.mechanics import mechanics_of
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.rolling.body import SpatialBody
 from rocking.dynamics.rows import Rows
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.motions.components import Components, together
 from rocking.motions.motion import GroundMotion

@@ -5,7 +5,7 @@ import csv
 import numpy as np
 import pytest
 
-from rocking.studies.code_methods import CODE_METHODS, LEFT_OUT
+from rocking.decision.code_methods import CODE_METHODS, LEFT_OUT
 
 COMMAND = "code-checks"
 FAMILY = ("--synthetic", "firm-ground", "--count", 6, "--restitution", "housner")

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from unit.studies.inventory import museum_list
+from unit.decision.inventory import museum_list
 
 import rocking as rk
 from rocking.errors import InvalidValueError

@@ -9,7 +9,7 @@ from PIL import Image
 
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import box, extrusion
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.rolling import SpatialBody
 from rocking.restitution.space import edge_coefficient, impact_in_space
 
 COMMAND = "restitution"

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking.dynamics.space import SpatialResponse
+from rocking.dynamics.rolling import SpatialResponse
 from rocking.outcome import Status
 
 COMMAND = "simulate"

@@ -14,7 +14,7 @@ from scipy.io import loadmat
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.contact import Start
+from rocking.dynamics.plane_frictional import Start
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.outcome import ContactMode, Regime
 from rocking.quantities import QUANTITIES

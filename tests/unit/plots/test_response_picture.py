@@ -11,8 +11,8 @@ from matplotlib.text import Text
 import rocking as rk
 from rocking.bodies import Block
 from rocking.dynamics import SpatialStart, free_rocking, simulate
-from rocking.dynamics.contact import Regime, friction_demand
-from rocking.dynamics.space import SpatialBody
+from rocking.dynamics.plane_frictional import Regime, friction_demand
+from rocking.dynamics.rolling import SpatialBody
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions import GroundMotion
 from rocking.plots import (

@@ -12,7 +12,7 @@ from PIL import Image
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box
 from rocking.dynamics import SpatialBody
-from rocking.dynamics.space.attitude import matrix
+from rocking.dynamics.rolling.attitude import matrix
 from rocking.errors import InvalidValueError
 from rocking.plots.animation import page
 from rocking.plots.animation_hull import HullScene

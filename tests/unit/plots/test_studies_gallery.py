@@ -10,6 +10,8 @@ from scipy import stats
 
 import rocking as rk
 from rocking import conventions
+from rocking.decision.inventory import Inventory, InventoryObject, Thresholds, assess
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.errors import InvalidValueError
 from rocking.plots import (
     cloud_picture,
@@ -22,8 +24,6 @@ from rocking.plots import (
     transitions_of_many_picture,
 )
 from rocking.studies import SyntheticSet, boundary, fragility_analysis, map_sensitivity, refined_map
-from rocking.studies.inventory import Inventory, InventoryObject, Thresholds, assess
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
 AXES = ("frequency_ratio", np.linspace(0.5, 8.0, 16)), ("amplitude_ratio", np.linspace(1.0, 10.0, 13))

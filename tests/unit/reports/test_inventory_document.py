@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from rocking.decision.inventory import Thresholds, assess, parse_inventory
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
+from rocking.decision.inventory.table import as_csv
 from rocking.errors import MissingExtraError, RockingError
 from rocking.reports.document import render_html
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory, write_spreadsheet
-from rocking.studies.inventory import Thresholds, assess, parse_inventory
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.table import as_csv
 
 HOSTILE = '<script>alert(1)</script> #strong[x] $x$ \\ & *b* @cite ""'
 TEXT = f"""name;width_cm;depth_cm;height_cm;note;room

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import pytest
 
+from rocking.decision.inventory import Inventory, InventoryObject, assess, parse_inventory
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
+from rocking.decision.inventory.objects import NotAssessed
+from rocking.decision.inventory.table import answer_of
 from rocking.language import LANGUAGES, language, page_words
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import thumbnails, write_inventory, write_inventory_file
-from rocking.studies.inventory import Inventory, InventoryObject, assess, parse_inventory
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.objects import NotAssessed
-from rocking.studies.inventory.table import answer_of
 
 OBJECTS = (
     InventoryObject(name="Vase", width=0.2, depth=0.22, height=0.95, base_width=0.14, count=2, consequence="high",

@@ -11,11 +11,11 @@ import pytest
 
 import rocking as rk
 from rocking.campaigns.jobs import Job, JobFolder, export
+from rocking.decision.inventory import Inventory, InventoryObject, assess, parse_inventory
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.plots import inventory_distribution, inventory_picture
 from rocking.reports.inventory_document import MOST_DRAWN
 from rocking.reports.inventory_folder import write_inventory_file
-from rocking.studies.inventory import Inventory, InventoryObject, assess, parse_inventory
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
 LIST = """Inv.-Nr.;Objekt;Breite cm;Tiefe cm;Höhe cm;Bemerkung
 A-17;Vase;12;12;60;Fuß geklebt

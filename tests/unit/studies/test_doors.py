@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.decision.inventory import InventoryObject, Thresholds, assess
+from rocking.decision.inventory.hazard import Hazard
 from rocking.errors import InvalidValueError
 from rocking.statistics import fit_lognormal
 from rocking.studies import SyntheticSet, fragility_analysis, fragility_sensitivity
 from rocking.studies.fragility import model_of
-from rocking.studies.inventory import InventoryObject, Thresholds, assess
-from rocking.studies.inventory.hazard import Hazard
 
 pytest.importorskip("xarray")
 

@@ -6,14 +6,14 @@ import pytest
 import rocking as rk
 from rocking.app.studies.results import contours_of
 from rocking.conventions import DEFAULT_FRICTION, percent
+from rocking.decision.inventory import InventoryObject, assess
+from rocking.decision.inventory.hazard import Hazard
+from rocking.decision.inventory.table import sentence
 from rocking.dynamics.parameters import cut_words
-from rocking.dynamics.space.batch import SpatialBatch
+from rocking.dynamics.rolling.batch import SpatialBatch
 from rocking.outcome import Outcome, Status, contact_words, overturned
 from rocking.plots import falling_picture, rocking_spectrum_picture
 from rocking.studies import fragility_analysis
-from rocking.studies.inventory import InventoryObject, assess
-from rocking.studies.inventory.hazard import Hazard
-from rocking.studies.inventory.table import sentence
 from rocking.studies.minimum_acceleration import Cases, Effort, searched
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.decision.inventory import InventoryObject
+from rocking.decision.inventory.hazard import Hazard
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions import measure
 from rocking.studies import (
@@ -22,8 +24,6 @@ from rocking.studies import (
     rocking_spectrum,
 )
 from rocking.studies.fragility.subject import checked_levels, limit_states_of
-from rocking.studies.inventory import InventoryObject
-from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.sensitivity.restitutions import named_restitutions
 
 BLOCK = rk.Block(width=0.4, height=1.6)

@@ -27,7 +27,7 @@ def _imports() -> Iterator[None]:
     import rocking.spec.documents.prediction
 
     yield
-    import rocking.prediction
+    import rocking.decision.prediction
     import rocking.spec.construction
 
     yield

@@ -23,8 +23,8 @@ from rocking.tables import PIECE
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking.decision.inventory.assessment import Assessment
     from rocking.spec.study import StudyProblem
-    from rocking.studies.inventory.assessment import Assessment
 
 READ = ("outcome", "peak_rotation", "least_force")  # results for analyses and assessments: 17 bytes per history
 
@@ -108,7 +108,7 @@ def assessment(folder: JobFolder) -> "Assessment":
     Returns
     -------
     Assessment
-        The result of `rocking.studies.inventory.assess`.
+        The result of `rocking.decision.inventory.assess`.
 
     Raises
     ------

@@ -8,13 +8,13 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.combined import dataset_of, label_of, plane_inputs
-from rocking.dynamics.contact.base import Start, rocking_start
 from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
 from rocking.dynamics.mechanics_base import Combinations
 from rocking.dynamics.parameters import RockingParameters, sides_of
 from rocking.dynamics.plane.batch import RowsInPlane
 from rocking.dynamics.plane.fast_engine import instruction_set
 from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.plane_frictional.base import Start, rocking_start
 from rocking.dynamics.response import start_within
 from rocking.dynamics.rows import Rows, law_of_rows, run_rows
 from rocking.dynamics.settings import SHORTEST_STEP, thread_count

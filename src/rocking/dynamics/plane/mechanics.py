@@ -27,7 +27,7 @@ class PlaneRocking(PlaneMechanics):
         return rotation, angular_velocity  # their limits depend on the body
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
-        from rocking.dynamics.contact.base import rocking_start
+        from rocking.dynamics.plane_frictional.base import rocking_start
 
         begun = super().begun(start, rotation, angular_velocity)
         return begun if start is None else rocking_start(begun)

@@ -13,9 +13,9 @@ from rocking.spec.question import Progress, StudyQuestion
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from rocking.decision.inventory import Inventory, Thresholds
+    from rocking.decision.inventory.hazard import Hazard
     from rocking.spec.study import StudyProblem
-    from rocking.studies.inventory import Inventory, Thresholds
-    from rocking.studies.inventory.hazard import Hazard
     from rocking.studies.study_plan import Study
 
 
@@ -90,8 +90,8 @@ class InventoryQuestion(StudyQuestion):
         self, problem: "StudyProblem"
     ) -> "tuple[Inventory, Callable[[Progress], Hazard], Thresholds, Any]":  # fmt: skip
         """Return the objects, a function that computes the motions, the limits of the ratings, and the stated model."""
-        from rocking.studies.inventory import Thresholds, read_inventory
-        from rocking.studies.inventory.hazard import SEED, Hazard, IntensityLevel
+        from rocking.decision.inventory import Thresholds, read_inventory
+        from rocking.decision.inventory.hazard import SEED, Hazard, IntensityLevel
         from rocking.studies.motion_sets import SyntheticSet
 
         table, motions = self.inventory, problem.motions
@@ -125,7 +125,7 @@ class InventoryQuestion(StudyQuestion):
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
         """Return the `Assessment` of the list."""
-        from rocking.studies.inventory import assess
+        from rocking.decision.inventory import assess
 
         objects, hazard, limits, restitution = self.read(problem)
         settings = problem.settings
@@ -139,8 +139,8 @@ class InventoryQuestion(StudyQuestion):
 
         With friction or body files, the order is object, restitution model, motion, direction.
         """
-        from rocking.studies.inventory.assessment import DEFAULT_MODELS, assessment_plan
-        from rocking.studies.inventory.objects import DIRECTIONS
+        from rocking.decision.inventory.assessment import DEFAULT_MODELS, assessment_plan
+        from rocking.decision.inventory.objects import DIRECTIONS
         from rocking.studies.study_plan import Study, along, labels_along, motions_along
 
         objects, motions, limits, restitution = self.read(problem)

@@ -7,11 +7,11 @@ from campaign_jobs import flip
 from rocking import read_body, simulate
 from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
+from rocking.decision.inventory import Thresholds, assess, read_inventory
+from rocking.decision.inventory.hazard import Hazard, IntensityLevel
+from rocking.decision.inventory.table import answer_of
 from rocking.errors import InvalidValueError
 from rocking.motions.formats import read_motion
-from rocking.studies.inventory import Thresholds, assess, read_inventory
-from rocking.studies.inventory.hazard import Hazard, IntensityLevel
-from rocking.studies.inventory.table import answer_of
 
 OBJECTS = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,note
 tall vase,20,20,100,55,
@@ -165,7 +165,7 @@ def test_nothing_to_assess(job, tmp_path):
 
 def test_gravity_reaches_the_equations():
     """Closed form: b/h = 0.2 lifts at 0.2 of the gravity there is, so 0.3 g lifts on Earth and not at ten times g."""
-    from rocking.studies.inventory import InventoryObject
+    from rocking.decision.inventory import InventoryObject
 
     vase = InventoryObject(name="vase", width=0.2, depth=0.2, height=1.0)
     hazard = Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)

@@ -6,8 +6,8 @@ import pytest
 import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.space import SpatialBody
-from rocking.dynamics.space.impact_laws import ModelLaw, law_of
+from rocking.dynamics.rolling import SpatialBody
+from rocking.dynamics.rolling.impact_laws import ModelLaw, law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import SpatialImpact, SpatialModel, spatial_model, spatial_models
 

@@ -1,6 +1,0 @@
-"""Assessment of overturning: histories with all models, margins, a probability, code methods and measures."""
-
-from rocking.assessment._assess import assess
-from rocking.assessment.answer import BodyAssessment, ModelMargin
-
-__all__ = ["BodyAssessment", "ModelMargin", "assess"]

@@ -1,0 +1,5 @@
+"""How certain is a result, and what to do: predictions, assessments, inventories, code methods, retrofit measures."""
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

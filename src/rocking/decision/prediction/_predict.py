@@ -1,0 +1,289 @@
+"""`predict`: sample bodies from uncertain inputs, simulate them under all motions, and count the outcomes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body, Solid
+from rocking.conventions import FloatArray
+from rocking.decision.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
+from rocking.decision.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
+from rocking.dynamics.mechanics import mechanics_for
+from rocking.dynamics.settings import check_progress, thread_count
+from rocking.errors import InvalidValueError, RockingError
+from rocking.motions.pulse import Motion
+from rocking.motions.summary import summaries_of
+from rocking.statistics.counts import MIN_CLUSTERS, share_interval
+from rocking.statistics.shares import REPETITIONS, SaltelliDesign
+
+COUNT = 128
+SLIDING_BEYOND = 0.01
+"""Defaults: number of sampled bodies, and sliding distance that counts as sliding [m]."""
+
+PAIRS = 16
+CHANGE = 1e-6
+REPRODUCED = 0.01
+"""Pairs of histories under each motion, their relative difference in scale, and tolerance of their peaks [-]."""
+
+FIFTH = 0.2
+
+
+def predict(  # noqa: PLR0913 - each uncertain input is an argument
+    body: Body | Solid,
+    motions: Motion | Mapping[str, Motion] | Sequence[Any],
+    *,
+    restitution: Any = None,
+    friction: Any = None,
+    base: Any = None,
+    centre: Any = None,
+    polarity: Any = None,
+    azimuth: Any = None,
+    sliding_beyond: float = SLIDING_BEYOND,
+    pga: float | None = None,
+    count: int = COUNT,
+    contributions: bool = True,
+    seed: int = 0,
+    normal_restitution: float = 0.0,
+    normal_restitution_law: str = "newton",
+    gravity: float = conventions.g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Prediction:
+    """Return the probability that a body rocks, slides or overturns under motions.
+
+    Bodies are sampled from the uncertain inputs and simulated under each motion. The probability is the fraction of
+    bodies that overturn. An input is a number (fixed), a pair ``(low, high)`` (uniform), a sample of three or more
+    numbers or ``{"values": [..]}``, ``{"mean": .., "deviation": ..}`` (normal), ``{"median": .., "dispersion": ..}``
+    (lognormal), or a frozen distribution of `scipy.stats`. Omitted inputs are sampled from defaults, listed in
+    `Prediction.assumed`.
+
+    Parameters
+    ----------
+    body : Block, Section, MassPoints or Solid
+        Nominal body. A solid has contact at the vertices of its hull, in its stable pose.
+    motions : GroundMotion, Pulse, or mapping with x, y and z, or a sequence of them
+        Ground motions, equally likely. With a y component, the azimuth of the body is sampled.
+    restitution : str, RestitutionModel or input, optional
+        "measured" (default), the distribution of the published measurements with the scatter of single bodies; a
+        model or its name; a coefficient for both feet; ``{"left": .., "right": ..}``; or "complementarity", only the
+        contact laws at the corners. Solids: "measured", "housner-3d", "ked-3d" or a coefficient [-].
+    friction : input, optional
+        Coefficient of Coulomb friction; default: uniform, 0.3 to 0.8 [-].
+    base : input, optional
+        Inset of each foot from the nominal base, independent; default: up to 2 % of the base width. Solids: negative
+        values are the inset of the base corners, by default up to 1 % of the mean radius. Positive values are the
+        height of further contact points, by default up to 0.5 % of the centre height and 5 mm [m].
+    centre : input, optional
+        Factor on the height of the centre of mass; default: uniform, 0.97 to 1.03 [-].
+    polarity : input, optional
+        1 as recorded, -1 reversed; default: both, equally likely; plane bodies only [-].
+    azimuth : input, optional
+        Azimuth of the body's plane or x axis, from x towards y; default: uniform over all directions. Solids also with
+        one component [rad].
+    sliding_beyond : float
+        Sliding distance that counts as sliding [m].
+    pga : float, optional
+        Peak ground acceleration to which each motion is scaled; components are multiplied by the factor of the
+        stronger horizontal one [m/s2].
+    count : int
+        Number of sampled bodies, a power of two.
+    contributions : bool
+        If True, compute the contribution of each input to the variance. This adds ``count / 2`` bodies per input.
+    seed : int
+        Random seed; results do not depend on the number of threads.
+    normal_restitution, normal_restitution_law
+        Bounce of corners of plane bodies, as for `simulate`.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    threads : int, optional
+        Threads of the engine.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+
+    Returns
+    -------
+    Prediction
+        Probabilities with intervals, of all motions and of each; contributions of inputs; limits of predictability.
+
+    Raises
+    ------
+    InvalidValueError
+        If the body has another type, an input is outside its range, or no history has a result.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> pulses = [rk.pulses.sine(amplitude=a, period=0.8) for a in (3.0, 3.4, 5.0)]
+    >>> prediction = rk.predict(rk.Block(width=0.5, height=2.0), pulses, friction=(0.2, 0.4), count=64)
+    >>> prediction.chances["overturning"].per_motion.round(1).tolist()
+    [0.0, 0.7, 0.8]
+    """
+    check_progress(progress)
+    thread_count(threads)
+    inputs = {
+        "restitution": restitution, "friction": friction, "base": base, "centre": centre, "polarity": polarity,
+        "azimuth": azimuth,
+    }  # fmt: skip
+    half_count = checks.whole("count", count, 4, 1 << 24) // 2
+    min_sliding = checks.positive("sliding_beyond", sliding_beyond, "m")
+    motions = motion_sequence(motions, pga)
+    mechanics = _mechanics(body, motions, inputs, gravity, normal_restitution, normal_restitution_law)
+    design = SaltelliDesign(half_count, mechanics.widths, checks.whole("seed", seed))
+    points = design.points if contributions else design.points[: 2 * half_count]
+    results = _counted(mechanics, points, min_sliding, threads, progress)
+    sampled = {name: values[: 2 * half_count] for name, values in results.items() if name != "peak"}
+    failed = int(np.isnan(results["overturning"]).sum())
+    if np.isnan(results["overturning"]).all():
+        raise InvalidValueError("no history has a result; check the scale of the motion and its unit (m/s2)")
+    overturned = results["overturning"][: len(points)]
+    beside: dict[str, Chance] = {}
+    if restitution is None or (isinstance(restitution, str) and restitution in MEASURED):
+        for name in conventions.COMPARED_RESTITUTIONS:
+            try:
+                other_mechanics = _mechanics(
+                    body, motions, {**inputs, "restitution": name}, gravity, normal_restitution, normal_restitution_law
+                )
+            except RockingError:
+                continue  # the model does not apply to this body
+            other_results = _counted(
+                other_mechanics, points[:half_count, mechanics.widths["restitution"] :], min_sliding, threads, None, 0
+            )
+            if not np.isnan(other_results["overturning"]).all():
+                beside[name] = _chance(other_results["overturning"], design.seed)
+    return Prediction(
+        body=body,
+        motions=summaries_of(mechanics.motions),
+        inputs={name: uncertain.text for name, uncertain in mechanics.inputs.items()},
+        assumptions=mechanics.assumed,
+        fixed=mechanics.not_sampled,
+        sliding_beyond=min_sliding,
+        chances={name: _chance(values, design.seed) for name, values in sampled.items()},
+        contributions=design.shares(overturned) if contributions and not np.isnan(overturned).all() else {},
+        ends=_ends(mechanics, points[: 2 * half_count], overturned[: 2 * half_count]),
+        growth=_growth(results, len(points), mechanics.names),
+        outcomes=np.unique(results["overturning"][~np.isnan(results["overturning"])]).size,
+        count=2 * half_count,
+        histories=results["overturning"].size,
+        failed=failed,
+        seed=design.seed,
+        gravity=float(gravity),
+        beside=beside,
+    )
+
+
+def _mechanics(
+    body: Any,
+    motions: Any,
+    inputs: Mapping[str, Any],
+    gravity: float,
+    normal_restitution: float,
+    normal_restitution_law: str,
+) -> SampledBodies:
+    """Return the sampled bodies of the engine for a body."""
+    checks.of_kind("body", body, (Body, Solid), "a Block, Section, MassPoints or Solid")
+    if not mechanics_for(body, None, study=True).in_plane:
+        from rocking.decision.prediction.space import SampledInSpace
+
+        if normal_restitution:
+            raise InvalidValueError(
+                "{parameter} applies to plane bodies only, got {value}; 3D corners do not bounce",
+                parameter="normal_restitution", value=normal_restitution,
+            )  # fmt: skip
+        return SampledInSpace(body, motions, inputs, gravity)
+    from rocking.decision.prediction.plane import SampledInPlane, contact_settings
+
+    return SampledInPlane(body, motions, inputs, contact_settings(gravity, normal_restitution, normal_restitution_law))
+
+
+def _counted(
+    mechanics: SampledBodies,
+    points: FloatArray,
+    min_sliding: float,
+    threads: int | None,
+    progress: Callable[[int], None] | None,
+    pairs: int = PAIRS,
+) -> dict[str, FloatArray]:
+    """Return outcomes, shape (bodies, motions): all sample points, then the repeated points at a changed scale."""
+    repeated = points[:pairs]
+    factor = np.concatenate([np.ones(len(points)), np.full(len(repeated), 1.0 + CHANGE)])
+    columns: dict[str, list[FloatArray]] = {name: [] for name in ("uplift", "sliding", "overturning", "peak")}
+    for motion in range(len(mechanics.names)):
+        outcomes = mechanics.run(np.vstack([points, repeated]), motion, factor, threads)
+        slid = np.where(np.isnan(outcomes.sliding), np.nan, outcomes.sliding >= min_sliding)
+        for name, values in zip(columns, (outcomes.uplift, slid, outcomes.overturning, outcomes.peak), strict=True):
+            columns[name].append(values)
+        if progress is not None:
+            progress(factor.size)
+    return {name: np.column_stack(values) for name, values in columns.items()}
+
+
+def _chance(occurred: FloatArray, seed: int) -> Chance:
+    """Return the probability of an event from its occurrences, shape (bodies, motions)."""
+    valid = (~np.isnan(occurred)).sum(axis=0)
+    hits = np.nansum(occurred, axis=0)
+    fractions = np.where(valid > 0, hits / np.maximum(valid, 1), np.nan)
+    ends = np.array(
+        [share_interval(h, n) if n else (0.0, 1.0) for h, n in zip(hits.tolist(), valid.tolist(), strict=True)]
+    )
+    valid_fractions = fractions[valid > 0]
+    value = float(valid_fractions.mean())  # Eq. 259
+    # bodies are the same under all motions; the scatter of their means gives the number of independent histories
+    bodies = np.nanmean(occurred[~np.isnan(occurred).all(axis=1)][:, valid > 0], axis=1)
+    spread = float(bodies.var()) / bodies.size
+    trials = float(np.clip(value * (1.0 - value) / spread if spread else 0.0, bodies.size, occurred.size))
+    low, high = share_interval(value * trials, trials)  # Eq. 260
+    within = float(np.mean(valid_fractions * (1.0 - valid_fractions) / valid[valid > 0]))
+    between = (
+        max(float(valid_fractions.var(ddof=1)) - within, 0.0) ** 0.5 if valid_fractions.size > 1 else np.nan
+    )  # Eq. 261
+    wide_interval = (np.nan, np.nan)
+    if valid_fractions.size >= MIN_CLUSTERS:
+        random = np.random.default_rng(seed)
+        resampled = (
+            random.multinomial(
+                valid_fractions.size, np.full(valid_fractions.size, 1.0 / valid_fractions.size), size=REPETITIONS
+            )
+            @ valid_fractions
+            / valid_fractions.size
+        )
+        ends_of_means = np.quantile(resampled, (0.025, 0.975))
+        wide_interval = (min(low, float(ends_of_means[0])), max(high, float(ends_of_means[1])))
+    return Chance(value, low, high, between, *wide_interval, fractions, ends[:, 0], ends[:, 1])
+
+
+def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) -> dict[str, EndsOfRange]:
+    """Return the probability of overturning in the lowest and the highest fifth of each input's samples."""
+    values, by_input, column = mechanics.values(points), {}, 0
+    for name, width in mechanics.widths.items():
+        level = points[:, column : column + width].sum(axis=1)
+        column += width
+        order, size = np.argsort(level, kind="stable"), max(1, int(FIFTH * len(points)))
+        low, high = order[:size], order[-size:]
+        ends = [(float(values[name][end].mean()), _mean(overturned[end])) for end in (low, high)]
+        by_input[name] = EndsOfRange(*ends[0], *ends[1])
+    return by_input
+
+
+def _mean(occurred: FloatArray) -> float:
+    valid = occurred[~np.isnan(occurred)]
+    return float(valid.mean()) if valid.size else np.nan
+
+
+def _growth(results: Mapping[str, FloatArray], count: int, names: Sequence[str]) -> Growth:
+    """Return the effect of a relative change of 1e-6 on histories with rocking."""
+    pairs = len(results["peak"]) - count
+    (peak, uplift, overturned), (peak_scaled, _, overturned_scaled) = (
+        [results[name][rows] for name in ("peak", "uplift", "overturning")]
+        for rows in (slice(pairs), slice(count, None))
+    )
+    rocks = (uplift == 1.0) & np.isfinite(overturned) & np.isfinite(overturned_scaled)
+    largest = np.maximum(np.maximum(peak, peak_scaled), 1e-300)
+    difference = np.where(rocks, np.abs(peak - peak_scaled) / largest, 0.0)
+    not_overturned = rocks & (overturned == 0.0) & (overturned_scaled == 0.0)
+    diverged = rocks & ((overturned != overturned_scaled) | (not_overturned & (difference > REPRODUCED)))
+    growth = difference[not_overturned] / CHANGE
+    diverged_motions = tuple(name for name, is_diverged in zip(names, diverged.any(axis=0), strict=True) if is_diverged)
+    median = float(np.median(growth)) if growth.size else np.nan
+    return Growth(pairs, int(rocks.sum()), int(diverged.sum()), diverged_motions, len(names), median)

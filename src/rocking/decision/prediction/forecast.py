@@ -1,0 +1,340 @@
+"""Result of a prediction: probabilities with intervals, contributions of inputs, limits of predictability."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.answers import Answer, AnswerRows
+from rocking.conventions import FloatArray, percent
+from rocking.decision.prediction.likelihood import likelihood, scale_words
+from rocking.exported import Exported
+from rocking.messages import Message
+from rocking.motions.summary import MotionSummary, condition
+from rocking.quantities import with_units
+from rocking.statistics.shares import VarianceShare
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    from rocking.bodies import Body, Solid
+    from rocking.tables import Table
+
+_LIKELY = {
+    "uplift": "Rocking is {likelihood} {condition}: {probability}.",
+    "sliding": "Sliding by {distance:g} mm or more is {likelihood} {condition}: {probability}.",
+    "overturning": "Overturning is {likelihood} {condition}: {probability}.",
+}
+_PREDICTABLE = (
+    "Each response can be predicted. Of {rocking} pairs of histories with a difference of one part in a million in "
+    "scale, 0 have different outcomes or peaks that differ by more than 1 %."
+)
+_UNPREDICTABLE = (
+    "Under {motions} of {total} motions the response cannot be predicted, but its distribution can. Of {rocking} pairs "
+    "of histories with a difference of one part in a million in scale, {pairs} have different outcomes or peaks that "
+    "differ by more than 1 %."
+)
+_COMPARED = (
+    "With another restitution model and {count} of the {total} samples of the other inputs, overturning has "
+    "{probabilities}."
+)
+_AT_ENDS = (
+    "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Chance:
+    """Probability of an event with 95 % intervals [-]."""
+
+    value: float  # mean of all motions
+    low: float  # low, high: interval from the number of sampled bodies, under these motions
+    high: float
+    between: float  # standard deviation between motions, without sampling error; NaN for one motion
+    wide_low: float  # wide_low, wide_high: interval for other motions like these; NaN below five motions
+    wide_high: float
+    per_motion: FloatArray
+    per_motion_low: FloatArray
+    per_motion_high: FloatArray
+
+
+@dataclass(frozen=True)
+class EndsOfRange:
+    """Probability of overturning in the lowest and in the highest fifth of the samples of an input."""
+
+    low: float  # mean of the input in the lowest fifth
+    probability_low: float
+    high: float
+    probability_high: float
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Growth of a small difference: pairs of histories whose motions differ by one part in a million."""
+
+    pairs: int  # number of pairs under each motion
+    rocking: int  # number of pairs with rocking, of all motions
+    lost: int  # number of these with different outcomes, or peaks that differ by more than 1 %
+    motions_lost: tuple[str, ...]  # motions with such pairs
+    motions: int  # number of motions
+    median: float  # median ratio of the relative changes of peak and motion; NaN without rocking [-]
+
+    @property
+    def sentence(self) -> str:
+        """Predictability of responses as a sentence."""
+        if not self.rocking:
+            return "No pair of histories rocks; no difference between histories grows."
+        facts = {
+            "motions": len(self.motions_lost), "total": self.motions, "pairs": self.lost, "rocking": self.rocking,
+        }  # fmt: skip
+        return Message(_UNPREDICTABLE if self.lost else _PREDICTABLE, facts)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Prediction(Exported):
+    """Probabilities of rocking, sliding and overturning of a body with uncertain inputs.
+
+    Parameters
+    ----------
+    body : Block, Section, MassPoints or Solid
+        Nominal body.
+    motions : tuple of MotionSummary
+        Name, intensity, source and processing of each motion; all probabilities are conditional on these motions.
+    inputs : dict of str to str
+        Distribution or value of each input as text.
+    assumptions : dict of str to str
+        Reason of each default, by input; a sentence on no single input has an empty reason.
+    fixed : dict of str to str
+        Value and reason of each input with one value in all histories.
+    sliding_beyond : float
+        Sliding distance that counts as sliding [m].
+    chances : dict of str to Chance
+        Probabilities of uplift, sliding and overturning.
+    contributions : dict of str to VarianceShare
+        Contribution of each input, and of the motion as `case`, to the variance of overturning; empty if not computed.
+    ends : dict of str to EndsOfRange
+        Probability of overturning at the ends of each input.
+    growth : Growth
+        Growth of small differences.
+    outcomes : int
+        Number of different outcomes (1 or 2) of all histories, with those of the sensitivity analysis.
+    count, histories, failed : int
+        Bodies per motion, total number of histories, and number of histories without a result (not counted).
+    seed : int
+        Random seed.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    beside : dict of str to Chance
+        Probability of overturning with KED and with Housner's model, for half of the samples of the other inputs; with
+        the default restitution only.
+    """
+
+    body: "Body | Solid"
+    motions: tuple[MotionSummary, ...]
+    inputs: Mapping[str, str]
+    assumptions: Mapping[str, str]
+    fixed: Mapping[str, str]
+    sliding_beyond: float
+    chances: Mapping[str, Chance]
+    contributions: Mapping[str, VarianceShare]
+    ends: Mapping[str, EndsOfRange]
+    growth: Growth
+    outcomes: int
+    count: int
+    histories: int
+    failed: int
+    seed: int
+    gravity: float
+    beside: Mapping[str, Chance] = field(default_factory=dict)
+
+    @property
+    def ranked_contributions(self) -> AnswerRows:
+        """Contributions of the uncertain inputs to the variance of overturning, largest first."""
+        ordered = sorted(self.contributions.items(), key=lambda pair: -pair[1].total)
+        return AnswerRows.of_records(
+            {"input": "motion" if name == "case" else name, **vars(share)} for name, share in ordered
+        )
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Assumptions with their reasons, one sentence per assumption."""
+        return tuple(_reasoned(name, reason) if reason else name for name, reason in self.assumptions.items())
+
+    @property
+    def assumed_values(self) -> tuple[str, ...]:
+        """Assumed inputs with their values, without the reasons."""
+        return tuple(
+            Message("{name}: {value}", {"name": Message(name), "value": self.inputs[name]}) if reason else name
+            for name, reason in self.assumptions.items()
+        )
+
+    @property
+    def not_sampled(self) -> tuple[str, ...]:
+        """Inputs with one value in all histories and their reasons, one sentence per input."""
+        return tuple(_reasoned(name, reason) for name, reason in self.fixed.items())
+
+    @property
+    def condition(self) -> str:
+        """Motions and their intensity, the condition of all probabilities, as text."""
+        return condition(self.motions)
+
+    @property
+    def repairs(self) -> tuple[str, ...]:
+        """Repairs of the mesh of the body as text; none for a plane body."""
+        return tuple(getattr(self.body, "repairs", ()))
+
+    @property
+    def verdict(self) -> str:
+        """Likelihood and probability of overturning, with its condition."""
+        return self._sentence("overturning")
+
+    @property
+    def decides(self) -> str:
+        """Reason for missing contributions to the variance; empty if there are contributions."""
+        if any(share.total for share in self.contributions.values()):
+            return ""
+        if self.outcomes == 1:
+            return "All histories have the same outcome; no input contributes to the variance."
+        if self.contributions:
+            return "Too few histories differ in their outcome to compute contributions to the variance."
+        return "Contributions to the variance were not computed."
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Verdict, other probabilities, effects of inputs, and predictability."""
+        chance = self.chances["overturning"]
+        sentences = [self.verdict]
+        if not math.isnan(chance.wide_low):
+            interval = _between(chance.wide_low, chance.wide_high)
+            sentences.append(
+                Message("For other motions like these the interval is {interval}.", {"interval": interval})
+            )
+        sentences += [self._sentence(event) for event in ("uplift", "sliding")]
+        if self.beside:
+            others = [
+                Message("{probability} with {model}", {"probability": _of(item), "model": name})
+                for name, item in self.beside.items()
+            ]
+            first = others[0]
+            for other in others[1:]:
+                first = Message("{first} and {second}", {"first": first, "second": other})
+            facts = {"count": self.count // 2, "total": self.count, "probabilities": first}
+            sentences.append(Message(_COMPARED, facts))
+        ranked = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
+        for name, item in ranked[:2]:
+            if item.probability_low != item.probability_high:
+                low, high = percent(item.probability_low), percent(item.probability_high)
+                facts = {"input": Message(name), "low": low, "high": high, "lower": item.low, "higher": item.high}
+                sentences.append(Message(_AT_ENDS, facts))
+        sentences.append(self.growth.sentence)
+        if self.failed:
+            text = "{count} of {total} histories have no result and do not count."
+            sentences.append(Message(text, {"count": self.failed, "total": self.histories}))
+        return tuple(sentences)
+
+    def _sentence(self, event: str) -> str:
+        chance = self.chances[event]
+        same_motions = Message("given the same motion" if len(self.motions) == 1 else "given the same motions")
+        facts = {
+            "likelihood": likelihood(chance.low, chance.high),
+            "condition": self.condition if event == "overturning" else same_motions,
+            "distance": 1000.0 * self.sliding_beyond,
+            "probability": _of(chance),
+        }
+        return Message(_LIKELY[event], facts)
+
+    def __str__(self) -> str:
+        not_sampled = (f"not sampled: {text}" for text in self.not_sampled)
+        return "\n".join([*self.sentences, *(f"assumed: {text}" for text in self.assumed), *not_sampled, scale_words()])
+
+    __repr__ = __str__
+
+    def answer(self) -> Answer:
+        """Return all results.
+
+        Returns
+        -------
+        Answer
+            Values by name; NaN without a value.
+        """
+        plain = ("verdict", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs", "decides",
+                 "count", "histories", "failed", "seed", "gravity")  # fmt: skip
+        return Answer({
+            **{name: getattr(self, name) for name in plain},
+            "sentences": list(self.sentences),
+            "likelihood": {name: likelihood(item.low, item.high) for name, item in self.chances.items()},
+            "likelihood_scale": scale_words(),
+            "body": repr(self.body),
+            "motions": [item.answer() for item in self.motions],
+            "software": SOFTWARE,
+            "probability": {name: vars(chance) for name, chance in self.chances.items()},
+            "beside": {name: vars(chance) for name, chance in self.beside.items()},
+            "contributions": {_input_name(name): asdict(share) for name, share in self.contributions.items()},
+            "ends": {
+                name: {
+                    "input_low": item.low, "input_high": item.high, "probability_low": item.probability_low,
+                    "probability_high": item.probability_high,
+                }
+                for name, item in self.ends.items()
+            },
+            "growth": {
+                "pairs": self.growth.pairs, "pairs_rocking": self.growth.rocking, "pairs_apart": self.growth.lost,
+                "motions_apart": self.growth.motions_lost, "motions": self.growth.motions,
+                "relative_change": self.growth.median, "sentence": self.growth.sentence,
+            },
+        })  # fmt: skip
+
+    def exported(self) -> "Table":
+        """Return a table with one row per motion, and a table of the inputs."""
+        from rocking.tables import Column, Table, text_array
+
+        columns = {
+            "motion": Column(text_array([motion.name for motion in self.motions]), "", "name of the motion"),
+            "support": Column(text_array([motion.support for motion in self.motions]), "", "ground, or the floor"),
+            "peak_acceleration": Column(
+                np.array([motion.peak for motion in self.motions]), "m/s2", "peak acceleration"
+            ),
+            "peak_velocity": Column(
+                np.array([motion.peak_velocity for motion in self.motions]), "m/s", "peak velocity"
+            ),
+            "provenance": Column(
+                text_array(["; ".join(motion.provenance) for motion in self.motions]), "", "source and processing steps"
+            ),
+        }
+        for name, chance in self.chances.items():
+            for end, meaning in (("", "probability of {}"), ("_low", "2.5 % of it"), ("_high", "97.5 % of it")):
+                values = getattr(chance, f"per_motion{end}")
+                columns[f"{name}{end}"] = Column(values, "1", meaning.format(name))
+        names = list(dict.fromkeys([*self.inputs, *self.contributions]))
+        beside = {"name": Column(text_array(list(map(_input_name, names))), "", "uncertain input")}
+        nothing = VarianceShare(*[0.0 if self.contributions else math.nan] * 6)
+        for key, meaning in (("first", "first-order index of overturning"), ("total", "total index of overturning")):
+            for end in ("", "_low", "_high"):
+                values = [getattr(self.contributions.get(name, nothing), f"{key}{end}") for name in names]
+                beside[f"{key}{end}"] = Column(np.array(values), "1", meaning)
+        provenance = {
+            "software": SOFTWARE, "body": repr(self.body), "verdict": self.verdict,
+            "assumed": "; ".join(self.assumed), "not_sampled": "; ".join(self.not_sampled),
+            "repairs": "; ".join(self.repairs), "likelihood_scale": scale_words(), "seed": self.seed,
+            "sliding_beyond": self.sliding_beyond,
+            **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
+        }  # fmt: skip
+        return Table("motion", columns, with_units(provenance), {"input": Table("input", beside)})
+
+
+def _reasoned(name: str, reason: str) -> str:
+    return Message("{name}: {reason}", {"name": Message(name), "reason": reason})
+
+
+def _between(low: float, high: float) -> str:
+    return Message("{low} to {high}", {"low": percent(round(low, 3)), "high": percent(round(high, 3))})
+
+
+def _of(chance: Chance) -> str:
+    facts = {"value": percent(round(chance.value, 4)), "interval": _between(chance.low, chance.high)}
+    return Message("probability {value} (95 % interval {interval})", facts)
+
+
+def _input_name(name: str) -> str:
+    return "motion" if name == "case" else name

@@ -1,0 +1,114 @@
+"""Rigid body on the vertices of its convex hull: vertices, mass, centre of mass and inertia."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies.equilibria.polytope import Polytope, polytope
+from rocking.bodies.solid import Base, Solid
+from rocking.conventions import FloatArray
+from rocking.dynamics.frictional.ground import Frame, Vector, dot, length
+from rocking.dynamics.rolling.body import SpatialBody, checked_inertia
+from rocking.errors import GeometryError, InvalidValueError
+from rocking.portable import inverse
+
+
+@dataclass(frozen=True, eq=False)
+class HullBody:
+    """Rigid body with contact at the vertices of its convex hull.
+
+    >>> from rocking.bodies.solid import box
+    >>> cube = HullBody.of(Solid(box(1.0, 1.0, 1.0)))
+    >>> len(cube.points), len(cube.hull.normals), cube.size == 0.75**0.5
+    (8, 6, True)
+    """
+
+    vertices: FloatArray  # points of the body; points inside the hull or a facet are ignored [m]; shape (k, 3)
+    mass: float  # [kg]
+    centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
+    inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)
+    solid: Solid | None = None  # distribution of mass, for laws that need it, in the axes of the vertices
+    footprint: Base | None = None  # base of the upright body, in the axes of the vertices
+    hull: Polytope = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", checks.finite("vertices", self.vertices, "m", (None, 3)))
+        object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
+        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "m", (3,)))
+        object.__setattr__(self, "inertia", checked_inertia(self.inertia))
+        object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
+        if not self.hull.heights.min() > 0.0:
+            raise GeometryError(
+                "the centre of mass {centre} m must be inside the hull of the vertices, got {outside:.3g} m outside",
+                parameter="centre", centre=self.centre.tolist(), outside=float(-self.hull.heights.min()),
+                hint="check axes and units",
+            )  # fmt: skip
+
+    @classmethod
+    def of(cls, solid: Any) -> "HullBody":
+        """Return a solid, or a body with a distribution of mass, as a `HullBody`."""
+        # round faces have 360 corners, as in `Solid.equilibria`
+        if isinstance(solid, cls):
+            return solid
+        if isinstance(solid, SpatialBody) and solid.matter is not None:
+            solid = solid.matter()[0]
+        if not isinstance(solid, Solid):
+            raise InvalidValueError(
+                "with friction a body must be {allowed}, got {type}, which has a base but no hull",
+                parameter="body", allowed="a Solid, a box or a cylinder", type=type(solid).__name__,
+            )  # fmt: skip
+        moments = solid.local_moments
+        points = solid.equilibria().hull_vertices - solid.origin
+        mass_distribution = solid if solid.known is None else None  # stated moments have no distribution of mass
+        return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
+
+    @cached_property
+    def points(self) -> list[Vector]:
+        """Vertices relative to the centre of mass [m]."""
+        return [(float(x), float(y), float(z)) for x, y, z in self.hull.vertices]
+
+    @cached_property
+    def compliance(self) -> Frame:
+        """Inverse of the inertia tensor [1/(kg m2)]."""
+        return _rows(inverse(self.inertia))
+
+    @cached_property
+    def tensor(self) -> Frame:
+        """Inertia tensor about the centre of mass [kg m2]."""
+        return _rows(0.5 * (self.inertia + self.inertia.T))
+
+    @cached_property
+    def size(self) -> float:
+        """Largest distance of a vertex from the centre of mass [m]."""
+        return max(length(p) for p in self.points)
+
+    @cached_property
+    def facets(self) -> list[Vector]:
+        """Facets as points of the dual hull: outward unit normals over distances from the centre [1/m]."""
+        return [(float(x), float(y), float(z)) for x, y, z in self.hull.normals / self.hull.heights[:, None]]
+
+    @cached_property
+    def poses(self) -> list[int]:
+        """Index of the stable pose to which each facet leads; the pose with the lowest centre is 0."""
+        hull = self.hull
+        order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
+        number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}
+        return [number[facet] for facet in hull.rolls.tolist()]
+
+    @cached_property
+    def base(self) -> int:
+        """Index of the facet on which the body stands in the axes of its vertices, before the tilt."""
+        return self.under((0.0, 0.0, 1.0))
+
+    def under(self, up: Vector) -> int:
+        """Return the index of the facet under the centre of mass."""
+        # up: vertical in body axes [-]
+        return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
+
+
+def _rows(matrix: FloatArray) -> Frame:
+    a, b, c = (tuple(float(v) for v in row) for row in matrix)
+    return a, b, c  # type: ignore[return-value]
