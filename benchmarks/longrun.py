@@ -14,7 +14,7 @@ import rocking as rk
 from benchmarks import longrun_peer, table
 from benchmarks.table import Row
 from benchmarks.timing import cpu_seconds
-from rocking.studies.longrun import HarmonicRocking, basin, over_periods, start_states, symmetric_orbit
+from rocking.studies.longrun import HarmonicRocking, over_periods, start_states, symmetric_orbit
 
 CYCLES, ORBITS, REPEATS = 2000, 8, 5
 GOALS = {0: 150_000, 1: 100_000, 2: None}
@@ -31,7 +31,8 @@ def a_system() -> HarmonicRocking:
 def starts(system: HarmonicRocking) -> np.ndarray:
     """States near the symmetric orbit, after an impact."""
     orbit = symmetric_orbit(system)
-    return start_states(system, orbit.phase + np.linspace(0.0, 0.05, ORBITS), [orbit.speed])
+    phases = orbit.phase + np.linspace(0.0, 0.05, ORBITS)
+    return start_states(system, np.column_stack([phases, np.full(ORBITS, orbit.speed)]))
 
 
 def middle(work: Callable[[], object]) -> float:
@@ -101,7 +102,8 @@ def study_rows() -> list[Row]:
         measured = f"{spent:.1f} s CPU; {lost:.0%} overturn"
         found.append(Row(what, "-", measured, f"< {limit:.0f} s", spent < limit))
     system = HarmonicRocking.of_ratios(rk.Block(width=1.0, height=4.0), 0.9, 3.0, restitution=0.9, linear=True)
-    spent = middle(lambda: basin(system, check=False))
+    options: dict[str, Any] = {"check": False, "linear": True, "threads": 1}
+    spent = middle(lambda: rk.basin(system.body, system.excitation, 0.9, **options))
     found.append(Row("Slender basin of 100 x 100", "-", f"{spent:.2f} s CPU", "< 1.2 s", spent < 1.2))
     return found
 

@@ -12,11 +12,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rocking as rk
 from rocking import Block, MassPoints, simulate
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.motions.pulse import Sinusoids
-from rocking.studies.longrun.attractors import KINDS, bifurcation, poincare, start_states
-from rocking.studies.longrun.basins import basin, ends_of, uncertainty_exponent
+from rocking.studies.longrun.attractors import KINDS, diagram, start_states
+from rocking.studies.longrun.basins import (
+    basin_stability,
+    box_dimension,
+    cells,
+    checked_ends,
+    ends_of,
+    uncertainty_exponent,
+)
 from rocking.studies.longrun.exponents import lyapunov_exponents
 from rocking.studies.longrun.orbits import (
     OrbitNotFoundError,
@@ -67,6 +75,11 @@ def system_of(slenderness, amplitude, frequency, restitution, **options):
     return HarmonicRocking.of_ratios(body, amplitude, frequency, restitution=restitution, **options)
 
 
+def grid(phases, speeds):
+    """Return all combinations of phases and speeds, shape (2, combinations)."""
+    return np.stack(np.meshgrid(phases, speeds, indexing="ij")).reshape(2, -1)
+
+
 def is_kind(kind):
     """Return a test of the kind of a bifurcation."""
     return lambda item: item.kind == kind
@@ -115,6 +128,24 @@ def test_doubling_cascade_of_a_slender_body():
     assert values == pytest.approx(expected, abs=1e-9)
     gaps = np.diff(values[1:])
     assert gaps[:-1] / gaps[1:] == pytest.approx([4.781, 4.691], abs=1e-3)
+
+
+@pytest.mark.verifies("computed anew", "independent code of 40 digits", within="1e-9")
+def test_the_cascade_in_one_call():
+    """The branches of one call, and the orbits of a branch at a value, from below its fold to beyond its end."""
+    system = system_of(4, 1.2, 2.0, 0.5, linear=True)
+    options = {"limits": (0.05, 2.6), "restitution": 0.5, "doublings": 3, "points": 16, "linear": True}
+    found = rk.periodic_orbits(system.body, system.excitation, **options)
+    values = found["amplitude_ratio"].values[found["branch_point"].values > 1]
+    cascade = (1.827271179103310924, 2.312850976204278652, 2.394371332179993847, 2.411422145578383563)
+    assert values == pytest.approx(cascade, abs=1e-9)
+    branch = continue_orbit(symmetric_orbit(system), (0.0, 2.0), increasing=False)
+    upper, lower = branch.at(1.1)
+    assert (upper.system.amplitude_ratio, lower.system.amplitude_ratio) == pytest.approx((1.1, 1.1), rel=1e-12)
+    assert upper.speed == pytest.approx(symmetric_orbit(upper.system).speed, rel=1e-12)
+    assert upper.is_stable
+    assert not lower.is_stable
+    assert branch.at(0.6) == []
 
 
 @pytest.mark.verifies("computed anew", "independent code of 40 digits", within="1e-9")
@@ -276,7 +307,7 @@ def test_sum_rule_of_all_laws(linear):
     """Both exponents add up to the mean logarithm of the impacts' determinants, by foot and by speed."""
     for law in ({"left": 0.8, "right": 0.9}, BY_SPEED):
         system = HarmonicRocking.of_ratios(LEANING, 1.4, 2.5, restitution=law, linear=linear)
-        starts = start_states(system, np.linspace(0.1, 6.2, 6), [0.4, 0.8])
+        starts = start_states(system, np.transpose(grid(np.linspace(0.1, 6.2, 6), [0.4, 0.8])))
         result = over_periods(system, starts, settled=60, kept=100, vectors=2, most_impacts=500)
         alive = (result.ending == 0) & (result.rests == 0)
         assert alive.sum() >= 2
@@ -301,15 +332,16 @@ def test_laws_by_speed_in_all_functions():
     results = []
     for law in (0.9, flat, BY_SPEED, fine):
         system = HarmonicRocking.of_ratios(LEANING, 1.4, 2.5, restitution=law)
-        cells = basin(system, phases=12, speeds=12)
-        starts = start_states(system, [1.0, 4.5], [0.7])
-        diagram = bifurcation(system, [1.2, 1.4], starts=starts, cycles=(100, 130), exponents=True)
+        kinds = ends_of(system, *grid(*cells(12, 12, 2.0)))
+        starts = start_states(system, [[1.0, 0.7], [4.5, 0.7]])
+        systems = [system.changed("amplitude", value) for value in (1.2, 1.4)]
+        attractors = diagram(systems, np.stack([starts, starts]), cycles=(100, 130), exponents=True)
         exponents = lyapunov_exponents(system, starts=starts, settled=200, kept=100)
         near = symmetric_orbit(system_of(4, 1.4, 2.5, 0.9))
         orbit = find_orbit(system, near.phase, near.speed, impacts=2)
         fold = continue_orbit(orbit, ANYTHING, increasing=False, stop=is_kind("fold")).first("fold")
-        values = (fold.value, orbit.determinant, *exponents.by_orbit.ravel(), *diagram.impacts.values.ravel())
-        results.append((cells.kind.tolist(), values))
+        values = (fold.value, orbit.determinant, *exponents.by_orbit.ravel(), *attractors["impacts_per_period"].ravel())
+        results.append((kinds.tolist(), values))
     for first, second in ((0, 1), (2, 3)):
         assert results[first][0] == results[second][0]
         assert results[first][1] == pytest.approx(results[second][1], rel=1e-8)
@@ -445,9 +477,9 @@ def test_a_rest_erases_memory():
     result = lyapunov_exponents(system, starts=np.zeros((1, 3)), settled=100, kept=200)
     assert result.sticking == 1
     assert np.isneginf(result.by_orbit).all()
-    diagram = bifurcation(system, [1.1], cycles=(100, 200), exponents=True)
-    assert KINDS[int(diagram.kind[0, 0, 0])] == "sticking"
-    assert np.isneginf(diagram.exponent.item())
+    attractors = diagram([system], np.zeros((1, 1, 3)), cycles=(100, 200), exponents=True)
+    assert KINDS[attractors["attractor"].item()] == "sticking"
+    assert np.isneginf(attractors["exponent"].item())
 
 
 BASINS = {
@@ -463,12 +495,40 @@ BASINS = {
 def test_basins_cell_for_cell(case):
     """Counts of 10,000 cells over 120 impacts as by two programs; no cell changes with the step error."""
     (slenderness, amplitude, frequency, restitution, linear), counts = BASINS[case]
-    result = basin(system_of(slenderness, amplitude, frequency, restitution, linear=linear))
-    assert tuple(result.counts.values()) == (*counts, 0)
-    assert not result.is_uncertain.any()
-    fraction, low, high = result.stability()
+    system = system_of(slenderness, amplitude, frequency, restitution, linear=linear)
+    kinds, others = checked_ends(system, *grid(*cells(100, 100, 2.0)))
+    assert np.bincount(kinds, minlength=4).tolist() == [*counts, 0]
+    assert np.array_equal(kinds, others)
+    fraction, low, high = basin_stability(kinds)
     assert fraction == pytest.approx(1.0 - counts[0] / 1e4)
     assert low < fraction < high
+    assert math.isnan(box_dimension(np.ones((64, 64))))
+    assert 1.0 < box_dimension(kinds.reshape(100, 100)) < 2.0
+
+
+FIRST_OVERTURNING = {(4, "housner"): (1.04, 1.05), (4, "ked"): (1.02, 1.03), (8, "ked"): (1.0, 1.01)}
+
+
+@pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series", within="one amplitude")
+@pytest.mark.parametrize("case", FIRST_OVERTURNING)
+def test_amplitudes_and_phases_that_overturn_from_rest(case):
+    """The smallest amplitude that overturns a body from rest at phase 0; other phases as by the engine of records."""
+    slenderness, model = case
+    system = system_of(slenderness, 1.0, 2.0, model)
+    subject = (system.body, system.excitation, model)
+    row = rk.basin(*subject, amplitudes=FIRST_OVERTURNING[case], phases=[0.0], speeds=0, impacts=1000)
+    assert (row["final_state"].values.ravel() == 0).tolist() == [False, True]
+    amplitudes = np.array([0.9, 1.5, 2.5])
+    grid = rk.basin(*subject, amplitudes=amplitudes, phases=6, speeds=0, impacts=24)
+    assert grid["final_state"].dims == ("amplitude_ratio", "ground_phase", "speed_ratio")
+    for amplitude, kinds in zip(amplitudes, grid["final_state"].values[..., 0], strict=True):
+        other = system.changed("amplitude", amplitude)
+        for phase, kind in zip(grid["ground_phase"].values, kinds, strict=True):
+            wave = (other.excitation.amplitude, other.excitation.frequency, phase)
+            ground = Sinusoids("harmonic", (wave,), 12.0 * other.excitation.period, wave[0], wave[0], wave[1])
+            response = simulate(system.body, ground, model, duration=12.0 * other.excitation.period)
+            assert (response.outcome.value == "overturned") == (kind == 0)
+            assert kind == 1 or amplitude > 1.0  # without uplift the body stays at rest
 
 
 UNCERTAINTY = {
@@ -512,8 +572,9 @@ def test_the_orbit_to_hit_by_simulation():
         assert math.remainder(flight.phase[0] + (n + 1) * math.pi - phase, 2.0 * math.pi) == pytest.approx(
             0.0, abs=1e-11
         )
-    section = poincare(system, start_states(system, [orbit.phase], [orbit.speed]), cycles=2000, settled=0, at="impact")
-    speeds = np.abs(section.second[0, :3999]) * system.alpha
+    options = {"starts": [[orbit.phase, orbit.speed]], "cycles": (0, 2000), "at": "impact"}
+    section = rk.poincare(system.body, system.excitation, "housner", **options)
+    speeds = np.abs(section["velocity_ratio"].values[0, :3999]) * system.alpha
     assert np.abs(np.sort(speeds[-4:]) - np.sort([speed for _, speed in cycle])).max() < 1e-9
 
 
@@ -523,7 +584,7 @@ def test_engines_of_all_processors_agree():
     from rocking.dynamics import _longrun
 
     system = system_of(3, 1.7, 2.5, "housner")
-    starts = start_states(system, np.linspace(0.1, 6.0, 6), [0.2, 0.7])
+    starts = start_states(system, np.transpose(grid(np.linspace(0.1, 6.0, 6), [0.2, 0.7])))
     tables = {}
     for isa in ("plain", "avx2", "avx512"):
         results = np.full((len(starts), 9), np.nan)
@@ -549,6 +610,13 @@ def test_thresholds_in_closed_form():
     assert slender_thresholds(2, 0.5).heteroclinic == pytest.approx(1.386750490563072805, rel=1e-14)
     assert slender_thresholds(3, 0.9).heteroclinic == pytest.approx(0.5198752449100363446, rel=1e-14)
     assert slender_thresholds(2, 0.9).no_impact == pytest.approx(1.8007239305607457817, rel=1e-13)
+    assert slender_thresholds(5, 0.9).housner == pytest.approx(5.0990195135927848, rel=1e-14)  # unconservative
+    for frequency, restitution, amplitude in (
+        (1, 0.9, 1.13204711059768365), (2, 0.9, 1.22517942326831362), (3, 0.9, 1.403565355642782661),
+        (5, 0.9, 3.01859986087179637), (6, 0.9, 5.1641589274575678), (10, 1.0, 11.5999959514276214),
+    ):  # fmt: skip
+        assert slender_thresholds(frequency, restitution).one_impact == pytest.approx(amplitude, rel=1e-13)
+    assert math.isnan(slender_thresholds(8, 0.9).one_impact)
     near = slender_thresholds(3, 1.0 - 1e-6)
     assert near.melnikov == pytest.approx(near.heteroclinic, rel=1e-5)
 
@@ -600,7 +668,7 @@ def test_bad_input_is_refused():
     with pytest.raises(ValueError, match="settled"):
         lyapunov_exponents(system, settled=5)
     with pytest.raises(ValueError, match="starts"):
-        bifurcation(system, [1.0, 2.0], starts=np.zeros((2, 2)))
+        rk.bifurcation(system.body, system.excitation, "amplitude", [1.0, 2.0], starts=np.zeros((2, 3)))
 
 
 @pytest.mark.verifies("closed form", "the fold of the branch")
@@ -609,10 +677,11 @@ def test_sweeps_with_memory_show_hysteresis():
     system = system_of(4, 1.0, 3.0, "ked")
     values = np.linspace(0.04, 1.2, 30)
     orbit = symmetric_orbit(system.changed("amplitude", 1.2))
-    starts = start_states(orbit.system, [orbit.phase], [orbit.speed])
-    down = bifurcation(system, values, starts=starts, memory="down", cycles=(200, 130))
-    rocking = values[down.impacts[0, :, 0].values > 1.9]
+    subject = (system.body, system.excitation, "amplitude")
+    options = {"restitution": "ked", "exponents": False, "cycles": (200, 130)}
+    down = rk.bifurcation(*subject, values, starts=[[orbit.phase, orbit.speed]], sweeps=("down",), **options)
+    rocking = values[down["impacts_per_period"].values[0, :, 0, 0] > 1.9]
     assert rocking.min() == pytest.approx(0.0622597, abs=values[1] - values[0])
-    rest = bifurcation(system, values[values < 1.0], cycles=(10, 130))
-    assert set(rest.kind.values.ravel()) == {KINDS.index("rest")}
+    rest = rk.bifurcation(*subject, values[values < 1.0], starts=1, **options)
+    assert set(rest["attractor"].values.ravel()) == {KINDS.index("rest")}
     assert over_periods(system, np.zeros((1, 3))).peak[0] == 0.0

@@ -17,19 +17,18 @@ from rocking.conventions import FloatArray
 from rocking.evidence.claims_of_errors import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
 from rocking.quantities import Quantity
 from rocking.studies.longrun import (
-    Basin,
     Bifurcation,
     HarmonicRocking,
-    basin,
-    bifurcation,
     branch_off,
     continue_orbit,
+    ends_of,
     lyapunov_exponents,
     start_states,
     symmetric_orbit,
 )
-from rocking.studies.longrun.attractors import IRREGULAR, KINDS, LOST, PERIODIC
+from rocking.studies.longrun.attractors import IRREGULAR, KINDS, LOST, PERIODIC, diagram
 from rocking.studies.longrun.basins import LOST as OVERTURNED_CELL
+from rocking.studies.longrun.basins import cells
 
 SLENDERNESS, MODELS = (2, 3, 4, 6, 8, 10), ("housner", "ked", "calibrated")
 LOWEST, HIGHEST, TOP_SPEED = 0.2, 6.0, 2.0  # amplitude ratios; speeds of starts over alpha p
@@ -111,7 +110,7 @@ class GaiborReproduction:
 
     effort: ComparisonEffort
     cases: tuple[HarmonicCase, ...]
-    basins: dict[tuple[int, str], Basin]
+    basins: dict[tuple[int, str], Any]  # final states by slenderness and model, shape (phases, speeds)
 
     def case(self, slenderness: int, model: str, frequency: float) -> HarmonicCase:
         wanted = (slenderness, model, frequency)
@@ -127,8 +126,7 @@ class GaiborReproduction:
 
     def lost(self, slenderness: int, model: str) -> float:
         """Return the fraction of the cells of a basin that overturn."""
-        basin = self.basins[slenderness, model]
-        return float((basin.kind == OVERTURNED_CELL).mean())
+        return float((self.basins[slenderness, model] == OVERTURNED_CELL).mean())
 
     def claims(self) -> tuple[Claim, ...]:
         """Return the statements of the abstract in their senses, with verdicts."""
@@ -170,9 +168,8 @@ def reproduce(effort: ComparisonEffort = FAST, step: Callable[[str], None] = lam
                 cases.append(case(slenderness, model, frequency, effort))
             step(f"h/b {slenderness}, {model}, basin")
             system = _system(slenderness, model, BASIN_FREQUENCY, BASIN_AMPLITUDE)
-            basins[slenderness, model] = basin(
-                system, phases=effort.cells, speeds=effort.cells, highest=TOP_SPEED, check=False
-            )
+            phase, speed = np.meshgrid(*cells(effort.cells, effort.cells, TOP_SPEED), indexing="ij")
+            basins[slenderness, model] = ends_of(system, phase.ravel(), speed.ravel()).reshape(phase.shape)
     return GaiborReproduction(effort, tuple(cases), basins)
 
 
@@ -184,65 +181,66 @@ def _system(slenderness: float, model: str, frequency: float, amplitude: float =
 def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffort = FAST) -> HarmonicCase:
     """Return one case."""
     system = _system(slenderness, model, frequency)
-    rest, rest_kind, _ = _attractors(system, effort.amplitudes(effort.step_at_rest), np.zeros((1, 3)), (300, 200))
-    is_small = rest.peak.values[0, :, 0] < SMALLEST_PEAK
-    overturning = rest.amplitude.values[rest_kind[:, 0] == LOST]
-    cells = (np.arange(effort.starts) + 0.5) / effort.starts
-    starts = start_states(system, cells * 2.0 * math.pi, cells * TOP_SPEED)
+    at_rest, amplitudes = effort.amplitudes(effort.step_at_rest), effort.amplitudes(effort.step)
+    rest, rest_kind, _ = _attractors(system, at_rest, [[math.nan, math.nan]], (300, 200))
+    is_small = rest["peak_ratio"][:, 0] < SMALLEST_PEAK
+    overturning = at_rest[rest_kind[:, 0] == LOST]
+    centres = (np.arange(effort.starts) + 0.5) / effort.starts
+    states = np.stack(np.meshgrid(centres * 2.0 * math.pi, centres * TOP_SPEED, indexing="ij"), axis=2).reshape(-1, 2)
     r = float(system.sides[2])
     cycles = (max(150, math.ceil(11.0 / abs(math.log(r)))), 130)
-    amplitudes = effort.amplitudes(effort.step)
-    diagram, kind, period = _attractors(system, amplitudes, starts, cycles)
-    is_chaotic, is_multi, is_one = (
-        kind == IRREGULAR,
-        (kind == PERIODIC) & (period > 1),
-        (kind == PERIODIC) & (period == 1),
-    )
-    is_complex = (is_chaotic | is_multi).any(axis=1)
+    found, kind, period = _attractors(system, amplitudes, states, cycles)
+    shares = {
+        "overturned": kind == LOST, "one_period": (kind == PERIODIC) & (period == 1),
+        "multi_period": (kind == PERIODIC) & (period > 1), "chaotic": kind == IRREGULAR,
+    }  # fmt: skip
+    is_complex, is_chaotic = (shares["chaotic"] | shares["multi_period"]).any(axis=1), shares["chaotic"].any(axis=1)
     branch = main_branch(system)
     cascade, after_doublings = _cascade(branch, effort.cascade)
-    shares = {"overturned": kind == LOST, "one_period": is_one, "multi_period": is_multi, "chaotic": is_chaotic}
     numbers = {
         "restitution": r, **dict(zip(BIFURCATIONS, (item.value for item in branch), strict=True)),
         "first_overturning": float(min(overturning, default=math.nan)),
         **{f"{name}_starts": float(mask.mean()) for name, mask in shares.items()},
-        "complex_amplitudes": float(is_complex.mean()), "chaotic_amplitudes": float(is_chaotic.any(axis=1).mean()),
+        "complex_amplitudes": float(is_complex.mean()), "chaotic_amplitudes": float(is_chaotic.mean()),
         **after_doublings,
     }  # fmt: skip
+    is_kept = (kind == PERIODIC) | (kind == IRREGULAR)
     return HarmonicCase(
         slenderness, model, frequency, numbers,
         {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
-        is_complex, is_chaotic.any(axis=1), _points(amplitudes, diagram, is_one | is_multi | is_chaotic),
-        np.column_stack([rest.amplitude.values, np.where(is_small, np.nan, rest.exponent.values[0, :, 0] / system.p)]),
-        cascade,
+        is_complex, is_chaotic, _points(amplitudes, found["rotation_ratio"], is_kept),
+        np.column_stack([at_rest, np.where(is_small, np.nan, rest["exponent"][:, 0] / system.p)]), cascade,
     )  # fmt: skip
 
 
-def _attractors(
-    system: HarmonicRocking, amplitudes: FloatArray, starts: FloatArray, cycles: tuple[int, int]
-) -> tuple[Any, Any, Any]:
+def _diagram(
+    system: HarmonicRocking, amplitudes: FloatArray, states: Any, cycles: tuple[int, int], memory: str = "none"
+) -> dict[str, Any]:
+    """Return the attractors over the amplitude from phases and speeds after an impact."""
+    systems = [system.changed("amplitude", value) for value in amplitudes.tolist()]
+    starts = np.tile(start_states(system, states), (len(systems), 1, 1))
+    return diagram(systems, starts, memory=memory, cycles=cycles, exponents=True)
+
+
+def _attractors(system: HarmonicRocking, amplitudes: FloatArray, states: Any, cycles: tuple[int, int]) -> Any:
     """Return diagram, kinds and periods, shape (amplitudes, starts); irregular is chaos, after 2,000 more periods."""
-    diagram = bifurcation(system, amplitudes, starts=starts, cycles=cycles, exponents=True)
-    kind, period = diagram.kind.values[0].copy(), diagram.period.values[0].copy()
+    found = _diagram(system, amplitudes, states, cycles)
+    kind, period = found["attractor"].copy(), found["periods"].copy()
     doubtful = np.flatnonzero((kind == IRREGULAR).any(axis=1))
     if len(doubtful):
-        longer = bifurcation(
-            system, amplitudes[doubtful], starts=starts, cycles=(cycles[0] + 2000, 512), exponents=True
-        )
-        rows = kind[doubtful] == IRREGULAR
-        new = longer.kind.values[0]
-        new[(new == IRREGULAR) & ~(longer.exponent.values[0] > 0.0)] = PERIODIC
-        kind[doubtful], period[doubtful] = (
-            np.where(rows, *pair) for pair in ((new, kind[doubtful]), (longer.period.values[0], period[doubtful]))
-        )
-    return diagram, kind, period
+        longer = _diagram(system, amplitudes[doubtful], states, (cycles[0] + 2000, 512))
+        rows, new = kind[doubtful] == IRREGULAR, longer["attractor"]
+        new[(new == IRREGULAR) & ~(longer["exponent"] > 0.0)] = PERIODIC
+        kind[doubtful] = np.where(rows, new, kind[doubtful])
+        period[doubtful] = np.where(rows, longer["periods"], period[doubtful])
+    return found, kind, period
 
 
-def _points(amplitudes: FloatArray, diagram: Any, is_kept: Any) -> FloatArray:
+def _points(amplitudes: FloatArray, rotation: FloatArray, is_kept: Any) -> FloatArray:
     """Return amplitude and rotation of the last 32 periods of attractors, each point once."""
     rows, columns = np.nonzero(is_kept)
-    rotation = np.round(diagram.rotation.values[0][rows, columns, -32:], 3)
-    return np.unique(np.column_stack([np.repeat(amplitudes[rows], rotation.shape[1]), rotation.ravel()]), axis=0)
+    last = np.round(rotation[rows, columns, -32:], 3)
+    return np.unique(np.column_stack([np.repeat(amplitudes[rows], last.shape[1]), last.ravel()]), axis=0)
 
 
 def main_branch(system: HarmonicRocking) -> list[Bifurcation]:
@@ -266,19 +264,19 @@ def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[s
     first, second = branch[2:]
     values = second.value + np.linspace(0.0, second.value - first.value, number + 1)[1:]
     orbit = second.orbit
-    starts = start_states(orbit.system, [orbit.phase], [orbit.speed])
-    diagram = bifurcation(orbit.system, values, starts=starts, memory="up", cycles=(200, 200), exponents=True)
-    kind, exponent = diagram.kind.values[0, :, 0], diagram.exponent.values[0, :, 0]
+    found = _diagram(orbit.system, values, [[orbit.phase, orbit.speed]], (200, 200), "up")
+    kind, exponent = found["attractor"][:, 0], found["exponent"][:, 0]
     end = int(np.argmax(np.append(kind == LOST, True)))
     is_chaotic = (kind == IRREGULAR) & (exponent > 0.0) & (np.arange(number) < end)
-    rotation = diagram.rotation.values[0, :end, 0, -64:]
+    rotation = found["rotation_ratio"][:end, 0, -64:]
     p = orbit.system.p
     points = np.column_stack([np.repeat(column[:end], 64) for column in (values, exponent / p)])
     cascade = np.insert(points, 1, rotation.ravel(), axis=1)
     step, exponents = float(values[1] - values[0]), (math.nan, math.nan)
     for at in np.argsort(np.where(is_chaotic, -exponent, np.inf))[: min(8, is_chaotic.sum())]:
-        last = [diagram[name].values[0, at, 0, -1] for name in ("rotation", "velocity")]
-        rows = np.tile([starts[0, 0], last[0] * orbit.system.alpha, last[1] * orbit.system.alpha * p], (16, 1))
+        last = [found[name][at, 0, -1] * orbit.system.alpha for name in ("rotation_ratio", "velocity_ratio")]
+        time = start_states(orbit.system, [[orbit.phase, 0.0]])[0, 0]
+        rows = np.tile([time, last[0], last[1] * p], (16, 1))
         rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # chaos makes these orbits independent
         system = orbit.system.changed("amplitude", float(values[at]))
         result = lyapunov_exponents(system, starts=rows, settled=500, kept=1000)
@@ -371,7 +369,7 @@ def _more(pairs: Pairs, name: str, title: str) -> Claim:
     more, fewer = signs.count(1), signs.count(-1)
     evidence = (
         f"more with KED in {more}, fewer in {fewer} of {len(pairs)} pairs, others not resolved (95 %); KED and Housner "
-        f"by slenderness {'; '.join(shares) or 'none'}; counting noise: one amplitude, {1.0 / len(first):.4f}"
+        f"by slenderness: {'; '.join(shares) or 'none'}; counting noise: one amplitude, {1.0 / len(first):.4f}"
     )
     return Claim("2", _PREVALENCE, _verdict(more, fewer, len(pairs)), evidence, f"fraction of amplitudes with {title}")
 
@@ -401,7 +399,7 @@ def _basin_claim(result: GaiborReproduction, other: str) -> Claim:
     """Judge whether the difference in overturning cells decreases from its maximum on, within the counting noise."""
     gap, noise = [], []
     for slenderness in SLENDERNESS:
-        first, second = (result.basins[slenderness, model].kind == OVERTURNED_CELL for model in (other, "housner"))
+        first, second = (result.basins[slenderness, model] == OVERTURNED_CELL for model in (other, "housner"))
         gap.append((int(first.sum()) - int(second.sum())) / first.size)
         noise.append(2.0 * math.sqrt((first != second).sum()) / first.size)
     sizes = np.abs(gap[int(np.argmax(np.abs(gap))) :])
@@ -409,7 +407,7 @@ def _basin_claim(result: GaiborReproduction, other: str) -> Claim:
     verdict = FAILS if not fades else HOLDS if sizes[-1] < noise[-1] else IN_PART
     r = [result.case(SLENDERNESS[-1], model, result.effort.frequencies[0]).numbers for model in (other, "housner")]
     evidence = (
-        f"by slenderness {', '.join(f'{value:+.3f}' for value in gap)}; counting noise (95 %) {max(noise):.3f}; "
+        f"by slenderness: {', '.join(f'{value:+.3f}' for value in gap)}; counting noise (95 %) {max(noise):.3f}; "
         f"coefficients at slenderness {SLENDERNESS[-1]}: {r[0]['restitution']:.4f} and {r[1]['restitution']:.4f}"
     )
     return Claim("3", _CONVERGENCE, verdict, evidence, f"overturning cells of the basin, {other} and housner")

@@ -1,6 +1,6 @@
 """Figures of `rocking reproduce gaibor-2026`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -13,16 +13,15 @@ from rocking.evidence.gaibor_2026 import (
     HIGHEST,
     MODELS,
     SLENDERNESS,
+    TOP_SPEED,
     GaiborReproduction,
-    HarmonicCase,
 )
+from rocking.plots.long_run import FINAL_STATES, draw_cells
 from rocking.plots.style import (
-    COLORS,
     DOUBLE,
     GREY,
     INK,
     MARKS,
-    PALE,
     in_journal_style,
     legend_below,
     model_styles,
@@ -30,13 +29,14 @@ from rocking.plots.style import (
     patch,
     stroke,
 )
+from rocking.studies.longrun.basins import cells
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-AMPLITUDE = r"amplitude $a / (g\,\tan\alpha)$ [-]"
-CELLS = ((COLORS[1], "overturned"), (PALE, "small"), (COLORS[0], "keeps rocking"), (INK, "failed"))
+AMPLITUDE, EXPONENT = r"amplitude $a / (g\,\tan\alpha)$ [-]", r"largest exponent $\lambda_1 / p$ [-]"
+DOTS: dict[str, Any] = {"marker": ".", "linestyle": "none", "mew": 0.0, "rasterized": True}
 
 
 def gaibor_figures(result: GaiborReproduction) -> "dict[str, Callable[[], Figure]]":
@@ -49,62 +49,70 @@ def gaibor_figures(result: GaiborReproduction) -> "dict[str, Callable[[], Figure
     return figures | {name: partial(draw, result) for name, draw in drawn.items()}
 
 
-def _look(model: str, *, line: bool = True) -> dict[str, Any]:
-    look = model_styles()[model]
-    return {"color": look["color"], "linestyle": look["linestyle"] if line else "none"}
+def _color(model: str) -> str:
+    return str(model_styles()[model]["color"])
 
 
-def _legend(figure: "Figure", *more: Any) -> None:
-    handles = [stroke(model_styles()[model]["label"], **_look(model)) for model in MODELS]
+def _line(model: str) -> dict[str, Any]:
+    return {name: model_styles()[model][name] for name in ("color", "linestyle")}
+
+
+def _legend(figure: "Figure", looks: Sequence[dict[str, Any]], *more: Any) -> None:
+    """Put the looks of the models below a figure."""
+    handles = [stroke(model_styles()[model]["label"], **look) for model, look in zip(MODELS, looks, strict=True)]
     legend_below(figure, [*handles, *more], len(handles) + len(more), handlelength=2.5)
 
 
-def _name(axes: "Axes", text: str) -> None:
+def _title(axes: "Axes", text: str) -> None:
     axes.set_title(text, loc="left", fontsize=7)
+
+
+def _of_model(result: GaiborReproduction, slenderness: int, model: str) -> str:
+    r = result.case(slenderness, model, result.effort.frequencies[0]).numbers["restitution"]
+    return f"h/b = {slenderness}, {model_styles()[model]['label']}, r = {r:.4f}"
 
 
 @in_journal_style
 def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
     """Draw the attractors of all starts over the amplitude; one row per slenderness, one column per model."""
     figure, panels = new_figure(DOUBLE, 8.6, rows=len(SLENDERNESS), columns=len(MODELS), sharex=True, sharey=True)
-    cases = [result.case(slenderness, model, frequency) for slenderness in SLENDERNESS for model in MODELS]
-    for axes, case in zip(panels, cases, strict=True):
-        axes.plot(*case.attractors.T, ".", color=_look(case.model)["color"], ms=2.0, mew=0.0, rasterized=True)
-        for name, line in (("fold", ":"), ("pitchfork", "--")):
-            axes.axvline(case.numbers[name], color=GREY, lw=0.6, ls=line)
-        _name(axes, f"h/b = {case.slenderness}, {model_styles()[case.model]['label']}, r = {_r(case)}")
+    grid = [(slenderness, model) for slenderness in SLENDERNESS for model in MODELS]
+    lines = {"fold": ("fold", ":"), "pitchfork": ("loss of symmetry", "--")}
+    shown = set()
+    for axes, (slenderness, model) in zip(panels, grid, strict=True):
+        case = result.case(slenderness, model, frequency)
+        axes.plot(*case.attractors.T, color=_color(model), ms=2.0, **DOTS)
+        for name, (_, style) in lines.items():
+            if case.numbers[name] < HIGHEST:
+                shown.add(name)
+                axes.axvline(case.numbers[name], color=GREY, lw=0.6, ls=style)
+        _title(axes, _of_model(result, slenderness, model))
         axes.set_xlim(0.0, HIGHEST)
     for axes in panels[-len(MODELS) :]:
         axes.set_xlabel(AMPLITUDE)
     figure.supylabel(r"rotation at the ends of periods $\theta / \alpha$ [-]", fontsize=8)
-    lines = [stroke("fold", color=GREY, ls=":"), stroke("loss of symmetry", color=GREY, ls="--")]
-    legend_below(figure, lines, 2, handlelength=2.5)
+    handles = [stroke(label, color=GREY, ls=style) for name, (label, style) in lines.items() if name in shown]
+    legend_below(figure, handles, 2, handlelength=2.5)
     return figure
-
-
-def _r(case: HarmonicCase) -> str:
-    return f"{case.numbers['restitution']:.4f}"
 
 
 @in_journal_style
 def _exponents(result: GaiborReproduction, frequency: float) -> "Figure":
     """Draw the largest exponent from rest over the amplitude; one panel per slenderness."""
     figure, panels = new_figure(DOUBLE, 4.0, rows=2, columns=3, sharex=True)
+    looks: list[dict[str, Any]] = [
+        {"color": _color(model), "marker": mark, "ls": "none"} for model, mark in zip(MODELS, MARKS, strict=False)
+    ]
     for axes, slenderness in zip(panels, SLENDERNESS, strict=True):
-        for k, model in enumerate(MODELS):
-            amplitude, exponent = result.case(slenderness, model, frequency).exponents.T
-            axes.plot(amplitude, exponent, MARKS[k], color=_look(model)["color"], ms=1.6, mew=0.0)
+        for model, look in zip(MODELS, looks, strict=True):
+            axes.plot(*result.case(slenderness, model, frequency).exponents.T, ms=1.6, mew=0.0, **look)
         axes.axhline(0.0, color=GREY, lw=0.6)
-        _name(axes, f"h/b = {slenderness}")
+        _title(axes, f"h/b = {slenderness}")
     for axes in panels[3:]:
         axes.set_xlabel(AMPLITUDE)
     for axes in panels[::3]:
-        axes.set_ylabel(r"largest exponent $\lambda_1 / p$ [-]")
-    marks = [
-        stroke(model_styles()[model]["label"], color=_look(model)["color"], marker=MARKS[k], linestyle="none")
-        for k, model in enumerate(MODELS)
-    ]
-    legend_below(figure, marks, len(marks))
+        axes.set_ylabel(EXPONENT)
+    _legend(figure, looks)
     return figure
 
 
@@ -112,52 +120,46 @@ def _exponents(result: GaiborReproduction, frequency: float) -> "Figure":
 def _cascades(result: GaiborReproduction) -> "Figure":
     """Draw the attractor after the second period doubling, with its largest exponent, for the squattest body."""
     figure, panels = new_figure(DOUBLE, 3.6, rows=2, columns=len(MODELS), sharex="col", sharey="row")
-    for k, model in enumerate(MODELS):
+    for model, above, below in zip(MODELS, panels[: len(MODELS)], panels[len(MODELS) :], strict=True):
         case = result.case(SLENDERNESS[0], model, result.effort.frequencies[0])
         amplitude, rotation, exponent = case.cascade.T
-        panels[k].plot(amplitude, rotation, ".", color=_look(model)["color"], ms=1.0, mew=0.0, rasterized=True)
-        axes = panels[k + len(MODELS)]
-        axes.plot(amplitude[::64], exponent[::64], color=_look(model)["color"], lw=0.8)
-        axes.axhline(0.0, color=GREY, lw=0.6)
-        axes.set_xlabel(AMPLITUDE)
-        _name(panels[k], f"h/b = {case.slenderness}, {model_styles()[model]['label']}, r = {_r(case)}")
+        above.plot(amplitude, rotation, color=_color(model), ms=1.0, **DOTS)
+        below.plot(amplitude[::64], exponent[::64], color=_color(model), lw=0.8)
+        below.axhline(0.0, color=GREY, lw=0.6)
+        below.set_xlabel(AMPLITUDE)
+        _title(above, _of_model(result, SLENDERNESS[0], model))
     panels[0].set_ylabel(r"rotation $\theta / \alpha$ [-]")
-    panels[len(MODELS)].set_ylabel(r"largest exponent $\lambda_1 / p$ [-]")
+    panels[len(MODELS)].set_ylabel(EXPONENT)
     return figure
 
 
 @in_journal_style
 def _thresholds(result: GaiborReproduction) -> "Figure":
     """Draw fold, loss of symmetry and first doubling over slenderness, and differences from Housner's."""
-    frequency = result.effort.frequencies[0]
     figure, (left, middle, right) = new_figure(DOUBLE, 2.7, columns=3)
+
+    def values(name: str, model: str, frequency: float) -> list[float]:
+        return [result.case(slenderness, model, frequency).numbers[name] for slenderness in SLENDERNESS]
+
     for model in MODELS:
-        numbers = [result.case(slenderness, model, frequency).numbers for slenderness in SLENDERNESS]
-        for axes, names in ((left, BIFURCATIONS[1:3]), (middle, BIFURCATIONS[:1])):
-            for name in names:
-                axes.plot(SLENDERNESS, [n[name] for n in numbers], **_look(model), marker=".")
-    for k, frequency in enumerate(result.effort.frequencies):
-        values = [[result.case(s, model, frequency).numbers["pitchfork"] for s in SLENDERNESS] for model in MODELS]
-        for model, row in zip(MODELS[1:], values[1:], strict=True):
-            gap = 100.0 * np.abs(np.divide(row, values[0]) - 1.0)
-            right.loglog(SLENDERNESS, gap, **_look(model), marker=MARKS[k], ms=3.0)
+        for axes, name in ((middle, BIFURCATIONS[0]), (left, BIFURCATIONS[1]), (left, BIFURCATIONS[2])):
+            axes.plot(SLENDERNESS, values(name, model, result.effort.frequencies[0]), **_line(model), marker=".")
+    marks = list(zip(result.effort.frequencies, MARKS, strict=False))
+    for frequency, mark in marks:
+        for model in MODELS[1:]:
+            ratio = np.divide(values("pitchfork", model, frequency), values("pitchfork", MODELS[0], frequency))
+            right.loglog(SLENDERNESS, 100.0 * np.abs(ratio - 1.0), **_line(model), marker=mark, ms=3.0)
     right.loglog(SLENDERNESS, 20.0 / np.array(SLENDERNESS, dtype=float) ** 4, color=GREY, lw=0.6)
     right.text(2.1, 0.2, r"$(h/b)^{-4}$", color=GREY, fontsize=7)
     right.set_xticks(SLENDERNESS, list(map(str, SLENDERNESS)))
     right.minorticks_off()
-    _name(left, "loss of symmetry, first period doubling")
-    _name(middle, "fold")
-    _name(right, "loss of symmetry, against Housner")
-    for axes in (left, middle, right):
-        axes.set_xlabel("slenderness h/b [-]")
-    left.set_ylabel(AMPLITUDE)
-    middle.set_ylabel(AMPLITUDE)
-    right.set_ylabel("difference [%]")
-    marks = [
-        stroke(f"frequency {value:g}", color=INK, marker=MARKS[k], linestyle="none", ms=3.0)
-        for k, value in enumerate(result.effort.frequencies)
-    ]
-    _legend(figure, *marks)
+    _title(left, "loss of symmetry, first period doubling")
+    _title(middle, "fold")
+    _title(right, "loss of symmetry, against Housner")
+    for axes, label in ((left, AMPLITUDE), (middle, AMPLITUDE), (right, "difference [%]")):
+        axes.set(xlabel="slenderness h/b [-]", ylabel=label)
+    more = [stroke(f"frequency {value:g}", color=INK, marker=mark, ls="none", ms=3.0) for value, mark in marks]
+    _legend(figure, [_line(model) for model in MODELS], *more)
     return figure
 
 
@@ -168,39 +170,30 @@ def _prevalence(result: GaiborReproduction) -> "Figure":
     figure, panels = new_figure(DOUBLE, 2.5, columns=len(frequencies), sharey=True)
     for axes, frequency in zip(panels, frequencies, strict=True):
         for k, model in enumerate(MODELS):
-            masks = [result.case(slenderness, model, frequency).is_complex for slenderness in SLENDERNESS]
-            shares = np.array([mask.mean() for mask in masks])
-            shifted = np.array(SLENDERNESS) + 0.12 * (k - 1)
-            axes.errorbar(shifted, shares, 1.0 / masks[0].size, **_look(model), marker=".", elinewidth=0.6, lw=0.8)
+            masks = np.array([result.case(slenderness, model, frequency).is_complex for slenderness in SLENDERNESS])
+            x, noise = np.array(SLENDERNESS) + 0.12 * (k - 1), 1.0 / masks.shape[1]
+            axes.errorbar(x, masks.mean(axis=1), noise, **_line(model), marker=".", elinewidth=0.6, lw=0.8)
         axes.set_xlabel("slenderness h/b [-]")
-        _name(axes, f"frequency {frequency:g} p")
-    panels[0].set_ylabel("fraction of amplitudes with several periods or chaos [-]")
-    _legend(figure)
+        _title(axes, f"frequency {frequency:g} p")
+    panels[0].set_ylabel("fraction of amplitudes with\nseveral periods or chaos [-]")
+    _legend(figure, [_line(model) for model in MODELS])
     return figure
 
 
 @in_journal_style
 def _basins(result: GaiborReproduction) -> "Figure":
     """Draw the basins; one row per model, one column per slenderness."""
-    from matplotlib.colors import BoundaryNorm, ListedColormap
-
     figure, panels = new_figure(DOUBLE, 4.2, rows=len(MODELS), columns=len(SLENDERNESS), sharex=True, sharey=True)
-    colors = ListedColormap([color for color, _ in CELLS])
-    for k, (axes, (model, slenderness)) in enumerate(
-        zip(panels, [(model, slenderness) for model in MODELS for slenderness in SLENDERNESS], strict=True)
-    ):
-        basin = result.basins[slenderness, model]
-        size = (0.0, 2.0, 0.0, basin.speed[-1] + basin.speed[0])
-        axes.imshow(
-            basin.kind.T, cmap=colors, norm=BoundaryNorm(np.arange(5) - 0.5, 4), extent=size, origin="lower",
-            aspect="auto", interpolation="none",
-        )  # fmt: skip
-        _name(axes, f"h/b = {slenderness}: {100.0 * result.lost(slenderness, model):.1f} %")
-        if k % len(SLENDERNESS) == 0:
-            axes.set_ylabel(f"{model_styles()[model]['label']}\nspeed / ($\\alpha p$) [-]")
+    grid = [(slenderness, model) for model in MODELS for slenderness in SLENDERNESS]
+    for axes, (slenderness, model) in zip(panels, grid, strict=True):
+        kinds = result.basins[slenderness, model]
+        draw_cells(axes, *cells(len(kinds), len(kinds.T), TOP_SPEED), kinds.T)
+        _title(axes, f"h/b = {slenderness}: {100.0 * result.lost(slenderness, model):.1f} %")
+    for axes, model in zip(panels[:: len(SLENDERNESS)], MODELS, strict=True):
+        axes.set_ylabel(f"{model_styles()[model]['label']}\nspeed / ($\\alpha p$) [-]")
     for axes in panels[-len(SLENDERNESS) :]:
-        axes.set_xlabel(r"phase / $\pi$ [-]")
-    legend_below(figure, [patch(*cell) for cell in CELLS[:3]], 3)
+        axes.set_xlabel("phase [rad]")
+    legend_below(figure, [patch(*state) for state in FINAL_STATES[:3]], 3)
     return figure
 
 

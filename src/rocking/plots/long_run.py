@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_FATES = ((PALE, "overturned"), (COLORS[0], "small"), (COLORS[1], "settled"), (INK, "failed"))
+FINAL_STATES = ((COLORS[1], "overturned"), (PALE, "small"), (COLORS[0], "settled"), (INK, "failed"))
 _KINDS = ((3, COLORS[1], "irregular"), (2, COLORS[0], "periodic"), (1, COLORS[2], "with rests"), (0, GREY, "at rest"))
 _LABELS = {
     "amplitude_ratio": r"$a\,/\,(g\,\tan\,\alpha)$ [-]", "frequency_ratio": r"$\omega\,/\,p$ [-]",
@@ -153,21 +153,26 @@ def basins_picture(results: Any) -> "Figure":
         axes.set(xlabel=_LABELS["amplitude_ratio"], ylabel="fraction without overturning [-]", ylim=(-0.02, 1.02))
         axes.legend()
         return figure
-    from matplotlib.colors import ListedColormap
-
     figure, columns = _panels(shown, 2.6)
     for data, (axes,) in zip(shown.values(), columns, strict=True):
         cells = data.transpose(upward, "ground_phase", ...)
         kinds, uncertain = (cells[name].values[..., 0] for name in ("final_state", "is_uncertain"))
         phases, heights = data["ground_phase"].values, data[upward].values
-        options: Any = {"cmap": ListedColormap([color for color, _ in _FATES]), "vmin": -0.5, "vmax": 3.5}
-        axes.pcolormesh(phases, heights, kinds, shading="nearest", rasterized=True, **options)
-        rows, across_ = np.nonzero(uncertain)
-        axes.plot(phases[across_], heights[rows], "x", color=INK, markersize=2)
-        axes.set_xticks([0.0, np.pi, 2.0 * np.pi], ["0", r"$\pi$", r"$2\pi$"])
+        draw_cells(axes, phases, heights, kinds)
+        rows, across = np.nonzero(uncertain)
+        axes.plot(phases[across], heights[rows], "x", color=INK, markersize=2)
     _label(columns, "ground_phase", _LABELS[upward])
-    legend_below(figure, [patch(color, name) for color, name in _FATES[:3]], 3)
+    legend_below(figure, [patch(*state) for state in FINAL_STATES[:3]], 3)
     return figure
+
+
+def draw_cells(axes: "Axes", phases: Any, heights: Any, kinds: Any) -> None:
+    """Draw the final states of the cells of a basin, shape (heights, phases)."""
+    from matplotlib.colors import ListedColormap
+
+    options: Any = {"cmap": ListedColormap([color for color, _ in FINAL_STATES]), "vmin": -0.5, "vmax": 3.5}
+    axes.pcolormesh(phases, heights, kinds, shading="nearest", rasterized=True, **options)
+    axes.set_xticks([0.0, np.pi, 2.0 * np.pi], ["0", r"$\pi$", r"$2\pi$"])
 
 
 @in_journal_style
@@ -222,15 +227,8 @@ def poincare_picture(results: Any) -> "Figure":
     figure, columns = _panels(shown, 2.6)
     for data, (axes,) in zip(shown.values(), columns, strict=True):
         first, second = list(data.data_vars)[:2]
-        axes.plot(
-            data[first].values.ravel(),
-            data[second].values.ravel(),
-            "o",
-            markersize=0.8,
-            markeredgewidth=0.0,
-            color=COLORS[0],
-            rasterized=True,
-        )
+        options: Any = {"color": COLORS[0], "rasterized": True, "markersize": 0.8, "markeredgewidth": 0.0}
+        axes.plot(data[first].values.ravel(), data[second].values.ravel(), "o", **options)
     _label(columns, str(first), _LABELS[str(second)])
     return figure
 

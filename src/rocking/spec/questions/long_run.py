@@ -26,7 +26,15 @@ def _words(stated: Any) -> Any:
     return stated.split(",") if isinstance(stated, str) else stated
 
 
-class HarmonicTable(JobTable):
+class LongRunTable(JobTable):
+    """What is computed for each restitution."""
+
+    def task(self, seed: int) -> "Task":
+        """Return the task of the table, with a seed of its random states."""
+        raise NotImplementedError
+
+
+class HarmonicTable(LongRunTable):
     """Harmonic ground motion."""
 
     amplitude: Positive = key("peak ground acceleration over that of uplift, g tan alpha [-]", 1.5)
@@ -57,6 +65,13 @@ class BifurcationTable(HarmonicTable):
             raise InvalidValueError("{parameter} must increase from value to value", parameter="values")
         return self
 
+    def task(self, seed: int) -> "Task":
+        """Return the diagram."""
+        from rocking.studies.longrun.study import Diagram, random_states
+
+        states, cycles = random_states(self.starts, seed), (self.settled, self.kept)
+        return Diagram(self.axis, self.values.numbers(), states, tuple(self.sweeps), cycles, self.exponents)
+
 
 class LyapunovTable(HarmonicTable):
     """Lyapunov exponents: ground motion, orbits and numbers of periods."""
@@ -65,8 +80,14 @@ class LyapunovTable(HarmonicTable):
     settled: int = key("number of periods before the growth is counted", 500, ge=60, le=1_000_000)
     kept: int = key("number of periods with counted growth", 1000, ge=1, le=10_000_000)
 
+    def task(self, seed: int) -> "Task":
+        """Return the orbits."""
+        from rocking.studies.longrun.study import Exponents
 
-class BasinsTable(JobTable):
+        return Exponents(self.orbits, self.settled, self.kept, seed)
+
+
+class BasinsTable(LongRunTable):
     """Basins of overturning: ground motion, initial states after an impact, number of impacts."""
 
     amplitudes: Numbers = Field(
@@ -75,11 +96,19 @@ class BasinsTable(JobTable):
     )
     frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
     phases: int = key("number of phases of the ground motion at the impact", 100, ge=1, le=20_000)
-    speeds: int = key("number of speeds after the impact", 100, ge=1, le=20_000)
+    speeds: int = key("number of speeds after the impact; 0 for a start at rest", 100, ge=0, le=20_000)
     highest: Positive = key("upper end of the speeds over alpha p [-]", 2.0)
     impacts: int = key("number of impacts", 120, ge=1, le=1_000_000)
     small: float = key("speed over alpha p below which a motion counts as small [-]", 0.02, ge=0.0, le=1.0)
     check: bool = key("second computation with another step error", True)
+
+    def task(self, seed: int) -> "Task":
+        """Return the cells."""
+        from rocking.studies.longrun.basins import cells
+        from rocking.studies.longrun.study import Cells
+
+        grid = cells(self.phases, self.speeds, self.highest)
+        return Cells(self.amplitudes.numbers(), *grid, self.impacts, self.small, self.check)
 
 
 class OrbitsTable(HarmonicTable):
@@ -91,6 +120,12 @@ class OrbitsTable(HarmonicTable):
     doublings: int = key("number of branches that branch off in turn: pitchfork, then period doublings", 2, ge=0, le=8)
     points: int = key("number of orbits of each branch in files and pictures", 400, ge=16, le=100_000)
 
+    def task(self, seed: int) -> "Task":
+        """Return the branches."""
+        from rocking.studies.longrun.study import Branches
+
+        return Branches(self.axis, (self.lowest, self.highest), self.doublings, self.points)
+
 
 class LongRunQuestion(BodyQuestion):
     """A study of one plane body under harmonic ground motion."""
@@ -99,7 +134,8 @@ class LongRunQuestion(BodyQuestion):
 
     def task(self) -> "Task":
         """Return what is computed for each restitution."""
-        raise NotImplementedError
+        task: Task = self.own.task(self.campaign.seed)
+        return task
 
     @property
     def own(self) -> Any:
@@ -159,15 +195,6 @@ class BifurcationQuestion(LongRunQuestion):
 
     bifurcation: BifurcationTable = Field(default_factory=BifurcationTable)
 
-    def task(self) -> "Task":
-        """Return the diagram."""
-        from rocking.studies.longrun.study import Diagram, random_states
-
-        table = self.bifurcation
-        states = random_states(table.starts, self.campaign.seed)
-        cycles = (table.settled, table.kept)
-        return Diagram(table.axis, table.values.numbers(), states, tuple(table.sweeps), cycles, table.exponents)
-
 
 class LyapunovQuestion(LongRunQuestion):
     """Lyapunov exponents of a body under harmonic ground motion."""
@@ -175,13 +202,6 @@ class LyapunovQuestion(LongRunQuestion):
     kind: ClassVar[str] = "lyapunov"
 
     lyapunov: LyapunovTable = Field(default_factory=LyapunovTable)
-
-    def task(self) -> "Task":
-        """Return the orbits."""
-        from rocking.studies.longrun.study import Exponents
-
-        table = self.lyapunov
-        return Exponents(table.orbits, table.settled, table.kept, self.campaign.seed)
 
 
 class BasinsQuestion(LongRunQuestion):
@@ -191,15 +211,6 @@ class BasinsQuestion(LongRunQuestion):
 
     basins: BasinsTable = Field(default_factory=BasinsTable)
 
-    def task(self) -> "Task":
-        """Return the cells."""
-        from rocking.studies.longrun.basins import cells
-        from rocking.studies.longrun.study import Cells
-
-        table = self.basins
-        grid = cells(table.phases, table.speeds, table.highest)
-        return Cells(table.amplitudes.numbers(), *grid, table.impacts, table.small, table.check)
-
 
 class OrbitsQuestion(LongRunQuestion):
     """Branches of periodic orbits of a body under harmonic ground motion, and their bifurcations."""
@@ -207,10 +218,3 @@ class OrbitsQuestion(LongRunQuestion):
     kind: ClassVar[str] = "orbits"
 
     orbits: OrbitsTable = Field(default_factory=OrbitsTable)
-
-    def task(self) -> "Task":
-        """Return the branches."""
-        from rocking.studies.longrun.study import Branches
-
-        table = self.orbits
-        return Branches(table.axis, (table.lowest, table.highest), table.doublings, table.points)

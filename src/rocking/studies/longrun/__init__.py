@@ -1,11 +1,7 @@
 """Long-run dynamics of rocking under harmonic ground motion: orbits, bifurcations, exponents, basins, thresholds."""
 
-from rocking.studies.longrun.attractors import PoincareSection
-from rocking.studies.longrun.attractors import bifurcation as bifurcation
-from rocking.studies.longrun.attractors import poincare as poincare
 from rocking.studies.longrun.attractors import start_states as start_states
-from rocking.studies.longrun.basins import Basin, UncertaintyExponent, uncertainty_exponent
-from rocking.studies.longrun.basins import basin as basin
+from rocking.studies.longrun.basins import UncertaintyExponent, basin_stability, box_dimension, uncertainty_exponent
 from rocking.studies.longrun.basins import ends_of as ends_of
 from rocking.studies.longrun.exponents import LyapunovExponents
 from rocking.studies.longrun.exponents import lyapunov_exponents as lyapunov_exponents
@@ -27,7 +23,6 @@ from rocking.studies.longrun.system import over_periods as over_periods
 from rocking.studies.longrun.thresholds import SlenderThresholds, slender_thresholds
 
 __all__ = [
-    "Basin",
     "Bifurcation",
     "Branch",
     "Harmonic",
@@ -36,10 +31,11 @@ __all__ = [
     "Numerics",
     "OrbitNotFoundError",
     "PeriodicOrbit",
-    "PoincareSection",
     "SlenderThresholds",
     "UncertaintyExponent",
+    "basin_stability",
     "bifurcation_curve",
+    "box_dimension",
     "branch_off",
     "continue_orbit",
     "find_orbit",

@@ -9,128 +9,107 @@ from scipy import stats
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.studies.longrun.system import DEFAULTS, FAILED, OVERTURNED, REST, HarmonicRocking, Numerics, over_impacts
+from rocking.studies.longrun.attractors import start_states
+from rocking.studies.longrun.system import DEFAULTS, NONE, REST, HarmonicRocking, Numerics, over_impacts, over_periods
 
 LOST, SMALL, SETTLED, FAILURE = range(4)
 KINDS = ("overturned", "small", "settled", "failed")
 """Ends of the histories of a basin: a history is small once its speed after an impact is below a limit."""
 
 
-@dataclass(frozen=True, eq=False)
-class Basin:
-    """Ends of histories over a grid of states after an impact.
+def basin_stability(kinds: Any, level: float = 0.95) -> tuple[float, float, float]:
+    """Return the fraction of starts that do not overturn, with its interval for random starts.
 
     Parameters
     ----------
-    phase : ndarray
-        Phases of the ground motion at the first impact [rad], shape (phases,).
-    speed : ndarray
-        Speeds after the first impact over alpha p [-], shape (speeds,).
-    kind : ndarray of int
-        Index in `KINDS`, shape (phases, speeds).
-    is_uncertain : ndarray of bool
-        True where the kind changes with the step error of the integration, shape (phases, speeds).
+    kinds : array_like of int
+        Final states, as of `rocking.basin`: 0 for a start that overturns.
+    level : float, optional
+        Level of the interval (Clopper and Pearson) [-].
+
+    Returns
+    -------
+    fraction, low, high : float
+        Fraction and interval [-].
+
+    Examples
+    --------
+    >>> basin_stability([0, 2, 2, 1])[0]
+    0.75
     """
+    kinds = np.asarray(kinds)
+    safe = int((kinds != LOST).sum())
+    interval = stats.binomtest(safe, kinds.size).proportion_ci(level, method="exact")
+    return safe / kinds.size, float(interval.low), float(interval.high)
 
-    phase: FloatArray
-    speed: FloatArray
-    kind: Any
-    is_uncertain: Any
 
-    @property
-    def counts(self) -> dict[str, int]:
-        """Number of cells of each kind."""
-        return {name: int((self.kind == number).sum()) for number, name in enumerate(KINDS)}
+def box_dimension(kinds: Any) -> float:
+    """Return the box-counting dimension of the boundary between starts that overturn and others.
 
-    def stability(self, level: float = 0.95) -> tuple[float, float, float]:
-        """Return the fraction of starts that do not overturn, with its interval for random starts.
+    Parameters
+    ----------
+    kinds : array_like of int
+        Final states, as of `rocking.basin`: 0 for a start that overturns, shape (phases, speeds).
 
-        Parameters
-        ----------
-        level : float, optional
-            Level of the interval (Clopper and Pearson) [-].
+    Returns
+    -------
+    float
+        Slope of the number of boxes that contain both over their size, between 1 and 2; NaN without a boundary, or with
+        fewer than 32 cells along an axis.
 
-        Returns
-        -------
-        fraction, low, high : float
-            Fraction and interval [-].
-        """
-        number, safe = self.kind.size, int((self.kind != LOST).sum())
-        interval = stats.binomtest(safe, number).proportion_ci(level, method="exact")
-        return safe / number, float(interval.low), float(interval.high)
-
-    def box_dimension(self) -> float:
-        """Return the box-counting dimension of the boundary between starts that overturn and others.
-
-        Returns
-        -------
-        float
-            Slope of the number of boxes that contain both over their size, between 1 and 2; NaN without a boundary.
-        """
-        lost = self.kind == LOST
-        sizes, numbers = [], []
-        size = 1
-        while size <= min(lost.shape) // 8:
-            rows, columns = (n // size * size for n in lost.shape)
-            blocks = lost[:rows, :columns].reshape(rows // size, size, columns // size, size)
-            mixed = blocks.any(axis=(1, 3)) & ~blocks.all(axis=(1, 3))
-            if size == 1:  # a cell contains a boundary if a neighbour differs
-                mixed = np.zeros_like(lost)
-                mixed[:-1] |= lost[:-1] != lost[1:]
-                mixed[:, :-1] |= lost[:, :-1] != lost[:, 1:]
-            sizes.append(size)
-            numbers.append(mixed.sum())
-            size *= 2
-        if len(sizes) < 3 or min(numbers) == 0:
-            return math.nan
-        return float(-np.polyfit(np.log(sizes), np.log(numbers), 1)[0])
+    Examples
+    --------
+    >>> import numpy as np
+    >>> round(box_dimension(np.triu(np.ones((256, 256)))), 1)
+    1.0
+    """
+    lost = np.asarray(kinds) == LOST
+    sizes = 2 ** np.arange(max(1, (min(lost.shape) // 8).bit_length()))
+    mixed = np.zeros_like(lost)  # a cell contains a boundary if a neighbour differs
+    mixed[:-1] |= lost[:-1] != lost[1:]
+    mixed[:, :-1] |= lost[:, :-1] != lost[:, 1:]
+    numbers = [int(mixed.sum())]
+    for size in sizes[1:]:
+        rows, columns = (n // size * size for n in lost.shape)
+        blocks = lost[:rows, :columns].reshape(rows // size, size, columns // size, size)
+        numbers.append(int((blocks.any(axis=(1, 3)) & ~blocks.all(axis=(1, 3))).sum()))
+    if len(sizes) < 3 or min(numbers) == 0:
+        return math.nan
+    return float(-np.polyfit(np.log(sizes), np.log(numbers), 1)[0])
 
 
 def ends_of(
-    system: HarmonicRocking,
-    phase: Any,
-    speed: Any,
-    *,
-    impacts: int = 120,
-    small: float = 0.02,
+    system: HarmonicRocking, phase: Any, speed: Any, *, impacts: int = 120, small: float = 0.02,
     numerics: Numerics = DEFAULTS,
-) -> Any:
-    """Return the kinds (index in `KINDS`) of histories from phases and speeds over alpha p after an impact."""
-    numerics = replace(numerics, rest_speed=small)
-    flight = over_impacts(system, phase, speed, impacts, parameter="none", numerics=numerics)
-    kind = np.where(flight.event == REST, SMALL, SETTLED)
-    kind[flight.event == OVERTURNED] = LOST
-    kind[flight.event == FAILED] = FAILURE
-    return kind
+) -> Any:  # fmt: skip
+    """Return the kinds (index in `KINDS`) of histories from phases and speeds over alpha p after an impact.
 
-
-def basin(
-    system: HarmonicRocking,
-    *,
-    phases: int = 100,
-    speeds: int = 100,
-    highest: float = 2.0,
-    impacts: int = 120,
-    small: float = 0.02,
-    check: bool = True,
-    numerics: Numerics = DEFAULTS,
-) -> Basin:
-    """Return the basin over phase and speed after an impact; check: repeat it with another step error."""
-    phase, speed = cells(phases, speeds, highest)
-    x, y = (axis.ravel() for axis in np.meshgrid(phase, speed, indexing="ij"))
-    kind, other = checked_ends(system, x, y, checks.whole("impacts", impacts, 1), small, numerics, check=check)
-    return Basin(phase, speed, kind.reshape(phases, speeds), (kind != other).reshape(phases, speeds))
+    A speed of 0 is a start at rest; such a history is small if the body rests in the last of impacts / 2 periods.
+    """
+    phase, speed = np.broadcast_arrays(*np.atleast_1d(phase, speed))
+    event, at_rest = np.full(phase.shape, NONE), speed == 0.0
+    if not at_rest.all():
+        options: Any = {"parameter": "none", "numerics": replace(numerics, rest_speed=small)}
+        event[~at_rest] = over_impacts(system, phase[~at_rest], speed[~at_rest], impacts, **options).event
+    if at_rest.any():
+        starts = start_states(system, np.column_stack([phase, speed])[at_rest])
+        result = over_periods(system, starts, settled=(impacts - 1) // 2, numerics=numerics)
+        rests = (result.ending == NONE) & ((result.rests > 0) | (result.peak == 0.0))
+        event[at_rest] = np.where(rests, REST, result.ending)
+    return np.array([SETTLED, SETTLED, SMALL, LOST, FAILURE])[event]
 
 
 def cells(phases: int, speeds: int, highest: float) -> tuple[FloatArray, FloatArray]:
-    """Return the phases [rad] and speeds over alpha p of the centres of cells."""
+    """Return the phases [rad] and speeds over alpha p of the centres of cells; 0 speeds: that of a start at rest."""
     phase = (np.arange(checks.whole("phases", phases, 1)) + 0.5) * 2.0 * math.pi / phases
-    return phase, (np.arange(checks.whole("speeds", speeds, 1)) + 0.5) * checks.positive("highest", highest) / speeds
+    speed = (np.arange(checks.whole("speeds", speeds, 0)) + 0.5) * checks.positive("highest", highest) / max(speeds, 1)
+    return phase, speed if speeds else np.zeros(1)
 
 
 def checked_ends(
-    system: HarmonicRocking, phase: Any, speed: Any, impacts: int, small: float, numerics: Numerics, *, check: bool
-) -> Any:
+    system: HarmonicRocking, phase: Any, speed: Any, *, impacts: int = 120, small: float = 0.02,
+    numerics: Numerics = DEFAULTS, check: bool = True,
+) -> Any:  # fmt: skip
     """Return the kinds of histories, and those with another step error, shape (2, rows)."""
     steps = [numerics, replace(numerics, step_error=30.0 * numerics.step_error)][: 1 + check]
     kinds = [ends_of(system, phase, speed, impacts=impacts, small=small, numerics=step) for step in steps]

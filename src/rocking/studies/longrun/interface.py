@@ -1,5 +1,6 @@
 """Long-run dynamics of a body under harmonic ground motion, with one or several restitution models."""
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -177,7 +178,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     phases: Any = 100, speeds: Any = 100, highest: float = 2.0, impacts: int = 120, small: float = 0.02,
     check: bool = True, linear: bool = False, gravity: float = conventions.g, threads: int | None = None,
 ) -> "xr.Dataset":  # fmt: skip
-    """Compute the basin of overturning over phase and speed after an impact, and its erosion.
+    """Compute the basin of overturning over phase and speed after an impact, or over phase and amplitude from rest.
 
     Parameters
     ----------
@@ -187,13 +188,14 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
         Amplitudes over that of uplift [-]; that of the ground motion by default. Several show the erosion.
     phases, speeds : int or array_like, optional
         Number of cells, with states at their centres, or phases of the ground motion [rad] and speeds over alpha p.
-        One phase or one speed is a path through the basin.
+        One phase or one speed is a path through the basin. A speed of 0, also ``speeds=0``, is a start at rest.
     highest : float, optional
         Upper end of the speeds over alpha p [-].
     impacts : int, optional
-        Number of impacts.
+        Number of impacts; histories from rest last half as many periods.
     small : float, optional
-        Speed over alpha p after an impact below which a history ends as small.
+        Speed over alpha p after an impact below which a history ends as small; a history from rest is small if the body
+        rests in the last period.
     check : bool, optional
         True repeats the computation with another step error and marks the cells that differ.
     linear, gravity, threads
@@ -219,17 +221,22 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> block, motion = rk.Block(width=0.5, height=2.0), rk.Harmonic(amplitude=3.0, period=0.8)
     >>> dict(basin(block, motion, "ked", phases=8, speeds=4).sizes)
     {'amplitude_ratio': 1, 'ground_phase': 8, 'speed_ratio': 4}
+    >>> safe = basin(block, motion, "ked", amplitudes=[0.5, 4.0], phases=16, speeds=0)["final_state"] != 0
+    >>> safe.mean(("ground_phase", "speed_ratio")).values.round(2).tolist()  # fraction of the phases
+    [1.0, 0.0]
     """
     systems = study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity)
     if amplitudes is None:
         amplitudes = [next(iter(systems.values())).amplitude_ratio]
     counts = [axis if isinstance(axis, int) else 1 for axis in (phases, speeds)]
-    grid = list(cells(counts[0], counts[1], highest))
-    for k, (name, given) in enumerate((("phases", phases), ("speeds", speeds))):
-        if not isinstance(given, int):
-            grid[k] = np.atleast_1d(checks.real_array(name, given))
+    phase, speed = cells(counts[0], counts[1], highest)
+    if not isinstance(phases, int):
+        phase = checks.finite("phases", np.atleast_1d(phases), "rad")
+    if not isinstance(speeds, int):
+        speed = checks.finite("speeds", np.atleast_1d(speeds))
+        checks.within("speeds", float(speed.min()), 0.0, math.inf)
     ratios = np.atleast_1d(checks.positive_array("amplitudes", amplitudes, "-"))
-    task = study.Cells(ratios, grid[0], grid[1], checks.whole("impacts", impacts, 1), small, check)
+    task = study.Cells(ratios, phase, speed, checks.whole("impacts", impacts, 1), small, check)
     return _computed(systems, task, threads)
 
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -79,23 +80,11 @@ class PeriodicOrbit:
         duration = self.halves * math.pi / self.system.excitation.frequency
         return np.log(np.abs(self.multipliers)) / duration
 
-    @property
-    def fold(self) -> float:
-        """Test function of folds: 1 - trace + determinant."""
-        return test_function(self.jacobian, "fold")
 
-    @property
-    def flip(self) -> float:
-        """Test function of pitchforks and period doublings: 1 + trace + determinant."""
-        return test_function(self.jacobian, "flip")
-
-
-def test_function(jacobian: FloatArray, name: str) -> float:
+def _test(jacobian: FloatArray, name: str) -> float:
     """Return the function of a jacobian that is zero at a fold, or at a pitchfork or period doubling ("flip")."""
     (a, b), (c, d) = jacobian.tolist()
-    trace = a + d
-    # Eqs. 335, 336
-    return float(1.0 + (-trace if name == "fold" else trace) + (a * d - b * c))
+    return float(1.0 + (-a - d if name == "fold" else a + d) + (a * d - b * c))  # Eqs. 335, 336
 
 
 def find_orbit(
@@ -287,6 +276,34 @@ class Branch:
         """Values of the parameter, shape (orbits,)."""
         return np.array([orbit.system.value(self.parameter) for orbit in self.orbits])
 
+    def at(self, value: float) -> list[PeriodicOrbit]:
+        """Return the orbits of the branch at a value of the parameter.
+
+        Parameters
+        ----------
+        value : float
+            Value of the parameter.
+
+        Returns
+        -------
+        list of PeriodicOrbit
+            One orbit per passage of the branch through the value; empty outside the branch.
+
+        Raises
+        ------
+        OrbitNotFoundError
+            If the orbits of the branch are too far from each other.
+        """
+        curve, normal = _Curve(self.orbits[0], (self.parameter,)), np.array([0.0, 0.0, 1.0])
+        passages = []
+        for before, after in pairwise(self.orbits):
+            low, high = curve.start(before), curve.start(after)
+            share = (value / curve.scales[0] - low[2]) / ((high - low)[2] or math.nan)
+            if 0.0 <= share < 1.0 or (after is self.orbits[-1] and share == 1.0):
+                low[0] += round((high - low)[0] / (2.0 * math.pi)) * 2.0 * math.pi
+                passages.append(curve.orbit(curve.corrected(low + share * (high - low), normal)))
+        return passages
+
     def first(self, kind: str) -> Bifurcation:
         """Return the first bifurcation of a kind.
 
@@ -326,8 +343,11 @@ class _Curve:
     def system(self, point: FloatArray) -> HarmonicRocking:
         """Return the system; the amplitude ratio last, since its unit changes with the slenderness."""
         system, values = self.first, dict(zip(self.parameters, (point[2:] * self.scales).tolist(), strict=True))
-        for name in sorted(self.parameters, key="amplitude".__eq__):
-            system = system.changed(name, values[name])
+        try:
+            for name in sorted(self.parameters, key="amplitude".__eq__):
+                system = system.changed(name, values[name])
+        except InvalidValueError as error:
+            raise self._error("the orbit ends at {name} {limit:.9g}", point) from error
         return system
 
     def equations(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -347,7 +367,7 @@ class _Curve:
 
     def _tested(self, point: FloatArray) -> FloatArray:
         residual, flight = self._closure(point, "")
-        return np.append(residual, test_function(flight.jacobian[0], self.test))
+        return np.append(residual, _test(flight.jacobian[0], self.test))
 
     def _error(self, text: str, point: FloatArray) -> OrbitNotFoundError:
         return OrbitNotFoundError(text, name=self.parameters[-1], limit=float(point[-1] * self.scales[-1]))
@@ -473,13 +493,13 @@ def _located(
     orbits: tuple[PeriodicOrbit, PeriodicOrbit],
 ) -> Bifurcation | None:
     """Locate the zero of a test function between two points of a curve."""
-    before, after = (float(getattr(orbit, name)) for orbit in orbits)
+    before, after = (_test(orbit.jacobian, name) for orbit in orbits)
     if before * after >= 0.0:
         return None
     point, following = points
 
     def test(length: float) -> float:
-        return float(getattr(curve.orbit(curve.corrected(point + length * tangent, tangent)), name))
+        return _test(curve.orbit(curve.corrected(point + length * tangent, tangent)).jacobian, name)
 
     zero = brentq(test, 0.0, float(tangent @ (following - point)), xtol=1e-14, rtol=1e-14)
     orbit = curve.orbit(curve.corrected(point + zero * tangent, tangent))

@@ -21,6 +21,7 @@ from rocking.outcome import UNCOUNTED
 from rocking.studies.histories import Histories, checked_range
 from rocking.studies.longrun import attractors, basins, orbits
 from rocking.studies.longrun import system as engine
+from rocking.studies.longrun.attractors import start_states
 from rocking.studies.longrun.exponents import ALIGNED, lyapunov_exponents
 from rocking.studies.longrun.orbits import Branch, OrbitNotFoundError, PeriodicOrbit
 from rocking.studies.longrun.system import NONE, OVERTURNED, Harmonic, HarmonicRocking, Numerics, Parameter
@@ -115,9 +116,9 @@ class Diagram(Task):
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
         systems = [_at(system, self.axis, value) for value in self.values.tolist()]
         options: Any = {"cycles": self.cycles, "exponents": self.exponents, "numerics": numerics}
-        starts = np.array([_started(system, self.starts) for system in systems])
-        sweeps = [attractors.arrays(systems, starts, memory=memory, **options) for memory in self.sweeps]
-        whole = {new: np.stack([sweep[old] for sweep in sweeps]) for new, old in _NAMES.items() if old in sweeps[0]}
+        starts = np.array([start_states(system, self.starts) for system in systems])
+        sweeps = [attractors.diagram(systems, starts, memory=memory, **options) for memory in self.sweeps]
+        whole = {name: np.stack([sweep[name] for sweep in sweeps]) for name in sweeps[0]}
         modes = np.array([-2, -1, -1, -1, UNCOUNTED, -3])[whole["attractor"]]
         return {
             name: np.broadcast_to(values if values.ndim == 4 else values[..., None], self.shape).reshape(-1)
@@ -138,12 +139,6 @@ class Diagram(Task):
         return [{**fractions, **lowest, **largest}]
 
 
-_NAMES = {
-    "attractor": "kind", "periods": "period", "is_symmetric": "symmetric", "rotation_ratio": "rotation",
-    "velocity_ratio": "velocity", "impacts_per_period": "impacts", "peak_ratio": "peak", "exponent": "exponent",
-}  # fmt: skip
-
-
 def _at(system: HarmonicRocking, axis: str, value: float) -> HarmonicRocking:
     """Return a system with another value of an axis; slenderness keeps the ratios, size keeps the ground motion."""
     if axis == "size":
@@ -161,13 +156,6 @@ def random_states(number: int, seed: int) -> FloatArray:
     draws = np.random.default_rng(seed).random((number, 2)) * [2.0 * math.pi, 1.0]
     draws[0] = np.nan
     return draws
-
-
-def _started(system: HarmonicRocking, states: FloatArray) -> FloatArray:
-    """Return time, rotation and angular velocity of states after an impact, at rest where they are NaN."""
-    times = (states[:, 0] - system.excitation.phase) / system.excitation.frequency
-    starts = np.column_stack([times, np.zeros(len(states)), states[:, 1] * system.alpha * system.p])
-    return np.where(np.isnan(starts), 0.0, starts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,13 +180,19 @@ class SectionTask(Task):
         }
 
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
-        states = _started(system, self.starts)
-        options: Any = {"cycles": self.cycles[1], "settled": self.cycles[0], "at": self.at, "numerics": numerics}
-        section = attractors.poincare(system, states, **options)
-        modes = np.where(section.ending == OVERTURNED, UNCOUNTED, np.where(section.ending == NONE, -1, -3))
+        settled, kept = self.cycles
+        most = self.shape[1] if self.at == "impact" else 0
+        starts = start_states(system, self.starts)
+        options: Any = {"settled": settled, "kept": kept, "most_impacts": most, "numerics": numerics}
+        result = engine.over_periods(system, starts, **options)
+        section = result.states / system.alpha
+        if most:
+            phase = (result.hits[..., 0] * system.excitation.frequency + system.excitation.phase) % (2.0 * np.pi)
+            section = np.stack([phase, result.hits[..., 1] / system.alpha], axis=2)
+        modes = np.where(result.ending == OVERTURNED, UNCOUNTED, np.where(result.ending == NONE, -1, -3))
         names = list(self.columns)
-        rows = np.repeat(modes, self.shape[1])
-        return {names[0]: section.first.reshape(-1), names[1]: section.second.reshape(-1), **_of_modes(rows)}
+        values = {names[0]: section[..., 0].reshape(-1), names[1]: section[..., 1].reshape(-1) / system.p}
+        return {**values, **_of_modes(np.repeat(modes, self.shape[1]))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +214,7 @@ class Exponents(Task):
 
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
         draws = np.random.default_rng(self.seed).random((16 * self.orbits, 2)) * [2.0 * math.pi, 1.0]
-        starts = _started(system, draws)  # those that overturn at once are of no attractor
+        starts = start_states(system, draws)  # those that overturn at once are of no attractor
         alive = engine.over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == 0
         starts = starts[np.argsort(~alive, kind="stable")[: self.orbits]]
         options: Any = {"settled": self.settled, "kept": self.kept, "numerics": numerics}
@@ -276,7 +270,8 @@ class Cells(Task):
             rows = places[0] == number
             where = (system.changed("amplitude", float(self.amplitudes[number])), self.phases[places[1][rows]],
                      self.speeds[places[2][rows]])  # fmt: skip
-            kinds[:, rows] = basins.checked_ends(*where, self.impacts, self.small, numerics, check=self.check)
+            options: Any = {"impacts": self.impacts, "small": self.small, "numerics": numerics, "check": self.check}
+            kinds[:, rows] = basins.checked_ends(*where, **options)
         modes = np.array([UNCOUNTED, -1, -1, -3])[kinds[0]]
         return {**_of_modes(modes), "final_state": kinds[0], "is_uncertain": (kinds[0] != kinds[1]).astype(np.int8)}
 
@@ -285,12 +280,11 @@ class Cells(Task):
         for amplitude, kinds, uncertain in zip(
             self.amplitudes, results["final_state"].values, results["is_uncertain"].values, strict=True
         ):
-            basin = basins.Basin(self.phases, self.speeds, kinds, uncertain)
-            safe, low, high = basin.stability()
+            safe, low, high = basins.basin_stability(kinds)
             rows.append({
                 "amplitude_ratio": float(amplitude), "stability": safe, "stability_low": low, "stability_high": high,
-                **{f"cells_{name}": count for name, count in basin.counts.items()},
-                "cells_uncertain": int(uncertain.sum()), "box_dimension": basin.box_dimension(),
+                **{f"cells_{name}": int((kinds == k).sum()) for k, name in enumerate(basins.KINDS)},
+                "cells_uncertain": int(uncertain.sum()), "box_dimension": basins.box_dimension(kinds),
             })  # fmt: skip
         return rows
 
@@ -339,9 +333,8 @@ class Branches(Task):
         branches = [branch]
         for kind in ("pitchfork", *["period doubling"] * (self.doublings - 1))[: self.doublings]:
             try:
-                branches.append(
-                    orbits.branch_off(branches[-1].first(kind), self.limits, parameter=parameter, step=0.02)
-                )
+                bifurcation = branches[-1].first(kind)
+                branches.append(orbits.branch_off(bifurcation, self.limits, parameter=parameter, most=500))
             except OrbitNotFoundError:
                 break
         return branches

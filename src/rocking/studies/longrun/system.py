@@ -286,36 +286,15 @@ DEFAULTS = Numerics()
 
 @dataclass(frozen=True)
 class Periods:
-    """States of histories at the ends of periods.
+    """States of histories at the ends of periods; counts and peaks are those of the kept periods."""
 
-    Parameters
-    ----------
-    ending : ndarray of int
-        Event that ended each history; 0 if it was followed to its end, shape (rows,).
-    cycles : ndarray of int
-        Periods that each history lasted, shape (rows,).
-    impacts, rests : ndarray of int
-        Impacts, and those that ended in rest, in the kept periods, shape (rows,).
-    peak : ndarray
-        Largest rotation over alpha in the kept periods, shape (rows,).
-    growth : ndarray
-        Sum of the logarithms of the growth of the tangent vectors over the kept periods, shape (rows, 2).
-    states : ndarray
-        Rotation [rad] and angular velocity [rad/s] at the ends of the kept periods, shape (rows, periods, 2); NaN after
-        the end of a history.
-    hits : ndarray
-        Time [s], angular velocity after and speed before of the first impacts in the kept periods, shape
-        (rows, most, 3); NaN where there are fewer.
-    """
-
-    ending: Any
-    cycles: Any
+    ending: Any  # event that ended each history; 0 if it was followed to its end, shape (rows,)
     impacts: Any
-    rests: Any
-    peak: FloatArray
-    growth: FloatArray
-    states: FloatArray
-    hits: FloatArray
+    rests: Any  # impacts that ended in rest
+    peak: FloatArray  # largest rotation over alpha
+    growth: FloatArray  # sums of the logarithms of the growth of the tangent vectors, shape (rows, 2)
+    states: FloatArray  # rotation [rad] and angular velocity [rad/s], shape (rows, periods, 2); NaN after the end
+    hits: FloatArray  # time [s], angular velocity after and speed before of the first impacts, shape (rows, most, 3)
 
 
 def engine() -> Any:
@@ -364,8 +343,8 @@ def over_periods(
         *_tables(systems, rows), starts, results, states, hits, first.factors, settled, vectors, first.linear,
         math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
     )  # fmt: skip
-    ending, cycles, impacts, rests = results[:, :4].astype(np.int64).T
-    return Periods(ending, cycles, impacts, rests, results[:, 4], results[:, 5:7], states, hits)
+    ending, _, impacts, rests = results[:, :4].astype(np.int64).T
+    return Periods(ending, impacts, rests, results[:, 4], results[:, 5:7], states, hits)
 
 
 def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tuple[FloatArray, FloatArray]:
@@ -376,31 +355,14 @@ def _tables(systems: "HarmonicRocking | list[HarmonicRocking]", rows: int) -> tu
 
 @dataclass(frozen=True)
 class ImpactFlights:
-    """Ends of flights from one impact over several.
+    """Ends of flights from one impact over several: speeds over alpha p, rotations over alpha."""
 
-    Parameters
-    ----------
-    phase, speed : ndarray
-        Phase of the ground motion [rad] and speed after the last impact over alpha p [-], shape (rows,).
-    event : ndarray of int
-        1 if all impacts took place, 2 if the body came to rest, 3 if it overturned, 4 if the integration failed.
-    jacobian : ndarray
-        Derivatives of phase and speed by phase and speed at the start, shape (rows, 2, 2).
-    by_parameter : ndarray
-        Derivatives of phase and speed by the parameter, at constant phase at the start, shape (rows, 2).
-    peak : ndarray
-        Largest rotation over alpha, shape (rows,).
-    before : ndarray
-        Speed before the last impact over alpha p [-], shape (rows,).
-    """
-
-    phase: FloatArray
-    speed: FloatArray
-    event: Any
-    jacobian: FloatArray
-    by_parameter: FloatArray
-    peak: FloatArray
-    before: FloatArray
+    phase: FloatArray  # of the ground motion at the last impact [rad], shape (rows,)
+    speed: FloatArray  # after the last impact
+    event: Any  # IMPACT if all impacts took place, REST, OVERTURNED or FAILED
+    jacobian: FloatArray  # derivatives of phase and speed by those at the start, shape (rows, 2, 2)
+    by_parameter: FloatArray  # derivatives of phase and speed, at constant phase at the start, shape (rows, 2)
+    peak: FloatArray  # largest rotation
 
 
 def over_impacts(
@@ -446,7 +408,4 @@ def over_impacts(
         by[:, 0] += jacobian[:, 0, 1] * speed / system.alpha
         by[:, 1] += (jacobian[:, 1, 1] * speed - ends[:, 1] / rate) / system.alpha
     ends_phase = ends[:, 0] * omega + sine[2]
-    return ImpactFlights(
-        ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10],
-        np.abs(ends[:, 11]) / rate,
-    )  # fmt: skip
+    return ImpactFlights(ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10])

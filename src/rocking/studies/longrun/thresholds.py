@@ -2,8 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rocking import checks
 from rocking.conventions import FloatArray
@@ -16,22 +19,28 @@ class SlenderThresholds:
     Parameters
     ----------
     uplift : float
-        Smallest amplitude that lifts a body at rest: 1.
+        Smallest amplitude that lifts a body at rest, which overturns it if it acts statically: 1.
     fold : float
         Smallest amplitude with a symmetric orbit of one impact per half period.
     melnikov : float
         First-order threshold of heteroclinic tangency, for a coefficient of restitution near 1.
     heteroclinic : float
         Exact threshold of the tangency of the saddles' manifolds through one impact.
+    housner : float
+        Housner's amplitude of a half sine that overturns a body from rest; it is unconservative.
     no_impact : float
         Smallest amplitude that overturns a body from rest at the phase of uplift, without impact, within one half sine.
+    one_impact : float
+        Smallest amplitude that overturns a body from rest after one impact, within one full sine; NaN if there is none.
     """
 
     uplift: float
     fold: float
     melnikov: float
     heteroclinic: float
+    housner: float
     no_impact: float
+    one_impact: float
 
 
 def slender_conditions(frequency: float, restitution: float) -> tuple[FloatArray, FloatArray]:
@@ -86,8 +95,9 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
     References
     ----------
     Lenci and Rega (2006), Int. J. Bifurcation Chaos 16 (heteroclinic tangency); Spanos and Koh (1984), J. Eng. Mech.
-    110:1627-1642 (symmetric orbit); Shi, Anooshehpoor, Zeng and Brune (1996), Bull. Seismol. Soc. Am. 86:1364-1371
-    (half sine).
+    110:1627-1642 (symmetric orbit); Housner (1963), Bull. Seismol. Soc. Am. 53:403-417; Shi, Anooshehpoor, Zeng and
+    Brune (1996), Bull. Seismol. Soc. Am. 86:1364-1371 (half sine); Zhang and Makris (2001), J. Eng. Mech. 127:473-483
+    (full sine).
 
     Examples
     --------
@@ -104,14 +114,46 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
         melnikov=(1.0 + w * w) * (1.0 - r * r) / 4.0,  # Eq. 339
         # Eq. 338
         heteroclinic=(1.0 + w * w) * (1.0 - r) / math.sqrt((w * (1.0 - r)) ** 2 + (1.0 + r) ** 2),
+        housner=math.hypot(1.0, w),
         no_impact=_half_sine(w),
+        one_impact=_full_sine(w, r),
     )
 
 
 def _half_sine(w: float) -> float:
     """Return the amplitude at which a half sine overturns without impact: cos x + exp(-(pi - x) / w) = w sin x."""
-    from scipy.optimize import brentq
-
     # Eq. 340
     x = brentq(lambda x: math.cos(x) + math.exp(-(math.pi - x) / w) - w * math.sin(x), 1e-12, math.pi / 2.0, xtol=1e-15)
     return 1.0 / math.sin(x)
+
+
+def _full_sine(w: float, r: float) -> float:
+    """Return the smallest amplitude at which a full sine overturns after one impact; NaN if there is none."""
+
+    def margin(amplitude: float) -> float:
+        """Return x + 1 + x' at the end of the sine, reduced to the impact; below 0 the body overturns."""
+        g, start = amplitude / (1.0 + w * w), math.asin(1.0 / amplitude)
+        end = (2.0 * math.pi - start) / w
+
+        def motion(t: Any, slope: int = 0) -> Any:
+            waves = (np.sin, np.cos)[slope](w * t + start) * w**slope
+            growing, decaying = (np.cosh, np.sinh)[:: 1 - 2 * slope]
+            return 1.0 - slope + (g / amplitude - 1.0) * growing(t) + g * w * math.cos(start) * decaying(t) - g * waves
+
+        times = np.linspace(0.0, end, 2000)[1:]
+        below = np.flatnonzero(motion(times) < 0.0)
+        if not below.size:  # the impact, if any, comes after the sine
+            x, rate = float(motion(end)), float(motion(end, 1))
+            return 1.0 - r * math.sqrt(max(rate**2 + x * (2.0 - x), 0.0)) if x + rate < 1.0 else math.inf
+        if not below[0]:
+            return math.inf
+        impact = brentq(motion, times[below[0] - 1], times[below[0]], xtol=1e-15)
+        phase = w * impact + start
+        ground = math.sin(phase) + w * math.cos(phase) - w * math.exp(impact - end)
+        return float(1.0 + r * motion(impact, 1) + g * ground)  # Eq. 342
+
+    amplitudes = np.geomspace(1.0 + 1e-9, 1.0 + w * w, 400).tolist()
+    for low, high in pairwise(amplitudes):
+        if margin(high) < 0.0:
+            return float(brentq(margin, low, high, xtol=1e-14))
+    return math.nan
