@@ -27,7 +27,7 @@ def _words(stated: Any) -> Any:
 
 
 class LongRunTable(JobTable):
-    """What is computed for each restitution."""
+    """The options of a task for each restitution."""
 
     def task(self, seed: int) -> "Task":
         """Return the task of the table, with a seed of its random states."""
@@ -133,7 +133,7 @@ class LongRunQuestion(BodyQuestion):
     motions: Annotated[list[MotionTable], Field(max_length=0), BeforeValidator(in_list)] = Field(default_factory=list)
 
     def task(self) -> "Task":
-        """Return what is computed for each restitution."""
+        """Return the task for each restitution."""
         task: Task = self.own.task(self.campaign.seed)
         return task
 

@@ -47,7 +47,7 @@ _ENDED = {-3: 3, -2: 0, -1: 1, UNCOUNTED: 2}  # outcome by mode
 
 @dataclass(frozen=True, eq=False)
 class Task(ABC):
-    """What is computed for each system; its fields are plain values and arrays."""
+    """A computation for each system; its fields are plain values and arrays."""
 
     is_cut: ClassVar[bool] = False  # True if any of its rows can be computed alone
 
