@@ -44,16 +44,16 @@ $(VENV)/created:
 	@$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-$(VENV)/demo: $(VENV)/created requirements/demo.lock pyproject.toml
+$(VENV)/demo: $(VENV)/created requirements/demo.lock pyproject.toml workbench/pyproject.toml
 	@echo "Installing the pinned dependencies (a minute or two, once) ..."
 	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/demo.lock
-	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@$(PIP) install --no-deps --no-build-isolation --editable . --editable ./workbench
 	@touch $@
 
-$(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
+$(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml workbench/pyproject.toml
 	@echo "Installing the pinned dependencies and tools (a minute or two, once) ..."
 	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/dev.lock
-	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@$(PIP) install --no-deps --no-build-isolation --editable . --editable ./workbench
 	@touch $@ $(VENV)/demo
 
 $(VENV)/bench: $(VENV)/dev requirements/bench.lock
@@ -98,7 +98,7 @@ lint: $(VENV)/dev $(ENGINE)
 
 # Nothing else needs node, which may be missing.
 types: $(VENV)/dev
-	@$(BIN)/python types/check.py
+	@$(BIN)/python workbench/types/check.py
 
 # A test says whether what is kept is current.
 messages: $(VENV)/dev
@@ -113,7 +113,7 @@ ORDINARY := $(if $(SETTING),$(BIN)/python tests/portable.py --setting "$(SETTING
 # The measured deviations go into the manual that is built next (docs/verified.md).
 test: lint docs
 	$(ORDINARY) -n 2 --dist loadfile -m "not speed and not browser" --junitxml=build/tests.xml -o junit_family=xunit1
-	$(PYTEST) tests/browser -n 2 --dist loadfile -m "not speed"
+	$(PYTEST) workbench/tests/browser -n 2 --dist loadfile -m "not speed"
 
 # Limits are five times the stated times, at the pace of this machine.
 speed: $(VENV)/dev $(ENGINE)
@@ -161,11 +161,11 @@ pelicun: $(PELICUN)/created
 	PYTHONPATH=$(abspath src) $(PELICUN)/bin/python -m pytest tests/verification/test_pelicun.py -o filterwarnings= -q
 
 # The manual that `make docs` made goes into both.
-MANUAL := src/rocking/app/manual
+MANUAL := workbench/src/rocking_workbench/manual
 packages: $(VENV)/dev
 	rm -rf dist $(MANUAL)
 	if [ -d build/manual ]; then cp -r build/manual $(MANUAL); fi
-	$(BIN)/uv build --quiet; status=$$?; rm -rf $(MANUAL); exit $$status
+	$(BIN)/uv build --quiet && $(BIN)/uv build --quiet workbench --out-dir dist; status=$$?; rm -rf $(MANUAL); exit $$status
 	$(BIN)/uvx twine check --strict dist/*
 	$(BIN)/uvx check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	$(BIN)/uvx zizmor --offline .github
@@ -175,8 +175,8 @@ fuzz: $(VENV)/dev
 		tests/unit/motions_formats/test_sac.py -q
 
 fuzz-web: $(VENV)/dev $(ENGINE)
-	ROCKING_WEB_FUZZ=6500 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest tests/verification/test_web_fuzz.py \
-		tests/verification/test_web_load.py -q -rP
+	ROCKING_WEB_FUZZ=6500 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest workbench/tests/verification/test_web_fuzz.py \
+		workbench/tests/verification/test_web_load.py -q -rP
 
 durability: $(VENV)/dev $(ENGINE)
 	ROCKING_KILLS=300 $(BIN)/python -m pytest tests/verification/test_campaign_durability.py -q -rP
@@ -206,18 +206,18 @@ campaign: $(VENV)/dev $(ENGINE)
 lock: $(VENV)/created
 	$(PIP) install uv
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --upgrade --extra dev pyproject.toml -o requirements/dev.lock
+		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra dev pyproject.toml workbench/pyproject.toml -o requirements/dev.lock
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --upgrade --extra bench --constraint requirements/dev.lock pyproject.toml \
+		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra bench --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
 		-o requirements/bench.lock
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml \
+		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
 		-o requirements/demo.lock
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --upgrade --extra mutants --constraint requirements/dev.lock pyproject.toml \
+		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra mutants --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
 		-o requirements/mutants.lock
 	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --upgrade --extra pelicun pyproject.toml -o requirements/pelicun.lock
+		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra pelicun pyproject.toml -o requirements/pelicun.lock
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so

@@ -36,7 +36,6 @@ FLOORS = (
     ("campaigns",),
     ("plots",),
     ("reports",),
-    ("app",),
     ("cli",),
     ("__main__",),
 )  # fmt: skip

@@ -61,8 +61,8 @@ y = {axis = "amplitude_ratio", from = 1, to = 8, count = 3}
 _PAGE = """
 from pathlib import Path
 from fastapi.testclient import TestClient
-from rocking.app.application import create_app
-from rocking.app.settings import ServerSettings
+from rocking_workbench.application import create_app
+from rocking_workbench.settings import ServerSettings
 settings = ServerSettings(folder=Path("."), workers=1)
 app = create_app(settings)
 head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}

@@ -13,8 +13,9 @@ from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-SOURCE = Path(__file__).parents[1] / "src/rocking"
-FOLDER, PAGE = SOURCE / "language", SOURCE / "app/static"
+ROOT = Path(__file__).parents[1]
+SOURCE, WORKBENCH = ROOT / "src/rocking", ROOT / "workbench/src/rocking_workbench"
+FOLDER, PAGE = SOURCE / "language", WORKBENCH / "static"
 TEMPLATE = FOLDER / "messages.pot"
 DATE = datetime(2000, 1, 1, tzinfo=UTC)  # of every compiled catalogue: files change with their messages alone
 HEADER = 'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"\n'
@@ -26,7 +27,7 @@ STRING = r'"((?:[^"\\\n]|\\.)*)"'  # of a script
 
 # packages whose errors the page shows
 OF_PAGE = {
-    "app", "bodies", "checks.py", "decision", "identification", "motions", "restitution", "spec",
+    "bodies", "checks.py", "decision", "identification", "motions", "restitution", "spec",
     "studies",
 }  # fmt: skip
 REFUSALS = {"Busy", "NotFound", "Refused"}  # errors without "Error" in their name
@@ -157,10 +158,10 @@ def descriptions_of(tree: ast.AST) -> Iterator[str]:
 def extracted() -> tuple[set[Key], set[str]]:
     """Return the messages of all sources, and every literal in them as `plain`, by which a message may be used."""
     messages, literals = set(), set()
-    for path in SOURCE.rglob("*.py"):
+    for path in [*SOURCE.rglob("*.py"), *WORKBENCH.rglob("*.py")]:
         tree = ast.parse(path.read_text("utf-8"))
         messages.update(messages_of(tree))
-        if path.relative_to(SOURCE).parts[0] in OF_PAGE:
+        if path.is_relative_to(WORKBENCH) or path.relative_to(SOURCE).parts[0] in OF_PAGE:
             messages.update(messages_of_errors(tree))
         literals.update((*names_of(tree), *descriptions_of(tree)))
         literals.update(

@@ -12,7 +12,7 @@ from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
 
-_VENDOR = Path(__file__).parents[2] / "src" / "rocking" / "app" / "static" / "vendor" / "minisearch"
+_VENDOR = Path(__file__).parents[2] / "workbench" / "src" / "rocking_workbench" / "static" / "vendor" / "minisearch"
 _INNER = (nodes.section, addnodes.desc)
 _UNREAD = (*_INNER, nodes.comment, nodes.raw, nodes.math_block)
 _LATEX = str.maketrans("", "", "\\{}$")

@@ -27,7 +27,6 @@ _EXTRAS = {
     "openpyxl": "excel",
     "pyarrow": "parquet",
     "distributed": "dask",
-    "fastapi": "web",
 }
 
 

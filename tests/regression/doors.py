@@ -72,8 +72,8 @@ def application(folder: Path) -> Iterator[Any]:
     """Give a client of the web application that may do everything."""
     import warnings
 
-    from rocking.app.application import create_app
-    from rocking.app.settings import ServerSettings
+    from rocking_workbench.application import create_app
+    from rocking_workbench.settings import ServerSettings
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

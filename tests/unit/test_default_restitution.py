@@ -1,16 +1,12 @@
 """The one default restitution model: the same in Python, files and the page, and named in every answer."""
 
 import inspect
-import json
-import re
-from pathlib import Path
 
 import pytest
 
 import rocking as rk
 from rocking import decision, studies
-from rocking.app.inputs import Inputs
-from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
+from rocking.conventions import DEFAULT_RESTITUTION
 from rocking.dynamics import SpatialBody
 from rocking.restitution.space import edge_coefficient, impact_in_space, spatial_model
 from rocking.spec.questions import questions
@@ -31,15 +27,11 @@ def test_functions_have_one_default(function):
     assert parameters[name].default == DEFAULT_RESTITUTION
 
 
-def test_files_and_page_have_one_default():
-    """Job files, question files, requests and the scripts of the page have this one."""
+def test_files_have_the_default():
+    """Job files and input files have the default restitution."""
     for question in questions().values():
         table = question.model_fields["restitution"].get_default(call_default_factory=True)
         assert table.model == DEFAULT_RESTITUTION
-    assert Inputs.model_fields["restitution"].default.models == [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
-    script = Path(rk.__file__).parent / "app/static/app/inputs.js"
-    models = re.search(r"DEFAULT_MODELS = (\[.*?\]);", script.read_text("utf-8"))
-    assert json.loads(models[1]) == [DEFAULT_RESTITUTION, *COMPARED_RESTITUTIONS]
 
 
 def test_every_mechanics_has_the_default_and_names_it():

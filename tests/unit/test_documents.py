@@ -40,7 +40,7 @@ def test_links_lead_somewhere(page):
     text = (ROOT / page).read_text(encoding="utf-8")
     for target in re.findall(r"\]\((?!http)([^)#]+)\)", text):
         assert ((ROOT / page).parent / target).exists(), target
-    for target in re.findall(r"tests/[\w/]+\.py", text):
+    for target in re.findall(r"(?:workbench/)?tests/[\w/]+\.py", text):
         assert (ROOT / target).exists(), target
 
 

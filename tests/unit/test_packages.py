@@ -36,7 +36,8 @@ def bounds(requirements):
 CORE = PYPROJECT["project"]["dependencies"]
 EXTRAS = PYPROJECT["project"]["optional-dependencies"]
 FOR_USERS = EXTRAS["all"][0].removeprefix("rocking[").removesuffix("]").split(",")
-OF_USERS = [each for name in FOR_USERS for each in EXTRAS[name]]
+WORKBENCH = tomllib.loads((ROOT / "workbench/pyproject.toml").read_text("utf-8"))
+OF_USERS = [each for name in FOR_USERS for each in EXTRAS[name]] + WORKBENCH["project"]["dependencies"]
 
 
 # ---- the page of the index ----------------------------------------------------------------------
@@ -143,9 +144,10 @@ def test_what_a_page_makes_of_an_address():
 
 
 def test_there_is_one_version(metadata):
-    """Package, metadata, citation and recipe have the version of the source."""
+    """Both distributions, metadata, citation and recipe have the version of the source."""
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
-    versions = {metadata[""]["version"], str(citation["version"]), RECIPE["context"]["version"]}
+    workbench = WORKBENCH["project"]["version"]
+    versions = {metadata[""]["version"], str(citation["version"]), RECIPE["context"]["version"], workbench}
     assert versions == {rk.__version__}
     changes = re.search(r"^## \[(.+?)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)[1]
     assert changes in {"Unreleased", rk.__version__}
@@ -183,23 +185,24 @@ def test_the_workflow_publishes_what_it_tried():
     jobs = WORKFLOW["jobs"]
     systems = jobs["wheels"]["strategy"]["matrix"]["system"]
     assert [sum(each.startswith(name) for each in systems) for name in ("ubuntu", "macos", "windows")] == [2, 2, 1]
-    assert {*jobs["publish"]["needs"], jobs["wheels"]["needs"]} == set(jobs) - {"publish"}
+    assert {*jobs["publish"]["needs"], jobs["workbench"]["needs"]} == set(jobs) - {"publish"}
     assert jobs["publish"]["if"] == "github.ref_type == 'tag'"
     assert jobs["publish"]["permissions"] == {"id-token": "write"}
     for step in [step for job in jobs.values() for step in job["steps"] if "uses" in step]:
         assert re.search(r"@[0-9a-f]{40}$", step["uses"]), step
 
 
-def test_the_workflow_s_packages_bring_the_manual():
-    """Wheels and sources wait for the manual, and lay it into the package; only packages are published."""
+def test_the_packages_of_the_application_bring_the_manual():
+    """They wait for the manual and lay it into the package; only packages are published."""
     jobs = WORKFLOW["jobs"]
-    for job in (jobs["wheels"], jobs["source"]):
-        (fetched,) = [each["with"] for each in job["steps"] if "download-artifact" in each.get("uses", "")]
-        (kept,) = [each["with"] for each in job["steps"] if "upload-artifact" in each.get("uses", "")]
-        assert job["needs"] == "manual"
-        assert fetched == {"name": "manual", "path": PYPROJECT["tool"]["scikit-build"]["sdist"]["include"][0]}
+    steps = jobs["workbench"]["steps"]
+    (fetched,) = [step["with"] for step in steps if "download-artifact" in step.get("uses", "")]
+    assert jobs["workbench"]["needs"] == "manual"
+    assert fetched["path"] == f"workbench/{WORKBENCH['tool']['scikit-build']['sdist']['include'][0]}"
+    for job in (jobs["wheels"], jobs["source"], jobs["workbench"]):
+        (kept,) = [step["with"] for step in job["steps"] if "upload-artifact" in step.get("uses", "")]
         assert kept["name"].startswith("dist-")
-    (published,) = [each["with"] for each in jobs["publish"]["steps"] if "download-artifact" in each["uses"]]
+    (published,) = [step["with"] for step in jobs["publish"]["steps"] if "download-artifact" in step["uses"]]
     assert published["pattern"] == "dist-*"
 
 

@@ -26,7 +26,7 @@ def packages() -> list[ModuleType]:
         found = [rocking] + [
             import_module(each.name)
             for each in pkgutil.walk_packages(rocking.__path__, "rocking.")
-            if each.ispkg and not each.name.startswith(("rocking.app", "rocking.cli", "rocking.tables"))
+            if each.ispkg and not each.name.startswith(("rocking.cli", "rocking.tables"))
         ]
     return [each for each in found if hasattr(each, "__all__")]
 

@@ -4,9 +4,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from web_clients import new_application, script_of
 
-from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns.identity import Identity, engine_of, software
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking.errors import InvalidValueError
@@ -75,25 +73,6 @@ def test_a_campaign_of_schema_1_opens(name, tmp_path):
     opened = JobFolder.open(folder)
     opened.run(workers=1)
     assert opened.job.document == job.document
-
-
-def test_a_project_of_schema_1_opens(tmp_path):
-    """Inputs, forms and studies of a project file have the present keys, and its study is computed."""
-    with script_of(new_application(tmp_path / "data")) as client:
-        answer = client.post(
-            "/api/projects/import", content=(OLD / "project.zip").read_bytes(),
-            headers={"Content-Type": "application/octet-stream"},
-        )  # fmt: skip
-        assert answer.status_code == 201, answer.text
-        document = answer.json()["document"]
-    assert document["inputs"]["response"] == {"initial_rotation": 0.5, "assumed_friction": 0.6}
-    form = document["forms"]["decide"]
-    assert form["range"] == {"min_pga": "2", "max_pga": "9", "samples": "50", "bisections": "3"}
-
-
-def test_a_study_of_schema_1_shows_present_keys():
-    (path,) = (OLD / "application" / "studies").iterdir()
-    assert question_in(StudyFolder(path).asked()) == question_in(tables_of((NEW / "stripes.toml").read_text("utf-8")))
 
 
 def test_documents_without_forms_or_inputs_stay():

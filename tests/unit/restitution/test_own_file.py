@@ -107,18 +107,6 @@ def test_an_edited_file_takes_the_place_of_what_it_was(own):
     assert source.count("own model") == 1
 
 
-def test_the_page_lists_it(own):
-    """What there is to choose from holds the model, its colour, dash and source."""
-    from rocking.app.api.info import _models
-
-    own(f"0.9 * {HOUSNER}", "listed")
-    assert "listed" not in {each["name"] for each in _models()}
-    register_own()
-    (found,) = (each for each in _models() if each["name"] == "listed")
-    assert (found["label"], found["colour"], found["dash"]) == ("listed", "#7a5195", [])
-    assert found["citation"].startswith("own model, listed.py, SHA-256 ")
-
-
 @pytest.mark.parametrize(
     ("value", "name", "reason"),
     [

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.app.studies.results import contours_of
 from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.decision.inventory import InventoryObject, assess
 from rocking.decision.inventory.hazard import Hazard
@@ -89,15 +88,6 @@ def test_space_says_so():
     assert "0.0 % differ" in figure.axes[2].get_title(loc="left")
     nothing = falling_picture(spatial_batch([NONE]).to_xarray(), np.array([0.0, np.pi]))
     assert np.isnan(nothing.axes[0].lines[0].get_ydata()).all()
-
-
-def test_lines_of_a_map_keep_away_from_what_has_no_result():
-    """A row without results beside falls is no border between falling and standing."""
-    inside = np.array([[True] * 4, [False] * 4, [False] * 4])
-    grid = np.arange(4.0), np.arange(3.0)
-    known = np.array([[True] * 4, [False] * 4, [True] * 4])
-    assert contours_of(inside, *grid)
-    assert contours_of(inside, *grid, is_known=known) == []
 
 
 def test_spectra_have_no_share_without_results():

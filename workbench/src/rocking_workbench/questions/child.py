@@ -1,0 +1,130 @@
+"""A command that a server runs: `python -m rocking_workbench.questions.child`.
+
+The process loads common modules until it reads a line with a folder and the arguments of a command. Then it runs
+`rocking COMMAND ARGUMENTS ...` in the folder, with limits, and opens only files there. It ends with the server, because
+its standard input is a pipe.
+"""
+
+# ruff: noqa: F401 - modules that are imported ahead
+import json
+import os
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from runpy import run_module
+from typing import Any
+
+_MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
+_SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/mime.types")
+
+
+def _imports() -> Iterator[None]:
+    """Import common modules step by step."""
+    import typer
+
+    import rocking.spec.documents.prediction
+
+    yield
+    import rocking.decision.prediction
+    import rocking.spec.construction
+
+    yield
+    import rocking.bodies.formats
+    import rocking.restitution.from_file
+
+    yield
+    import matplotlib.backends.backend_pdf
+    import matplotlib.backends.backend_svg
+    import scipy.signal
+
+    import rocking.plots.style
+
+    yield
+    import trimesh
+
+    import rocking.reports
+
+
+def main() -> None:
+    """Run the received command."""
+    from rocking_workbench.studies.child import end_with_the_server
+
+    received, question = threading.Event(), b""
+
+    def listen() -> None:
+        nonlocal question
+        while not question.endswith(b"\n"):
+            if not (byte := os.read(0, 1)):
+                os._exit(0)  # the server has ended without a command
+            question += byte
+        received.set()
+        end_with_the_server()
+
+    threading.Thread(target=listen, daemon=True).start()
+    _limit()
+    imports = _imports()
+    while not received.is_set() and next(imports, "done") is None:
+        pass
+    received.wait()
+    _answer(**json.loads(question))
+
+
+def _answer(folder: str, file: str, answer: str, log: str, own: str, arguments: list[str]) -> None:
+    """Run a command in a folder; answer, log and library output are files there."""
+    os.chdir(folder)
+    for number, name in ((1, answer), (2, log)):
+        descriptor = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+        os.dup2(descriptor, number)
+        os.close(descriptor)
+    os.environ["TMPDIR"] = tempfile.tempdir = str(Path(own).resolve())
+    from rocking.errors import RockingError
+    from rocking.evidence.store import store
+    from rocking.restitution.from_file import register_own
+
+    try:
+        register_own()  # the owner's own models, which lie outside
+    except RockingError as error:
+        sys.stderr.write(json.dumps({"error": error.data()}))
+        sys.exit(2)
+    models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
+    keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
+    sys.argv[1:] = arguments
+    run_module("rocking", {"unnamed_file": file}, "__main__")
+
+
+def keep_inside(*folders: Path) -> None:
+    """Refuse to open files outside the folders and the installation."""
+    own = [sys.prefix, sys.base_prefix, sys.exec_prefix, *filter(None, sys.path), str(Path(__file__).parents[2])]
+    allowed = tuple(f"{Path(folder).resolve()}{os.sep}" for folder in [*own, *_SYSTEM, *map(str, folders)])
+
+    def look(event: str, details: tuple[Any, ...]) -> None:
+        if event in {"subprocess.Popen", "os.posix_spawn", "os.exec"} and details[0] not in {None, sys.executable}:
+            raise PermissionError(13, "a question starts no other program", str(details[0]))
+        if event in {"os.system", "sqlite3.connect"}:
+            raise PermissionError(13, "a question does no such thing", event)
+        if event not in {"open", "os.listdir", "os.scandir"} or not isinstance(details[0], (str, bytes)):
+            return
+        path = os.path.realpath(os.fsdecode(details[0]))
+        if not f"{path}{os.sep}".startswith(allowed):
+            raise PermissionError(13, "not among the files that were sent", Path(path).name)
+
+    sys.addaudithook(look)
+
+
+def _limit() -> None:
+    """Limit memory, time and file size, if the system supports limits."""
+    os.nice(10) if hasattr(os, "nice") else None
+    try:
+        import resource
+    except ImportError:
+        return
+    for which, most in ((resource.RLIMIT_AS, _MEMORY), (resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_FSIZE, _FILE)):
+        hard = resource.getrlimit(which)[1]
+        limit = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(which, (limit, hard))
+
+
+if __name__ == "__main__":
+    main()

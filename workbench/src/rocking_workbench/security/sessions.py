@@ -1,0 +1,199 @@
+"""Signing in: one-time links become cookies that scripts cannot read; sessions, and the key for scripts."""
+
+import hashlib
+import hmac
+import json
+import secrets
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter
+from starlette.requests import HTTPConnection
+
+from rocking.campaigns.disk import write_new
+from rocking_workbench.answers import JsonAnswer, shape
+from rocking_workbench.errors import Busy, Refused
+from rocking_workbench.settings import Limits, state_of
+
+router = APIRouter(prefix="/api/session", tags=["session"])
+_MOST_SESSIONS = 64
+_MOST_LINKS = 16
+_LINK_SECONDS = 900.0
+_MINUTE = 60.0
+_KEPT_EVERY = 600.0  # after so long it is noted on disk that a session lives [s]
+_KEPT = TypeAdapter(dict[Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")], FiniteFloat])
+
+
+class SignIn(BaseModel):
+    """The token of a one-time link."""
+
+    model_config = ConfigDict(strict=True, extra="forbid")
+
+    token: str = Field(min_length=1, max_length=200, description="Token after #token= in the link.")
+
+
+SignedIn: Any = shape("SignedIn", "State of the session.", signed_in=bool)
+Link: Any = shape("Link", "A sign-in link for another browser.", url=str)
+
+
+@router.post("", summary="Exchange a one-time token for a session cookie")
+def sign_in(request: Request, token: SignIn) -> SignedIn:
+    """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict.
+
+    Returns True; the cookie is in the head of the answer.
+    """
+    state = state_of(request)
+    answer = JsonAnswer({"signed_in": True})
+    answer.set_cookie(
+        cookie_name(state.settings.port),
+        state.sessions.sign_in(token.token),
+        httponly=True,
+        samesite="strict",
+        secure=request.url.scheme == "https",
+        path="/",
+    )
+    return answer  # the schema documents SignedIn, the answer carries the cookie
+
+
+@router.get("", summary="Check the session")
+def signed_in(request: Request) -> SignedIn:
+    """Return True if the request has a valid session or key."""
+    return SignedIn(signed_in=is_signed_in(request))
+
+
+@router.delete("", summary="Sign out")
+def sign_out(request: Request) -> SignedIn:
+    """Delete the session of this browser."""
+    state = state_of(request)
+    state.sessions.sign_out(request.cookies.get(cookie_name(state.settings.port)))
+    return SignedIn(signed_in=False)
+
+
+@router.post("/link", summary="Create a sign-in link for another browser")
+def link(request: Request) -> Link:
+    """Create a one-time sign-in link for another browser, valid for 15 minutes."""
+    state = state_of(request)
+    return Link(url=f"{state.settings.origin}/#token={state.sessions.new_link()}")
+
+
+def cookie_name(port: int) -> str:
+    """Return the name of the session cookie, different for each port."""
+    return f"rocking-{port}"
+
+
+def is_signed_in(request: HTTPConnection) -> bool:
+    """Return True if a request has the cookie of a live session or the key for scripts."""
+    state = state_of(request)
+    scheme, _, key = request.headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        return state.sessions.knows_key(key.strip())
+    return state.sessions.knows(request.cookies.get(cookie_name(state.settings.port)))
+
+
+def new_token() -> str:
+    """Return 256 random bits as text."""
+    return secrets.token_urlsafe(32)
+
+
+class Sessions:
+    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key.
+
+    Sessions are kept in a file, as digests from which no cookie can be made, so that they survive a restart.
+    """
+
+    def __init__(self, limits: Limits, clock: Callable[[], float] = time.time, kept: Path | None = None) -> None:
+        self._limits = limits
+        self._clock = clock
+        self._kept = kept
+        self._lock = threading.Lock()
+        self._links: dict[bytes, float] = {}
+        self._sessions: dict[bytes, float] = self._read()
+        self._written = clock()
+        self._wrong: deque[float] = deque(maxlen=limits.wrong_tokens)
+        self.key = new_token()
+
+    def new_link(self, seconds: float = _LINK_SECONDS) -> str:
+        """Return a token that signs one browser in, once; seconds: time for which it is good, perhaps infinite [s]."""
+        token = new_token()
+        with self._lock:
+            while len(self._links) >= _MOST_LINKS:
+                self._links.pop(next(iter(self._links)))
+            self._links[_digest(token)] = self._clock() + seconds
+        return token
+
+    def sign_in(self, token: str) -> str:
+        """Use a token up, and return the value of a cookie: a new one every time, whatever the browser had before."""
+        with self._lock:
+            now = self._clock()
+            if len(self._wrong) == self._wrong.maxlen and now - self._wrong[0] < _MINUTE:
+                raise Busy("too many wrong tokens; wait a minute", seconds=_MINUTE - (now - self._wrong[0]))
+            link = _known(token, self._links)
+            if link is None or self._links.pop(link) < now:
+                self._wrong.append(now)
+                raise Refused(
+                    "the link is wrong, used up or too old: take the newest one, or restart rocking serve", status=401
+                )
+            while len(self._sessions) >= _MOST_SESSIONS:
+                self._sessions.pop(next(iter(self._sessions)))
+            value = new_token()
+            self._sessions[_digest(value)] = now
+            self._write()
+        return value
+
+    def knows(self, value: str | None) -> bool:
+        """Return whether a cookie is that of a live session, which it keeps alive."""
+        with self._lock:
+            session = _known(value, self._sessions)
+            if session is None:
+                return False
+            now = self._clock()
+            seen = self._sessions.pop(session)
+            if now - seen > self._limits.session_seconds:
+                return False
+            self._sessions[session] = now
+            if now - self._written > _KEPT_EVERY:
+                self._write()
+        return True
+
+    def knows_key(self, key: str) -> bool:
+        """Return whether this is the key for scripts."""
+        return hmac.compare_digest(_digest(key), _digest(self.key))
+
+    def sign_out(self, value: str | None) -> None:
+        with self._lock:
+            self._sessions.pop(_known(value, self._sessions) or b"", None)
+            self._write()
+
+    def _read(self) -> dict[bytes, float]:
+        """Return the sessions of an earlier server; none where there are none, or the clock was turned back."""
+        try:
+            kept = _KEPT.validate_json(self._kept.read_bytes()) if self._kept else {}
+        except (OSError, ValueError):
+            return {}
+        now = self._clock()
+        live = sorted((seen, key) for key, seen in kept.items() if 0.0 <= now - seen <= self._limits.session_seconds)
+        return {bytes.fromhex(key): seen for seen, key in live[-_MOST_SESSIONS:]}
+
+    def _write(self) -> None:
+        """Store the sessions for this user only; without disk space, a restart needs a new sign-in."""
+        self._written = self._clock()
+        if self._kept is not None:
+            with suppress(OSError):
+                content = json.dumps({key.hex(): seen for key, seen in self._sessions.items()})
+                write_new(self._kept, content.encode())
+                self._kept.chmod(0o600)
+
+
+def _digest(token: str) -> bytes:
+    return hashlib.sha256(token.encode("utf-8", "surrogatepass")).digest()
+
+
+def _known(token: str | None, digests: dict[bytes, float]) -> bytes | None:
+    digest = _digest(token or "")
+    return next(iter([other for other in digests if hmac.compare_digest(other, digest)]), None)
