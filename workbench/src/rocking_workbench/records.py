@@ -11,10 +11,9 @@ from typing import Annotated
 
 from pydantic import TypeAdapter
 
+from rocking import GroundMotion, read_motion
 from rocking.campaigns.disk import remove_unfinished, write_new
 from rocking.errors import RecordError
-from rocking.motions.formats import read_motion
-from rocking.motions.motion import GroundMotion
 from rocking_workbench.errors import NotFound, TooLarge, room_on_disk
 from rocking_workbench.plain_text import safe_name
 from rocking_workbench.settings import Limits

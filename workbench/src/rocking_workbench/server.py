@@ -20,7 +20,8 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from rocking.campaigns.disk import CampaignBusyError, FolderLock
+from rocking.campaigns import CampaignBusyError
+from rocking.campaigns.disk import FolderLock
 from rocking.errors import InvalidValueError, RockingError
 from rocking_workbench.application import create_app
 from rocking_workbench.settings import DEFAULT_PORT, LOOPBACK, ServerSettings
@@ -114,8 +115,8 @@ def _impact() -> None:
 
 
 def _response() -> None:
+    from rocking.motions import response_spectrum
     from rocking.motions.pulses import pulse
-    from rocking.motions.spectrum import response_spectrum
     from rocking.plots.labels import fine_samples
     from rocking.spec.response import problem_of
     from rocking_workbench.api.response import responses_answer
@@ -129,8 +130,8 @@ def _response() -> None:
 
 
 def _picture() -> None:
-    from rocking.bodies import Block
-    from rocking.plots.body import body_picture
+    from rocking import Block
+    from rocking.plots import body_picture
     from rocking_workbench.downloads.pictures import drawn
 
     drawn(lambda: body_picture(Block(width=1.0, height=4.0)))

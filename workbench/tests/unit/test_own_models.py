@@ -88,7 +88,7 @@ def test_the_page_lists_it(own):
     """The list of models contains the model, its colour, dash and source."""
     from rocking_workbench.api.info import _models
 
-    own(0.9, "listed")
+    own(0.5, "listed")
     assert "listed" not in {model["name"] for model in _models()}
     register_own()
     (listed,) = (model for model in _models() if model["name"] == "listed")

@@ -9,8 +9,7 @@ from fastapi import APIRouter, Query, Request
 
 from rocking.answers import Answer
 from rocking.bodies import Body
-from rocking.bodies.formats import read_plane_body
-from rocking.bodies.formats.body_file import body_to_toml
+from rocking.bodies.formats import body_to_toml, read_plane_body
 from rocking.bodies.formats.schema import UnitName
 from rocking.conventions import FEET, g
 from rocking.errors import BodyFileError, located

@@ -4,8 +4,8 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Request
 
+from rocking import Block
 from rocking.answers import Answer
-from rocking.bodies import Block
 from rocking.conventions import g
 from rocking.reports.body_facts import (
     ImpactAnswer,

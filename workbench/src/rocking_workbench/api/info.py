@@ -144,14 +144,14 @@ def _constant(*kinds: type) -> dict[str, Any]:
     from rocking.dynamics.plane import fast_engine
     from rocking.motions.formats import formats
     from rocking.motions.pulses import catalogue
-    from rocking.motions.synthetic.families import families
+    from rocking.motions.synthetic import families
     from rocking.spec.documents.prediction import PredictTable
     from rocking.spec.motion_tables import MotionTable, OneMotionTable
     from rocking.spec.question import BodyQuestion
     from rocking.spec.questions import questions
     from rocking.spec.questions.inventory import InventoryTable
     from rocking.spec.reference import described, steps, targets
-    from rocking.studies.axis import axes
+    from rocking.studies import axes
     from rocking_workbench.api.contact_bed import ContactBedRequest
     from rocking_workbench.studies.job_document import launched_kinds
 
@@ -205,7 +205,7 @@ def _constant(*kinds: type) -> dict[str, Any]:
 
 def listed_measures() -> list[dict[str, str]]:
     """Return the measures of intensity that have names."""
-    from rocking.motions.intensity import measures
+    from rocking.motions import measures
 
     return [_quantity(measure, measure.words) for measure in measures().values()]
 

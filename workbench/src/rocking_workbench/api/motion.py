@@ -6,9 +6,10 @@ import numpy as np
 from fastapi import APIRouter, Request
 from pydantic import Field
 
+from rocking import GroundMotion
 from rocking.answers import Answer
-from rocking.motions.motion import GroundMotion
-from rocking.motions.spectrum import SHORTEST_PERIOD, ResponseSpectrum, response_spectrum
+from rocking.motions import ResponseSpectrum, response_spectrum
+from rocking.motions.spectrum import SHORTEST_PERIOD
 from rocking.plots.labels import fine_samples, traces
 from rocking.reports.response_facts import measures_of, record_answer, spectrum_answer
 from rocking_workbench.answers import JsonAnswer, Units, answered, shape

@@ -9,13 +9,12 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from fastapi import Path as InPath
 
+from rocking import GroundMotion
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError
 from rocking.messages import Message, Option
-from rocking.motions.formats import formats, read_record
+from rocking.motions.formats import Component, Record, formats, read_record
 from rocking.motions.formats.miniseed import STATIONS
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.motion import GroundMotion
 from rocking_workbench.answers import FILE_SENT, Deleted, JsonAnswer, Messages, answered, shape, shape_of
 from rocking_workbench.errors import room_on_disk
 from rocking_workbench.inputs import check_record, check_samples

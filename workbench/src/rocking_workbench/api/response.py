@@ -6,17 +6,15 @@ from typing import Any, Literal
 import numpy as np
 from fastapi import APIRouter, Request
 
+from rocking import Outcome, Response
 from rocking.answers import Answer
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.dense_output import DenseOutput
 from rocking.dynamics.plane.energy_balance import energies, forces
-from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
-from rocking.motions.integrals import ground_displacement
-from rocking.motions.pulse import Pulse
+from rocking.motions import Pulse, ground_displacement
 from rocking.motions.summary import motion_answer
-from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape, fall_of
 from rocking.reports.body_facts import outline_answer
 from rocking.reports.response_facts import ModelAgreement

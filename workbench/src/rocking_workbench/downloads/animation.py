@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from rocking.dynamics.response import Response
+from rocking import Response
 from rocking.errors import RockingError
 from rocking.reports.response_facts import restitution_words
 from rocking_workbench.errors import Busy, Refused
@@ -45,7 +45,7 @@ def gif_of(response: Response) -> bytes:
 
 
 def _main() -> int:
-    from rocking.plots.animation import animate_gif
+    from rocking.plots import animate_gif
     from rocking.plots.response import shown_until
 
     # the parent's own response, through a pipe that nobody else writes to

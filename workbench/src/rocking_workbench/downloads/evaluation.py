@@ -3,11 +3,10 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from rocking import GroundMotion, Response
 from rocking.bodies import Body
 from rocking.conventions import Foot, g
-from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.reports.body_facts import ImpactAnswer
 from rocking.spec.response import ResponseProblem

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.dynamics.response import Response
-from rocking.outcome import Outcome
+from rocking import Outcome, Response
+from rocking.plots import new_figure, write
 from rocking.plots.response import ground_curve, motion_curves, over_slenderness, shown_until
-from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles, new_figure, write
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, model_styles
 from rocking.reports.response_facts import ModelAgreement, restitution_words
 from rocking_workbench.api.response import thinned
 from rocking_workbench.downloads.evaluation import Evaluation
@@ -35,9 +35,7 @@ _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 
 def figure_of(picture: str, evaluation: Evaluation) -> "Figure":
     """Return a picture."""
-    from rocking.plots.body import body_picture, coefficient_picture
-    from rocking.plots.ground_motion import ground_motion_picture
-    from rocking.plots.response import response_picture
+    from rocking.plots import body_picture, coefficient_picture, ground_motion_picture, response_picture
 
     match picture:
         case "motion":

@@ -12,12 +12,11 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
+from rocking import GroundMotion, Response
 from rocking.bodies import Body
 from rocking.conventions import FEET
-from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
-from rocking.motions.integrals import ground_displacement, ground_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions import ground_displacement, ground_velocity
 from rocking.motions.pulse import Motion
 from rocking.plots.labels import fine_samples, traces
 from rocking.quantities import QUANTITIES

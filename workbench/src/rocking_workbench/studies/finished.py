@@ -119,8 +119,8 @@ def written(
     if kind == "toml":
         target.write_bytes((study.folder.path / JOB).read_bytes())
     elif kind == "svg":
+        from rocking.plots import incremental_dynamic_analysis_picture
         from rocking.plots.campaign import campaign_picture
-        from rocking.plots.fragility import incremental_dynamic_analysis_picture
         from rocking_workbench.downloads.pictures import draw_to
 
         if study.job.document.kind == "incremental":

@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from rocking import Block, GroundMotion, Outcome, Response, simulate
 from rocking.answers import Answer
-from rocking.bodies import Block, Body
-from rocking.bodies.formats.body_file import body_to_toml
-from rocking.dynamics import simulate
-from rocking.dynamics.response import Response
+from rocking.bodies import Body
+from rocking.bodies.formats import body_to_toml
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.messages import Message
-from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion
 from rocking.motions.pulses import pulse, whole_or_number
-from rocking.outcome import Outcome, mode_words
+from rocking.outcome import mode_words
 from rocking.spec.construction import motions_of
 from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseProblem

@@ -17,9 +17,9 @@ from rocking.messages import messages_of
 from rocking.outcome import contact_words, lost_contact, mode_shares, mode_words
 from rocking.quantities import Quantity, quantity
 from rocking.spec.schema import SCHEMA
+from rocking.studies import safe_islands
 from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.studies.fragility.curves import Crossing, shown_curves
-from rocking.studies.islands import safe_islands
 from rocking.version import __version__
 from rocking_workbench.studies.finished import OpenStudy
 from rocking_workbench.studies.study_folder import StudyFolder

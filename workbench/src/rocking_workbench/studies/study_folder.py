@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from rocking.campaigns import disk
-from rocking.campaigns.jobs.folder import status_of
+from rocking.campaigns.jobs import status_of
 from rocking.campaigns.status import CampaignStatus
 from rocking.errors import InvalidValueError, RockingError
 from rocking.spec.schema import migrated
