@@ -34,7 +34,7 @@ _LABELS = {
     "amplitude_ratio": r"$a\,/\,(g\,\tan\,\alpha)$ [-]", "frequency_ratio": r"$\omega\,/\,p$ [-]",
     "slenderness_ratio": "slenderness h/b [-]", "semi_diagonal": "semi-diagonal R [m]",
     "coefficient": "coefficient of restitution r [-]", "rotation_ratio": r"$\theta\,/\,\alpha$ [-]",
-    "velocity_ratio": r"$\dot\theta\,/\,(\alpha\,p)$ [-]", "ground_phase": "phase at impact [rad]",
+    "velocity_ratio": r"$\dot\theta\,/\,(\alpha\,p)$ [-]", "ground_phase": "phase of the ground motion [rad]",
     "speed_ratio": r"speed after impact $/\,(\alpha\,p)$ [-]",
 }  # fmt: skip
 

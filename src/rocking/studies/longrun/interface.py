@@ -221,7 +221,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> block, motion = rk.Block(width=0.5, height=2.0), rk.Harmonic(amplitude=3.0, period=0.8)
     >>> dict(basin(block, motion, "ked", phases=8, speeds=4).sizes)
     {'amplitude_ratio': 1, 'ground_phase': 8, 'speed_ratio': 4}
-    >>> safe = basin(block, motion, "ked", amplitudes=[0.5, 4.0], phases=16, speeds=0)["final_state"] != 0
+    >>> safe = basin(block, motion, "ked", amplitudes=[0.5, 2.0], phases=16, speeds=0)["final_state"] != 0
     >>> safe.mean(("ground_phase", "speed_ratio")).values.round(2).tolist()  # fraction of the phases
     [1.0, 0.0]
     """
