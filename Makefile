@@ -203,21 +203,17 @@ campaign: $(VENV)/dev $(ENGINE)
 	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification tests/validation \
 		tests/unit/evidence/test_calibration.py tests/unit/evidence/test_comparison.py tests/unit/test_gallery.py -q
 
+# The application's dependencies are in every lock of the library.
+COMPILE := $(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url \
+	--no-header --no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade
 lock: $(VENV)/created
 	$(PIP) install uv
-	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra dev pyproject.toml workbench/pyproject.toml -o requirements/dev.lock
-	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra bench --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
-		-o requirements/bench.lock
-	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
-		-o requirements/demo.lock
-	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra mutants --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
-		-o requirements/mutants.lock
-	$(BIN)/uv pip compile --quiet --universal --no-strip-extras --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --no-emit-package rocking-workbench --upgrade --extra pelicun pyproject.toml -o requirements/pelicun.lock
+	$(COMPILE) --extra dev pyproject.toml workbench/pyproject.toml -o requirements/dev.lock
+	for extra in bench demo mutants; do \
+		$(COMPILE) --extra $$extra --constraint requirements/dev.lock pyproject.toml workbench/pyproject.toml \
+			-o requirements/$$extra.lock || exit 1; \
+	done
+	$(COMPILE) --extra pelicun pyproject.toml -o requirements/pelicun.lock
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so
