@@ -10,14 +10,15 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks bench mutants pelicun lock clean
+.PHONY: help demo test test-all speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks bench mutants pelicun lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
-	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
+	@echo "make test     set up, run linters, type checkers, import checks, the quick tests, and one walk through the page"
+	@echo "make test-all the same, the slow tests, all of the browser's, and the manual with everything in it run"
 	@echo "make docs     the manual, with everything in it run, into build/manual"
 	@echo "make coverage the unit tests, and which lines they run"
-	@echo "make speed    tests of speed and of reaction times, on a quiet machine"
+	@echo "make speed    tests of speed and of reaction times, as ratios to a loop beside them"
 	@echo "make portable the tests, without browsers, as on a processor without AVX-512 and as on the least processor"
 	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
@@ -110,14 +111,28 @@ PYTEST := $(BIN)/python -m pytest $(HANGS)
 # With SETTING="no AVX-512, AMD" the ordinary tests run as on such a processor (tests/portable.py).
 ORDINARY := $(if $(SETTING),$(BIN)/python tests/portable.py --setting "$(SETTING)" $(HANGS),$(PYTEST))
 
-# The measured deviations go into the manual that is built next (docs/verified.md).
-test: lint docs
-	$(ORDINARY) -n 2 --dist loadfile -m "not speed and not browser" --junitxml=build/tests.xml -o junit_family=xunit1
-	$(PYTEST) workbench/tests/browser -n 2 --dist loadfile -m "not speed"
+# Tests of the library, and of the workbench. What takes much CPU is marked slow where it stands.
+TESTS := tests src
+WORKBENCH_TESTS := workbench/tests workbench/src
+SPREAD := -n 2 --dist loadfile
+REPORT = --junitxml=build/tests-$(1).xml -o junit_family=xunit1
+
+# At most 8 minutes of CPU: the library's quick tests; in the browser one walk from a body to a report, as an engineer does it.
+test: lint types
+	$(ORDINARY) $(TESTS) $(SPREAD) -m "not slow and not speed" $(call REPORT,quick)
+	$(PYTEST) workbench/tests/browser -m walk
+
+# The manual comes last: docs/verified.md contains the deviations that the tests measured.
+test-all: test
+	$(ORDINARY) $(TESTS) $(SPREAD) -m "slow and not speed" $(call REPORT,slow)
+	$(ORDINARY) $(WORKBENCH_TESTS) $(SPREAD) -m "not speed and not browser" $(call REPORT,workbench)
+	$(PYTEST) workbench/tests/browser $(SPREAD) -m "not speed and not walk and not manual"
+	$(MAKE) docs
+	$(PYTEST) workbench/tests/browser -m manual
 
 # Limits are five times the stated times, at the pace of this machine.
 speed: $(VENV)/dev $(ENGINE)
-	$(PYTEST) $$(grep -rl --include='test_*.py' 'mark.speed' tests) -m speed
+	$(PYTEST) $$(grep -rl --include='test_*.py' 'mark.speed' tests workbench/tests) -m speed
 
 # The unit tests and the examples of docstrings run 95 % of the lines by themselves; looking on takes half as long again.
 coverage: $(VENV)/dev $(ENGINE)

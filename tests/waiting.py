@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-HANG = 300.0
+HANG = 1200.0
 """Wall time after which a test counts as hanging [s]."""
 
 T = TypeVar("T")

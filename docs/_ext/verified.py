@@ -2,8 +2,8 @@
 
 The claim of a test is the first paragraph of its docstring. Its mark, or the mark of its file, contains the method:
 ``@pytest.mark.verifies(kind, against, within=..., control=..., doi=..., room=...)``. Files are parsed and nothing is
-run. With ``build/tests.xml`` the tables contain the deviations of the last ``make test``. `faults` lists incorrect
-marks, and tests/unit/test_verified.py checks that there are none.
+run. With ``build/tests-quick.xml`` and ``build/tests-slow.xml`` the tables contain the deviations of the last ``make
+test-all``. `faults` lists incorrect marks, and tests/unit/test_verified.py checks that there are none.
 """
 
 import ast
@@ -23,7 +23,7 @@ from sphinx.errors import ExtensionError
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 ROOT = Path(__file__).parents[2]
-RUN = ROOT / "build" / "tests.xml"
+RUNS = ("build/tests-quick.xml", "build/tests-slow.xml")
 ALL_MARKED = ("verification", "validation")  # folders whose tests all need a mark
 KINDS = {
     "closed form": "an exact solution, a limit of it or a series of it",
@@ -171,13 +171,11 @@ class Outcome:
 
 
 @cache
-def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
-    """Return the results per test and the date of a file of pytest's ``--junitxml``; nothing without a file."""
-    if not path.exists():
-        return {}, ""
+def outcomes(root: Path = ROOT) -> tuple[dict[tuple[str, str], Outcome], str]:
+    """Return the results per test and the date of the files of pytest's ``--junitxml``; nothing without a file."""
     by_test: dict[tuple[str, str], Outcome] = {}
-    tree = ElementTree.parse(path).getroot()
-    for case in tree.iter("testcase"):
+    trees = [ElementTree.parse(root / run).getroot() for run in RUNS if (root / run).exists()]
+    for case in (case for tree in trees for case in tree.iter("testcase")):
         key = case.get("classname", "").replace(".", "/") + ".py", case.get("name", "").partition("[")[0]
         outcome = by_test.setdefault(key, Outcome())
         tags = {node.tag for node in case}
@@ -187,7 +185,7 @@ def outcomes(path: Path = RUN) -> tuple[dict[tuple[str, str], Outcome], str]:
         for recorded in case.iter("property"):
             if recorded.get("name") == "deviation":
                 outcome.measured = max(outcome.measured or 0.0, float(recorded.get("value", "nan")))
-    return by_test, next(tree.iter("testsuite")).get("timestamp", "")[:10]
+    return by_test, max((next(tree.iter("testsuite")).get("timestamp", "")[:10] for tree in trees), default="")
 
 
 def how_closely(claim: Claim) -> str:
@@ -375,7 +373,7 @@ class Claims(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return a table."""
-        for path in {claim.path for claim in claims()} | {"build/tests.xml"}:
+        for path in {claim.path for claim in claims()}.union(RUNS):
             self.env.note_dependency(str(ROOT / path))
         if "room" in self.options:
             here = [claim for claim in claims() if claim.room == self.options["room"]]

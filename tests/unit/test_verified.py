@@ -9,7 +9,21 @@ import pytest
 sys.path.append(str(Path(__file__).parents[2] / "docs" / "_ext"))  # what makes the tables lies beside the page
 pytest.importorskip("sphinx")
 
-from verified import COUNTED, KINDS, ROOMS, ROOT, STATED, Outcome, claims, claims_of, faults, figures, outcomes, stated
+from verified import (
+    COUNTED,
+    KINDS,
+    ROOMS,
+    ROOT,
+    RUNS,
+    STATED,
+    Outcome,
+    claims,
+    claims_of,
+    faults,
+    figures,
+    outcomes,
+    stated,
+)
 
 PAGE = (ROOT / "docs/verified.md").read_text("utf-8")
 
@@ -93,9 +107,8 @@ def test_figures_of_words():
 
 
 def test_what_a_run_measured_stands_beside_what_was_asked(tmp_path):
-    """The largest deviation over the cases of a test; failures and skipped tests are said."""
-    path = tmp_path / "tests.xml"
-    cases = "".join(
+    """The largest deviation over the cases of a test in both runs; failures and skipped tests are said."""
+    cases = [
         f'<testcase classname="tests.verification.test_made" name="{name}">{inside}</testcase>'
         for name, inside in (
             ("test_right[a]", '<properties><property name="deviation" value="3e-12"/></properties>'),
@@ -103,14 +116,17 @@ def test_what_a_run_measured_stands_beside_what_was_asked(tmp_path):
             ("test_wrong", '<skipped message="no"/>'),
             ("test_bad", '<failure message="no"/>'),
         )
-    )
-    path.write_text(f'<testsuites><testsuite timestamp="2026-01-02T03:04:05">{cases}</testsuite></testsuites>')
-    results, when = outcomes(path)
+    ]
+    (tmp_path / "build").mkdir()
+    for path, day, of_run in zip(RUNS, ("01", "02"), (cases[::2], cases[1::2]), strict=True):
+        suite = f'<testsuite timestamp="2026-01-{day}T03:04:05">{"".join(of_run)}</testsuite>'
+        (tmp_path / path).write_text(f"<testsuites>{suite}</testsuites>")
+    results, when = outcomes(tmp_path)
     assert when == "2026-01-02"
     assert results[PATH, "test_right"] == Outcome(passed=2, measured=1e-10)
     assert results[PATH, "test_wrong"] == Outcome(skipped=1)
     assert results[PATH, "test_bad"] == Outcome(failed=1)
-    assert outcomes(tmp_path / "none.xml") == ({}, "")
+    assert outcomes(tmp_path / "none") == ({}, "")
 
 
 def test_every_room_has_its_table(found):

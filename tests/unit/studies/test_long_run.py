@@ -6,10 +6,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
+from waiting import wait_for
 
 import rocking as rk
 from rocking import plots
@@ -180,12 +180,13 @@ def test_a_campaign_resumes_after_a_kill(tmp_path):
     (tmp_path / "job.toml").write_text(JOB.format(phases=60, impacts=300), encoding="utf-8")
     words = [sys.executable, "-m", "rocking", "campaign", "run", tmp_path / "job.toml", "--output", tmp_path / "c"]
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    deadline = time.monotonic() + 120.0
-    while time.monotonic() < deadline and not (
-        (tmp_path / "c" / "job.toml").exists() and status_of(tmp_path / "c", verify=False).status
-        and status_of(tmp_path / "c", verify=False).status.histories_done
-    ):  # fmt: skip
-        time.sleep(0.02)
+    wait_for(
+        lambda: (
+            (tmp_path / "c" / "job.toml").exists()
+            and (begun := status_of(tmp_path / "c", verify=False).status)
+            and begun.histories_done
+        )
+    )
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     done = status_of(tmp_path / "c").status.histories_done

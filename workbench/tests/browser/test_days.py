@@ -158,6 +158,7 @@ def hands(browser: Any, own: Any, record: Any) -> Iterator[Hands]:
     context.close()
 
 
+@pytest.mark.walk
 def test_an_engineer(hands: Hands, tmp_path: Path) -> None:
     """Past the menu, a project named, a body and a motion, a map walked, and the report of whether it stands."""
     page = hands.page

@@ -9,6 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[3]
 MANUAL = ROOT / "build" / "manual"
+pytestmark = pytest.mark.manual
 PAGES = sorted(MANUAL.rglob("*.html"))
 QUESTIONS = {
     "how do I give a centre of mass": "Set the mass, the centre of mass and the inertia",

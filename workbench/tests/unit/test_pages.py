@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 import uvicorn
+from waiting import HANG
 
 from rocking_workbench import server
 from rocking_workbench.application import create_app
@@ -36,7 +37,7 @@ def served(tmp_path):
             time.sleep(0.01)
         yield app, settings.origin
         running.should_exit = True
-        thread.join(20)
+        thread.join(HANG)
 
 
 def _check_answers(page, app):

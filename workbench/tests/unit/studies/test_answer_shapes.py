@@ -1,12 +1,12 @@
 """Every answer of every operation has the shape that the schema of the API declares."""
 
-import time
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from waiting import wait_for
 from web_clients import new_application, script_of
 
 jsonschema = pytest.importorskip("jsonschema_rs")
@@ -148,11 +148,8 @@ def _ask_questions(script):
     }
     asked = {"command": "inventory", "tables": tables, "files": {"list.csv": sent["record"]}}
     one = {"question": script.ask("POST", "/api/questions", json=asked)["id"]}
-    for _ in range(1200):
-        found = script.ask("GET", "/api/questions/{question}", fill=one)
-        if found["state"] not in {"waiting", "running"}:
-            break
-        time.sleep(0.05)
+    shown = ("GET", "/api/questions/{question}")
+    found = wait_for(lambda: (said := script.ask(*shown, fill=one))["state"] not in {"waiting", "running"} and said)
     assert found["state"] == "done", found["message"]
     script.take("GET", "/api/questions/{question}/{file}", fill={**one, "file": "inventory.csv"})
     script.ask("POST", "/api/questions/{question}/stop", fill=one)
