@@ -18,8 +18,6 @@ from rocking.campaigns import Campaign, CampaignInterrupted, Executor, Serial
 from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.studies import HistoryTable
 
-LONG = 20.0
-
 
 class Hooked(HistoryTable):
     """Histories that call a function with their first number before they are computed, if they are given one."""
@@ -54,7 +52,7 @@ def hooked(work):
 
 def soon(event):
     """Wait for what must happen; not for ever."""
-    if not event.wait(LONG):
+    if not event.wait(HANG):
         raise AssertionError("it did not happen")
 
 
