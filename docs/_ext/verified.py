@@ -2,8 +2,8 @@
 
 The claim of a test is the first paragraph of its docstring. Its mark, or the mark of its file, contains the method:
 ``@pytest.mark.verifies(kind, against, within=..., control=..., doi=..., room=...)``. Files are parsed and nothing is
-run. With ``build/tests-quick.xml`` and ``build/tests-slow.xml`` the tables contain the deviations of the last ``make
-test-all``. `faults` lists incorrect marks, and tests/unit/test_verified.py checks that there are none.
+run. With ``build/tests-*.xml`` the tables contain the deviations of the last ``make test-all``. `faults` lists
+incorrect marks, and tests/unit/test_verified.py checks that there are none.
 """
 
 import ast
@@ -23,7 +23,8 @@ from sphinx.errors import ExtensionError
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 ROOT = Path(__file__).parents[2]
-RUNS = ("build/tests-quick.xml", "build/tests-slow.xml")
+RUNS = tuple(f"build/tests-{tier}.xml" for tier in ("quick", "slow", "workbench"))
+TESTS = ("tests", "workbench/tests")
 ALL_MARKED = ("verification", "validation")  # folders whose tests all need a mark
 KINDS = {
     "closed form": "an exact solution, a limit of it or a series of it",
@@ -73,7 +74,7 @@ class Claim:
 def claims(root: Path = ROOT) -> list[Claim]:
     """Return the claims of all marked tests, and of tests without a required mark."""
     marked = []
-    for path in sorted((root / "tests").rglob("test_*.py")):
+    for path in (path for folder in TESTS for path in sorted((root / folder).rglob("test_*.py"))):
         marked += claims_of(path.read_text("utf-8"), path.relative_to(root).as_posix())
     return marked
 
@@ -90,7 +91,7 @@ def claims_of(source: str, path: str) -> list[Claim]:
     shared, marked = _numbers(others), []
     for test in tests:
         own = {key: value for call in test.decorator_list for key, value in _mark(call).items()}
-        if not own and not of_file.get("kind") and path.split("/")[1] not in ALL_MARKED:
+        if not own and not of_file.get("kind") and path.partition("tests/")[2].split("/")[0] not in ALL_MARKED:
             continue
         description = " ".join((ast.get_docstring(test) or "").split("\n\n")[0].split())
         marks = {key: of_file[key] for key in of_file if key == "room" or "kind" not in own} | own

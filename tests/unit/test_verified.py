@@ -118,7 +118,7 @@ def test_what_a_run_measured_stands_beside_what_was_asked(tmp_path):
         )
     ]
     (tmp_path / "build").mkdir()
-    for path, day, of_run in zip(RUNS, ("01", "02"), (cases[::2], cases[1::2]), strict=True):
+    for path, day, of_run in zip(RUNS[:2], ("01", "02"), (cases[::2], cases[1::2]), strict=True):
         suite = f'<testsuite timestamp="2026-01-{day}T03:04:05">{"".join(of_run)}</testsuite>'
         (tmp_path / path).write_text(f"<testsuites>{suite}</testsuites>")
     results, when = outcomes(tmp_path)
