@@ -32,6 +32,7 @@ print(json.dumps(trees.differences(kept, now, 1e-6)))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 @pytest.mark.parametrize("group", ["python", "commands", "application"])
 def test_answers_are_what_they_were(group: str) -> None:

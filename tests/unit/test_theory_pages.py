@@ -106,6 +106,7 @@ MANUAL = {
 }
 
 
+@pytest.mark.slow
 def test_a_number_is_that_of_its_label_wherever_it_stands(tmp_path):
     pages, warnings = built(tmp_path, MANUAL)
     assert warnings == ""

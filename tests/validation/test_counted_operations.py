@@ -47,6 +47,7 @@ def flying(p: float) -> tuple[Operations, int]:
     return found, 3 * (SAMPLES - 1)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "operations of a step, read off the source by hand", within="every operation", control="within"
 )
@@ -60,6 +61,7 @@ def test_a_step_takes_what_is_written(p: float, order: int) -> None:
     assert found.total - found.fused != steps * by_hand(order)  # multiply-adds are two
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "the fast engine that does not count")
 def test_landings_are_counted_and_histories_are_the_same() -> None:
     """Histories with impacts: the same steps and outcomes as the fast engine, and more operations than the steps."""

@@ -100,6 +100,7 @@ def distance(found, best):
     return [np.abs(a / b - 1.0).max() for a, b in zip(found, best, strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(within="the spread of MuJoCo's own runs, below 0.01")
 @pytest.mark.parametrize(("slenderness", "duration", "count"), [(4.0, 4.0, 3), (2.0, 2.2, 3)])
 def test_free_rocking_agrees_with_housner_and_not_with_ked(slenderness, duration, count):
@@ -118,6 +119,7 @@ def test_free_rocking_agrees_with_housner_and_not_with_ked(slenderness, duration
     assert all(a > 5.0 * b for a, b in zip(wrong, spread, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(within="the spread of MuJoCo's own runs, below 0.005")
 @pytest.mark.parametrize(("slenderness", "published", "duration"), [(4.0, 0.911765, 4.0), (2.0, 0.7, 2.2)])
 def test_coefficient_that_comes_out_of_contacts(slenderness, published, duration, agreement):
@@ -137,6 +139,7 @@ def test_coefficient_that_comes_out_of_contacts(slenderness, published, duration
     assert abs(r - rk.restitution.Ked().coefficient(block)) > 5.0 * spread
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(within="the spread of MuJoCo's own runs, below 0.02")
 def test_sine_pulse_agrees():
     """Lifted, carried and let go by a sine pulse, the peer hits and peaks as with Housner's r; KED does not."""
@@ -153,6 +156,7 @@ def test_sine_pulse_agrees():
     assert all(a > 5.0 * b for a, b in zip(wrong, spread, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(within="equal verdicts")
 @pytest.mark.parametrize(("amplitude", "falls"), [(3.5, False), (4.2, True)])
 def test_verdicts_agree(amplitude, falls):

@@ -373,6 +373,7 @@ def judged_by_hand():
     }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "both models and all counts written out on the printed tables", within="every printed digit"
 )
@@ -396,6 +397,7 @@ def test_entry_agreement_is_of_printed_digits():
     assert {row.entries["ked"].agrees for row in recomputed("table2")} == {True}
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("published", "numbers of an independent count on Table 3 as the article prints it", within="5e-5")
 def test_numbers_of_an_independent_count():
     """Counted elsewhere: 17 of 27 between both models, 8 of 9 below both above slenderness 6; errors of KED."""

@@ -27,7 +27,7 @@ from benchmarks.spatial_tracks import measured, track_of, windows
 from rocking.dynamics.rolling import attitude
 from rocking.dynamics.rolling.impact_laws import law_of
 
-pytestmark = pytest.mark.verifies(room="rocking in space")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="rocking in space")]
 
 MUJOCO, BULLET = PEERS
 NAMED = {case.name: case for case in CASES}

@@ -252,6 +252,7 @@ def disagreements(cases: list[Case], settings: PlaneSettings) -> tuple[list[str]
     return bad, edges, doubted
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine",
     "the reference engine, wherever inputs moved by 1e-12 do not change its own mind",

@@ -119,6 +119,7 @@ def test_an_impact_on_a_sample(alpha: float, p: float, start: float, step: float
     assert np.abs(found.rotation).max() <= start
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "elliptic integrals, moved by up to three units in the last place")
 @every_engine
 def test_impacts_near_a_sample(name: str) -> None:

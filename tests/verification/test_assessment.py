@@ -74,6 +74,7 @@ def test_less_than_the_anchor_force_lets_it_lift():
     assert lifted(CABINET, LEVEL, 1.0, g + (1.0 - 1e-3) * force * 0.8 / (650.0 * 0.28))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "our reference engine with each body", control="within")
 @pytest.mark.parametrize("name", ["out", "down"])
 def test_the_changed_body_just_stands(name):
@@ -139,6 +140,7 @@ def least_factors(body, **known):
     return {name: each.min_factor for name, each in found.models.items()}, found
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the plane engine's margins of the plane body", within="3e-3",
                       control="test_a_deep_prism_shaken_along_its_depth_has_other_margins")  # fmt: skip
 def test_a_deep_prism_has_the_margins_of_the_plane_body():
@@ -152,6 +154,7 @@ def test_a_deep_prism_has_the_margins_of_the_plane_body():
     assert in_space.remedies.tension == pytest.approx(alone.remedies.tension, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control")
 def test_a_deep_prism_shaken_along_its_depth_has_other_margins():
     """Negative control: the same box turned a quarter round stands up to several times that, and says so."""
@@ -161,6 +164,7 @@ def test_a_deep_prism_shaken_along_its_depth_has_other_margins():
     assert not found.standing.is_weakest
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "moments about the edge, g d / (h a |cos|)", within="1e-12", control="within")
 def test_a_turned_solid_lifts_over_its_edge():
     """A box at an azimuth to one component lifts over the edge whose moment is first, an edge and not a corner; the

@@ -94,6 +94,7 @@ _USED = [name for name in ROWS if name not in ("azimuth", "friction")]
 # ---- poison ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="NaN and infinities in 1,000 rows; rows between them keep their bits")
 @every_engine
 def test_poisoned_rows(name: str) -> None:
@@ -183,6 +184,7 @@ def monsters(random: np.random.Generator) -> list[Segments]:
     return motions
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="numbers from all over the floating-point line, and the allowed ranges written once more")
 @every_engine
 @pytest.mark.parametrize("linear", [False, True])
@@ -220,6 +222,7 @@ HANGS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="cases that hung once", within="20 minutes")
 @every_engine
 @pytest.mark.parametrize("case", HANGS)

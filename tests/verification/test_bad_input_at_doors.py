@@ -154,6 +154,7 @@ def test_every_combination(motion: Any, order: int, linear: bool, name: str) -> 
         assert many["status"].values.ravel().tolist() == [0]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine", "the reference engine", within="equal outcomes, sides and counts, or said to have failed"
 )

@@ -126,6 +126,7 @@ def test_a_changed_row_is_seen() -> None:
     assert same_bits({k: v[others] for k, v in one.items()}, {k: v[others] for k, v in other.items()})
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="pieces and chunks of other sizes")
 @pytest.mark.parametrize(("piece", "chunk"), [(1, 1), (7, 3), (64, 1000), (1 << 16, 1), (699, 701)])
 def test_pieces_do_not_matter(piece: int, chunk: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -138,6 +139,7 @@ def test_pieces_do_not_matter(piece: int, chunk: int, monkeypatch: pytest.Monkey
     assert same_bits(first, table.run(law))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="a single run of every fourth row")
 @pytest.mark.parametrize("kind", KINDS)
 def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
@@ -158,6 +160,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
             assert np.array_equal(getattr(one, name), whole[name][k], equal_nan=True), (k, name)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     against="AVX-512, AVX2 and plain instructions",
     within="the same bits with vectors; plain 1e-10 rad in 99 % of the rows, 10 times the effect of rounding in others",
@@ -202,6 +205,7 @@ def test_random_restitution_belongs_to_seed_and_key() -> None:
     assert not same_bits(first, table.run())
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine", "the reference engine", within="1e-8 rad in peaks; counts equal", control="within"
 )
@@ -245,6 +249,7 @@ def allocated(count: int) -> tuple[int, int]:
     return most - kept, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour", "tracemalloc and the peak of the process", within="24 MB beyond the results")
 def test_memory_is_flat() -> None:
     """200,000 rows hold at most 24 MB beyond their results, no more than 140,000 do; nor does the engine hoard."""

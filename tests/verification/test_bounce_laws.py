@@ -43,6 +43,7 @@ def test_laws_agree_where_sliding_does_not_stop():
     assert abs(turned[1] - turned[0]) > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant",
     "kinetic energy over an impact",
@@ -95,6 +96,7 @@ def _compliant(base, state, mu, stiffness):
     return end.y_events[0][0][1:]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "a stiff spring under the foot, by scipy", within="1e-3")
 @pytest.mark.parametrize("mu", [1.6, 2.0, 3.0])
 def test_the_shock_is_the_limit_of_a_stiff_spring(mu):
@@ -118,6 +120,7 @@ def test_the_rod_is_struck_where_painleve_says():
     assert isinstance(shock(rod, state, GroundContact(5.0 / 3.0 + 1e-3)), Struck)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine", within="verdicts; 1e-8 of the peaks")
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("seed", range(6))
@@ -135,6 +138,7 @@ def test_compiled_engine_is_the_reference_engine(law, seed):
         assert fast[name].values == pytest.approx(slow[name].values, rel=1e-8, abs=1e-8), name
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "other threads, other histories beside it")
 def test_compiled_engine_does_not_depend_on_threads_or_company():
     """400 histories by one thread, by three, and one of them alone: the same bits."""

@@ -60,6 +60,7 @@ def same(campaign, bare):
     return all(found[name].tobytes() == values.tobytes() for name, values in bare.items())
 
 
+@pytest.mark.slow
 @unforked
 @pytest.mark.parametrize("workers", [1, 2, 4, 8])
 @pytest.mark.parametrize("chunk", [1, 7, 64, 1000])
@@ -73,6 +74,7 @@ def test_workers_and_chunks_do_not_matter(tmp_path, work, bare, workers, chunk):
     assert same(campaign, bare)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chunk", [1, 7, 64, 1000])
 def test_hash_does_not_depend_on_the_size(tmp_path, chunk):
     """The hash of the results is the same for all sizes, serially and threaded."""
@@ -83,6 +85,7 @@ def test_hash_does_not_depend_on_the_size(tmp_path, chunk):
     assert campaign.sha256() == whole.sha256()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start_method", ["spawn", "fork", "forkserver"])
 def test_start_of_processes_does_not_matter(tmp_path, work, bare, start_method):
     """Processes spawned, forked, and forked from a server: the bits of a bare run."""
@@ -93,6 +96,7 @@ def test_start_of_processes_does_not_matter(tmp_path, work, bare, start_method):
     assert same(campaign, bare)
 
 
+@pytest.mark.slow
 def test_interruptions_do_not_matter(tmp_path, work, bare):
     """Stopped after every third chunk, and gone on with by changing executors and orders."""
     campaign = Campaign.create(tmp_path / "c", work, 100)
@@ -156,6 +160,7 @@ def test_the_selection_holds_every_value_and_every_pair():
     assert len(set(PRODUCT)) == 2 * 4 * 4 * 2 * 2
 
 
+@pytest.mark.slow
 @unforked
 @pytest.mark.parametrize("method", METHODS)
 def test_selection_of_the_matrix(tmp_path, by_chunk, method):

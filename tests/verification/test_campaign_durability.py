@@ -39,6 +39,7 @@ def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
     return json.loads(said.read_text())
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="kill -9 of the whole process group, and a quiet run")
 @pytest.mark.parametrize("pieces", [False, True], ids=["chunks", "pieces"])
 @pytest.mark.parametrize("how", SHARES)
@@ -54,6 +55,7 @@ def test_killed_groups_lose_nothing(tmp_path: Path, how: str, pieces: bool) -> N
     assert report["acknowledged, checked"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="kill -9 of single workers, and a quiet run")
 def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
     """Single workers die at random; the campaign goes on by itself to the same bytes."""

@@ -20,6 +20,7 @@ from slow import Motions, product
 
 pytest.importorskip("distributed")
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.verifies(room="campaigns"),
     pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.filterwarnings("default"),  # those of the cluster are not ours
@@ -79,6 +80,7 @@ def test_two_workers_share_one_chunk(tmp_path: Path) -> None:
     assert spent[1] / spent[2] > 1.5  # 1.9 on a quiet machine; a busy one delays what is beside the motions
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("damage", "kill -9 of one of two workers, and a serial run")
 def test_one_of_two_workers_is_killed_half_way(tmp_path: Path, two: Any) -> None:
     """kill -9 of a worker at half of the histories: it ends by itself, with the bytes of a serial run."""

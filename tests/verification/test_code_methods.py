@@ -98,6 +98,7 @@ def test_both_forms_of_ishiyamas_velocity_agree():
     assert 100.0 * velocity != pytest.approx(in_cm, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the histories of the engine under an impulse", within="1e-3", control="within")
 @pytest.mark.parametrize("block", BLOCKS[1:], ids=str)
 def test_an_impulse_of_that_velocity_overturns(block):
@@ -179,6 +180,7 @@ def test_outside_its_domain_a_method_says_nothing():
     assert all(each.all() for each in said.values())
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "the search for all crossings",
@@ -201,6 +203,7 @@ def test_what_overturns_is_the_least_of_either_way_round():
         assert least[1] / least[2] > 1.07 or least[2] / least[1] > 1.07
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "shares of 150 motions by another program", within="the exact interval",
                       control="test_other_blocks_have_other_shares")  # fmt: skip
 @pytest.mark.parametrize(("family", "shares"), [("firm-ground", FIRM), ("soft-ground", SOFT)])
@@ -215,6 +218,7 @@ def test_blocks_that_the_italian_check_calls_safe_overturn(family, shares, table
     assert found.called_safe("static").safe == 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control")
 def test_other_blocks_have_other_shares(tables):
     """The shares of the smallest block are not those of the largest, nor those of firm ground those of soft."""
@@ -225,6 +229,7 @@ def test_other_blocks_have_other_shares(tables):
     assert interval(soft, 3)[0] > FIRM[3]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("published", "half of the bodies overturn at A_R50", within="20 %", control="within")
 def test_who_knows_the_velocity_is_nearer(tables):
     """Kaneko and Hayashi's median ratio is near 1 on either ground; that of acceleration alone changes with size."""
@@ -237,6 +242,7 @@ def test_who_knows_the_velocity_is_nearer(tables):
         assert alone[0] > 1.3 * alone[3]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_real_records_show_the_same(shared_records):
     """Under real records too, small blocks that the check calls safe overturn more often than large ones."""

@@ -77,6 +77,7 @@ def bounded(model, body, foot):
     return r * r * new.moment_of_inertia <= old.moment_of_inertia * (1.0 + 1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     against="the same body of another size, density and side, and a kilometre away",
     within="1e-8",
@@ -154,6 +155,7 @@ def test_energy_criterion_rejects():
         assert not bounded(model, body, "right")
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="the product of both directions is at most 1", within="1e-12", control="within")
 @every_model
 @few
@@ -174,6 +176,7 @@ def test_a_factor_below_one_breaks_coincident_pivots():
     assert not any(model.sees_old_foot for model in below)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="no loss where both feet meet; models that say they break it must", control="within")
 @pytest.mark.parametrize("model", [*MODELS, *AT_ONE], ids=lambda model: model.label)
 @few

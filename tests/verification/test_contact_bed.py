@@ -282,6 +282,7 @@ NAMES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "SciPy's DOP853 on forces written without branches",
@@ -340,6 +341,7 @@ def test_an_implicit_solver_agrees() -> None:
     assert BedImpact(setup, *reference.compute_one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form", "springs, plastic points and dashpots", within="1e-8 in the velocity, 5e-4 in time"
 )
@@ -363,6 +365,7 @@ def test_the_other_solver_ends_where_the_bed_parts() -> None:
         assert found.results["deepest"] == pytest.approx(depth, rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the definitions, applied to its samples", within="5e-3 in impulses")
 def test_the_other_solver_says_between_what_the_impact_lies() -> None:
     """From the first sample at which more than the old foot presses to the first one at which the new foot alone does
@@ -537,6 +540,7 @@ def random_rows(name: str, count: int, tolerance: float = 1e-9) -> list[Setup]:
     return rows
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-8", control="within")
 @pytest.mark.parametrize("name", ["kelvin-voigt", "plastic", "hunt-crossley", "exponents"])
 def test_energy_audit_of_random_impacts(name: str, agreement: Any) -> None:
@@ -550,6 +554,7 @@ def test_energy_audit_of_random_impacts(name: str, agreement: Any) -> None:
     assert (missing > 1e-8).mean() > 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy, and other tolerances", within="1e-8")
 @pytest.mark.parametrize("rebound", [0.02, 0.05, 0.2])
 def test_a_base_that_sticks_hundreds_of_times(rebound: float) -> None:
@@ -579,6 +584,7 @@ def test_a_bed_that_yields_by_atoms() -> None:
     assert abs(bed_impacts([setup_of(block, bed, rotation=0.0514)]).audit[0]) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "steps ten times as coarse")
 def test_the_audit_follows_the_tolerance() -> None:
     """With steps ten times as coarse the audit of d^1.5, rough at each touch, does not close to 1e-8: it can fail."""
@@ -587,6 +593,7 @@ def test_the_audit_follows_the_tolerance() -> None:
     assert 1e-8 < coarse < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "tolerances of 1e-9 and 1e-12", within="1e-6")
 @pytest.mark.parametrize("name", ["kelvin-voigt", "hunt-crossley"])
 def test_random_impacts_do_not_depend_on_the_step(name: str) -> None:

@@ -52,6 +52,7 @@ def read(table: BedTable, points: int, cases: FloatArray) -> FloatArray:
     return np.minimum(found, most(cases))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "300 random impacts resolved in time", within="the stated error", control="within"
 )
@@ -77,6 +78,7 @@ def test_stated_errors_say_something(points: int) -> None:
     assert (stated[-1] <= stated.min(axis=0)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "100 random impacts a band, resolved in time", within="the stated error", control="within"
 )

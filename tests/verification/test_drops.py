@@ -39,6 +39,7 @@ def test_a_body_that_is_dropped_flat_lands_after_the_time_of_a_fall(engine):
     assert found.centre[-1, 2] == pytest.approx(solid.centre[2] - solid.ground, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "a tilted drop: angular momentum about the edge that lands is kept", within="1e-8")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -57,6 +58,7 @@ def test_a_tilted_drop_lands_on_an_edge(engine, side):
     assert found.impacts["energy_after"][0] < 0.5 * found.impacts["energy_before"][0]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "a launch: parabola of the centre, momentum kept in flight", within="1e-9")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_launched_body_flies_along_a_parabola(engine):

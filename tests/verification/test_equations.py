@@ -86,6 +86,7 @@ def slender(sign):
     return sp.lambdify((ANGLE, PUSH, LIFT, alpha), sp.simplify(found.diff(eps).subs(eps, 0)))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "Lagrange's equations of three masses, by SymPy", within="1e-12", control="within"
 )
@@ -107,6 +108,7 @@ def test_angular_acceleration_of_an_asymmetric_body(sign):
     assert not np.allclose(wrong, exact(sign)(theta, push, lift), rtol=1e-3)  # negative control
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the first order of Lagrange's equations, by SymPy", within="1e-12")
 @pytest.mark.parametrize("sign", [1, -1])
 def test_angular_acceleration_of_a_slender_body(sign):
@@ -251,6 +253,7 @@ def independent(push, length, duration, r):
     return state, lost
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "SciPy's DOP853 on Lagrange's equations", within="1e-10 rad; 1e-9 of the energies"
 )

@@ -52,6 +52,7 @@ def spread(count):
     return np.stack([np.sqrt(1.0 - z * z) * np.cos(phi), np.sqrt(1.0 - z * z) * np.sin(phi), z], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the Poincare-Hopf theorem", control="test_euler_relation_without_a_facet_is_broken")
 def test_euler_relation_of_random_hulls():
     """Stable - saddles + summits = 2, whatever the hull; and at least one of each extreme."""
@@ -77,6 +78,7 @@ def test_euler_relation_without_a_facet_is_broken():
     assert wrong > 10
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the height all round each pose")
 def test_counts_are_those_of_the_height_around():
     """Each stable pose is a minimum of the height and each summit a maximum, and there are no others."""
@@ -177,6 +179,7 @@ def flood(found, rows):
     return joins
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "water that rises over a grid of directions")
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_passes_against_a_flood(seed):
@@ -221,6 +224,7 @@ def test_straight_barriers_against_the_height_along_the_way():
             assert found.toppled(pose, azimuth) is ends[valleys.tolist().index(first)]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the centre over an edge by a hair", within="1e-9")
 def test_the_pose_that_a_body_stands_in_counts():
     """However shallow, beside round parts too: the nearest edge and the rise by hand; a pole stands on its end."""
@@ -343,6 +347,7 @@ def test_bodies_of_revolution_have_rings():
     assert lying.height == pytest.approx(0.75 * math.sin(math.atan(0.5)), abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "counts of an ellipsoid")
 def test_an_ellipsoid_of_three_axes():
     """2, 2, 2, of a smooth one and of its corners where flats do not count; they do in the negative control."""

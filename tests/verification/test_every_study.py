@@ -13,7 +13,7 @@ from rocking.motions import with_vertical
 from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
 
-pytestmark = pytest.mark.verifies(room="studies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="studies")]
 
 TIME = 0.02 * np.arange(80)
 X, Y, Z = (

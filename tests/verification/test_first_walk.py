@@ -8,6 +8,8 @@ import pytest
 import xarray
 from shapely.geometry import Polygon
 
+pytestmark = pytest.mark.slow
+
 BODY = """
 units = "cm"
 name = "leaning trapezoid"

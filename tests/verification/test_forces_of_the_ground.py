@@ -75,6 +75,7 @@ def of_the_path(
     return 1.0 + force(size * np.cos(to_top), lift), force(-side * size * np.sin(to_top), motion.acceleration)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "second differences of the path of the centre", within="1e-3 of the weight", control="within"
 )
@@ -149,6 +150,7 @@ def _no_flight(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rk.Response, "doubts", lambda _: [])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine", "the reference engine", within="1e-8 of the weight", control="test_wrong_forces_are_noticed"
 )
@@ -173,6 +175,7 @@ def test_motions_that_are_cut(linear: bool) -> None:
     assert fallen
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine",
     "the reference engine, and the forces of the response",
@@ -220,6 +223,7 @@ def test_a_body_that_falls_counts_up_to_its_foot() -> None:
         assert response.least_force == pytest.approx(expected, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_ground_that_falls_twice_as_fast_as_gravity_is_told(engine: str) -> None:

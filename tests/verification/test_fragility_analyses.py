@@ -31,6 +31,7 @@ def records(count, seed=5, samples=500, step=0.02):
     return [rk.GroundMotion(noise, step) for noise in smooth_noises(count, seed, samples)]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form",
     "the roots of the boundary of half sines, 20 digits",
@@ -163,6 +164,7 @@ def test_bodies_of_equal_parameters_are_one_body():
     assert found[0].counts["overturned"].sum() > 20
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "all motions mirrored", within="every bit")
 def test_mirrored_motions():
     """Turned round, all motions give the same counts, crossings and fits."""
@@ -177,6 +179,7 @@ def test_mirrored_motions():
     assert found[0].fits["overturned"].median == found[1].fits["overturned"].median
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "all records times 3.7", within="1e-8")
 def test_scaled_records():
     """Records times c: the median in PGA stays, and the factor on the records at the first crossing is divided by c."""
@@ -231,6 +234,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
     assert high / low - 1.0 < 3e-9
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "the file read by a parser of its own, and OpenQuake's formula with 30 digits",

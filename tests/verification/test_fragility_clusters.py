@@ -19,6 +19,7 @@ COARSE = MEDIAN * np.exp((np.linspace(-2.5, 2.5, 8) + 0.2) * DISPERSION)
 TRUTH = {"median": MEDIAN, "dispersion": DISPERSION, 0.16: MEDIAN * np.exp(DISPERSION * ndtri(0.16))}
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "480 studies whose truth is known",
@@ -64,6 +65,7 @@ FEW = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "120 studies of 7 to 20 motions whose truth is known",
@@ -101,6 +103,7 @@ def test_intervals_from_few_motions_cover_as_often_as_they_say(motions, levels):
     assert binom.cdf(np.ceil((0.93 - noise) * studies) - 1, studies, 0.8) > 0.95
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the definition of an end", within="0.01; 0.02 in bands")
 def test_ends_are_where_a_study_becomes_rare():
     """The search ends where 2.5 % find less, or more, within what 999 repetitions can tell; so does the band."""
@@ -120,6 +123,7 @@ def test_ends_are_where_a_study_becomes_rare():
             assert sample.rarity(float(most), place) == pytest.approx(0.975, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form",
     "Student's t, chi-square and the noncentral t (Hahn and Meeker 1991, chapter 4)",

@@ -43,6 +43,7 @@ def _fisher_scoring(levels, failures, trials):
     return np.exp(-new[0] / new[1]), 1.0 / new[1]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "Fisher scoring (McCullagh and Nelder 1989)",
@@ -115,6 +116,7 @@ def _coverage(ends, parameter):
     return np.mean((ends[0] <= _truth(parameter)) & (_truth(parameter) <= ends[1]))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("repeated sampling", "1,000 studies whose truth is known", within="93 to 97 %", control="within")
 @pytest.mark.parametrize("parameter", PARAMETERS)
 @pytest.mark.parametrize("design", [_stripes, _clouds])
@@ -152,6 +154,7 @@ def _bootstrap_coverage(design, studies, trials):
     return hits / studies
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "300 studies whose truth is known",
@@ -175,6 +178,7 @@ def test_bootstrap_intervals_of_clouds_cover_as_often_as_they_say():
     assert np.all(half < 0.93), half
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling", "300 studies whose truth is known", within="92 to 98 %; 93 to 97 % in campaigns"
 )

@@ -195,6 +195,7 @@ def test_time_of_rest(engine, linear, expected):
         assert not response.rotation[response.time > last.time].any()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form",
     "Carlson's elliptic integrals",
@@ -219,6 +220,7 @@ def test_a_wrong_coefficient_is_rejected(engine):
     assert speeds > 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "the period of the linear equations")
 def test_a_linear_period_is_rejected():
     """Negative control: the period of the linear equations is not that of the exact ones, nor the other way round."""
@@ -265,6 +267,7 @@ def pushed(speed, engine, *, linear, stretches, r=0.9):
     return run(parameters, still, PlaneSettings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form", "p dU cos(alpha) / g = 2 sin(alpha / 2)", within="3e-11 (fast), 3e-15 (reference)", control="within"
 )
@@ -283,6 +286,7 @@ def test_overturning_by_an_impulse(engine, stretches, bound, agreement):
     assert exact != pytest.approx(linear, rel=1e-3)  # negative control
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "p V / (g alpha) = 1 / (1 + r)", within="3e-11")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("r", [0.7, 0.9, 1.0])

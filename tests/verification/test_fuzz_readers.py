@@ -24,7 +24,7 @@ from rocking.decision.inventory import read_inventory
 from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
-pytestmark = pytest.mark.verifies(room="motions and records")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="motions and records")]
 
 COPIES = int(os.environ.get("ROCKING_FUZZ", "1000"))
 BINARY = {"miniseed", "sac"}

@@ -45,6 +45,7 @@ def cases():
     return {name: case(*name[:2], float(name[2]), replace(FULL, cascade=20)) for name in SHARES}
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series", within="one amplitude")
 @pytest.mark.parametrize("name", SHARES)
 def test_shares_of_attractors(cases, name):
@@ -58,6 +59,7 @@ def test_the_shares_distinguish_the_models(cases):
     assert np.abs(differences(cases[4, "ked", 2], SHARES[4, "housner", 2])).max() > 5.0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "an independent program in 80-bit Taylor series and DOP853", within="half a digit"
 )
@@ -76,6 +78,7 @@ def test_the_difference_fades_with_slenderness():
 TINY = ComparisonEffort((2.0,), 0.2, 0.2, 2, 40, 10)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_statements_and_files(run, tmp_path, monkeypatch):
     """The command prints each statement with verdicts in all senses, and writes report, tables and figures."""
@@ -108,6 +111,7 @@ def test_full_belongs_to_this_paper(refuses):
     refuses(("reproduce", "--full"), "gaibor-2026")
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series", within="3 amplitudes")
 def test_the_largest_exponent_of_the_cascade():
     """Slenderness 2, Housner, frequency 2: chaos from 3.0013 to 3.0217, with .11552(40) at 3.0166."""

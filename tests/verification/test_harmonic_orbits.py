@@ -123,6 +123,7 @@ def test_the_quadratic_gives_the_known_orbits(case):
         assert slow[0] == pytest.approx(UNSTABLE[1], rel=1e-13, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "symmetric orbits in closed form", within="1e-9", control="within")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("case", ORBITS)
@@ -180,6 +181,7 @@ def energies(case, psi, v, engine, count, **options):
     return np.array([psi + case[1] * P * impact.time, 0.5 * (impact.after / (P * ALPHA)) ** 2])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant", "area in time and energy, shrunk by r^2 at each impact", within="1e-7", control="within"
 )

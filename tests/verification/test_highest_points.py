@@ -68,6 +68,7 @@ def rising_bodies(linear: bool, samples: float) -> tuple[dict[str, Any], np.ndar
     return {**found, "r": np.full(len(tops), 0.1)}, np.array(tops)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "Taylor series of 30 terms with 40 digits", within="1e-11 rad", control="within")
 @pytest.mark.parametrize("linear", [False, True])
 @pytest.mark.parametrize("samples", [1.0, 2.0, 1.5])

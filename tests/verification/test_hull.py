@@ -128,6 +128,7 @@ def test_free_flight_is_a_parabola_and_keeps_momentum_and_energy():
 # ---- the engines that are special cases ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine in space", within="1e-10", control="within")
 @pytest.mark.parametrize(
     ("tilt", "azimuth", "spin", "restitution"),
@@ -163,6 +164,7 @@ def _until(engine, state, end):
     return history
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine in space", within="1e-10", control="within")
 def test_a_shaken_prism_is_that_of_the_engine_in_space():
     """Lifted from rest by two components: attitude to 1e-10 over the motion; without the second one it is another."""
@@ -179,6 +181,7 @@ def test_a_shaken_prism_is_that_of_the_engine_in_space():
     assert np.abs(alone - seen).max() > 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant", "energy and vertical angular momentum", within="1e-9 of the barrier", control="within"
 )
@@ -239,6 +242,7 @@ def test_a_landing_split_into_steps_loses_the_reference_share(count, loss):
     assert found[1.0] > 1.3 * loss
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the paper's coefficient of a whole base", within="2e-8", control="within")
 def test_a_block_that_lands_on_its_whole_base_has_the_papers_coefficient():
     """REF .94736683503 (1 x 1 x 4); a stated coefficient comes out as stated; Housner's is another."""
@@ -279,6 +283,7 @@ def test_a_block_slides_down_a_slope_and_stands_on_a_rough_one():
         np.testing.assert_allclose((x, y), (moved * math.cos(0.7), moved * math.sin(0.7)), rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "sliding before rocking", within="exact", control="within")
 def test_a_block_slides_before_it_rocks_where_friction_is_below_its_slenderness():
     """b/h = .25: with mu = .2 it slides and never lifts, with mu = .6 it lifts and never slides."""
@@ -346,6 +351,7 @@ def _slides(problem, edge):
     return False
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour", "an edge that friction no longer holds slides", within="1e-9", control="within")
 @pytest.mark.parametrize("beyond", [1e-6, 1e-4, 1e-2])
 def test_an_edge_that_friction_no_longer_holds_slides(beyond, monkeypatch):
@@ -383,6 +389,7 @@ def test_a_polygon_of_many_corners_tends_to_the_rim_that_rolls():
     assert math.log2(lost[0] / lost[1]) == pytest.approx(1.0, abs=0.5)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant",
     "no vertex below the ground",
@@ -415,6 +422,7 @@ def test_random_hulls_have_a_result_under_every_motion(seed):
         assert lowest > -1e-6 * body.size
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "other axes of the body", within="1e-9", control="within")
 def test_an_asymmetric_body_in_other_axes_moves_alike():
     """The hull of an L-shaped prism, named in turned axes about its vertical: the same history."""
@@ -451,6 +459,7 @@ def test_bad_bodies_and_grounds_are_refused():
 needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
 
 
+@pytest.mark.slow
 @needs_engine
 @pytest.mark.verifies("second engine", "the compiled engine", within="1e-8", control="within")
 def test_the_compiled_engine_is_the_reference():
@@ -468,6 +477,7 @@ def test_the_compiled_engine_is_the_reference():
     assert np.abs(other["peak_tilt"] / made["reference"]["peak_tilt"] - 1.0).min() > 1e-6
 
 
+@pytest.mark.slow
 @needs_engine
 @pytest.mark.verifies("second engine", "the compiled engine's response", within="1e-10", control="within")
 def test_a_response_is_the_same_from_both_engines(agreement):
@@ -546,6 +556,7 @@ def _balance(section, side):
     return math.atan((right - x if side > 0 else x - left) / y)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("engine", "shares"),
     [("reference", (1.02,)), pytest.param("fast", (0.3, 0.5, 1.02, 1.5, 2.5), marks=needs_engine)],
@@ -578,6 +589,7 @@ def test_a_body_released_beyond_its_balance_overturns(engine, shares, side):
         assert math.cos(found.overturning_direction - azimuth) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @needs_engine
 @pytest.mark.verifies("invariant", "one pose before the tilt in every door", within="exact")
 def test_every_door_knows_the_pose_before_the_tilt():
@@ -605,6 +617,7 @@ def _drum(count, height):
     return HullBody(points, 1.0, (0.0, 0.0, 0.5 * height), np.diag([across, across, 0.5 * 0.4**2]))
 
 
+@pytest.mark.slow
 @needs_engine
 @pytest.mark.verifies("invariant", "corners of a drum that slides", within="1e-6", control="within")
 def test_a_drum_of_many_corners_slides_as_one_of_few():
@@ -632,6 +645,7 @@ def test_a_drum_of_many_corners_slides_as_one_of_few():
     assert tall["held"].item() < 30
 
 
+@pytest.mark.slow
 @needs_engine
 @pytest.mark.verifies(
     "second engine", "the compiled engine on a base of eleven corners", within="1e-6", control="within"

@@ -48,6 +48,7 @@ def pushed(body, speed):
     return state._replace(spin=back(axes, spin), velocity=cross(spin, scaled(-1.0, edge)))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "quadrature of the energy integral", within="1e-5", control="within")
 @pytest.mark.parametrize("push", [1.02, 1.3])
 @pytest.mark.parametrize("offset", [-0.1, 0.15])
@@ -106,6 +107,7 @@ def cones(problem, edge, found):
     return along, squares, total
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "whether the cones of both ends hold the sum along an edge", within="0 of 400",
                       control="within")  # fmt: skip
 def test_an_edge_sticks_wherever_some_forces_hold_it():
@@ -254,6 +256,7 @@ def shaken_tower(size, gravity, scale, engine):
     return np.array([found["peak_tilt"], found["sliding_distance"] / size, *lasts]), found
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "similar bodies under similar motions", within="1e-7", control="within")
 def test_similar_bodies_rock_alike():
     """A tower of another size, or on another planet, moves alike in times of sqrt(size / g), by either engine.

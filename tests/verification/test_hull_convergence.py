@@ -28,6 +28,7 @@ from rocking.dynamics.rolling import SpatialBody
 from rocking.errors import PlausibilityWarning
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.verifies(room="rocking in space"),
     pytest.mark.filterwarnings(f"ignore::{PlausibilityWarning.__module__}.{PlausibilityWarning.__name__}"),
 ]

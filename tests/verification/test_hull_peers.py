@@ -29,7 +29,7 @@ from rocking.dynamics.frictional.histories import hull_histories
 from rocking.dynamics.frictional.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
-pytestmark = pytest.mark.verifies(room="rocking in space")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="rocking in space")]
 
 G = rk.conventions.g
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"

@@ -29,6 +29,8 @@ from rocking.identification.state_space import (
     peak,
 )
 
+pytestmark = pytest.mark.slow
+
 CASES = 200
 ALPHA, P, R = 0.244978663126864, 1.8891563520285, 0.911764705882353
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))

@@ -16,6 +16,8 @@ from rocking.errors import InvalidValueError
 from rocking.identification import ImpactTimes, RotationSeries, identify
 from rocking.identification.forced_half_cycles import Flights, struck
 
+pytestmark = pytest.mark.slow
+
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
 CASES = 10
 STILL, SLID = (0, 4, 5), (1, 11)

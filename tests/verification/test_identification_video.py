@@ -10,6 +10,8 @@ from benchmarks import identification_video
 import rocking as rk
 from rocking.identification import RotationSeries, identify
 
+pytestmark = pytest.mark.slow
+
 BODY = rk.Block(width=0.2, height=0.8, mass=30.0, centre=(0.104, 0.39))
 
 

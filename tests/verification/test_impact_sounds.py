@@ -19,7 +19,7 @@ from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import law_misfit, next_impact
 from rocking.identification.readers.sound import _onset_density, impacts_from_sound
 
-pytestmark = pytest.mark.verifies(room="evidence")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="evidence")]
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
 ROOMS, OTHERS, FIRST = (60, 100, 700_000) if CAMPAIGN else (6, 1, 700_000)
 

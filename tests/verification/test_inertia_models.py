@@ -259,6 +259,7 @@ def by_definition(ratio, q):
         return mp.exp(-mp.quad(lambda s: arm(s) / (1 + arm(s) * s), [-1, -0.5, 0, 1]))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "30-digit quadrature by mpmath", within="1e-12", control="within")
 @pytest.mark.parametrize("q", [0.0, 0.3, 1.0, 2.5, 3.0, 6.0, 100.0])
 def test_closed_form_across_the_zero_discriminant(q, agreement):

@@ -25,6 +25,7 @@ FEW = settings(max_examples=25)
 
 # the laws are those of the equations of rocking, which hold also where the ground would have to pull
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.verifies("invariant", room="rocking in the plane"),
     pytest.mark.filterwarnings("ignore:the contact force becomes tensile"),
 ]

@@ -37,6 +37,7 @@ def quakes():
     return Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.3g"), count=80, seed=3)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "quantiles of the evidence, by Newton on the mixture", within="0.001")
 @pytest.mark.parametrize("ratio", [1.6, 4.0, 9.0])
 def test_draws_are_the_distribution_of_the_evidence(ratio):
@@ -59,6 +60,7 @@ def test_draws_without_scatter_are_not():
     assert np.ptp(np.quantile(found, [0.02, 0.98])) < 0.8 * np.ptp(wanted)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the order of rows, other rows, threads", within="nothing: equal")
 def test_a_verdict_hangs_on_no_other_row(quakes):
     """Alone, in another order, among others and with other threads an object of approximate sizes fares the same."""
@@ -98,6 +100,7 @@ def fallen(item, way, quakes, draws, *, out=0.0, down=0.0, weaker=0.0):
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "one history after another, of the changed block",
@@ -163,6 +166,7 @@ def test_ballast_without_its_inertia_is_another_body():
     assert abs(inertia / whole / (bare.moment_of_inertia / bare.mass) - 1.0) > 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control")
 def test_half_a_remedy_does_not_serve(quakes):
     """Half of each change leaves motions that overturn it: what is printed is no more than what it takes."""
@@ -187,6 +191,7 @@ def test_anchors_hold_what_lifts():
     assert entry.shear == pytest.approx(level, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "pieces times share times weight", within="1e-12")
 def test_the_plan_is_sorted_by_weighted_gain(quakes):
     """Four of the same weigh four times, one of high consequence 2.5 times, one of low half: so they are sorted."""
@@ -212,6 +217,7 @@ def test_where_nothing_serves_it_is_said():
     assert entry.pull > 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the seed of the draws", within="nothing: equal")
 def test_a_named_restitution_stays_fixed(quakes):
     """Of a coefficient by number, whatever the seed of the draws: the same verdicts, and a plan that holds with it."""
@@ -260,6 +266,7 @@ def spatial(item, hazard, scale=1.0):
     return found.outcome.values.ravel()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "one history after another of the body in space", within="no motion")
 def test_weaker_shaking_serves_in_three_dimensions(few):
     """Under the share that the plan names none overturns it and few make it slide; as it is some do."""
@@ -276,6 +283,7 @@ def test_weaker_shaking_serves_in_three_dimensions(few):
     assert "Anker, die entlang einer Kante" in words
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "moments about the edge, m (a h - g b) over the base", within="1e-9")
 def test_anchors_in_three_dimensions():
     """The force that holds a box down is that of its rectangle; what slides before it lifts needs none, but a hold."""
@@ -290,6 +298,7 @@ def test_anchors_in_three_dimensions():
     assert "a fixing for a horizontal force of 0.4 times its weight" in plan_words(entry, language("en"))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "friction times gravity", within="a thousandth on either side")
 def test_what_slides_often_is_not_green():
     """Just below friction times gravity a low box stays green, just beyond it slides under each and is amber."""
@@ -307,6 +316,7 @@ def test_what_slides_often_is_not_green():
     assert Thresholds().of("high").light(lifted=0, overturned=0, count=100, high_rotation=0.0, slid=8) is Light.AMBER
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the body that each motion has, by one history each", within="nothing: equal")
 def test_sizes_are_drawn_in_three_dimensions(few):
     """Each motion has its own body of the interval; the size as it stands gives other rotations."""

@@ -80,6 +80,7 @@ def textbook_form(ratio):
     return float(np.sqrt(np.abs(kept) / (ratio * (1 + ratio**2) / 3)))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "Eq. 17 of Mao et al. 2024 as it stands, 25 digits",

@@ -299,6 +299,7 @@ def test_far_away_criterion_rejects_uncentred_sums():
     assert naive != pytest.approx(float(mxx + myy - (mx * mx + my * my) / m), rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "horizontal slices integrated with 30 digits",
@@ -314,6 +315,7 @@ def test_random_polygons_against_slices(ring):
     assert agrees(rk.coefficient_of_restitution(section, "ked", foot="left"), oracle(regions, ring[0][0]))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the body cut into touching triangles", within="1e-11")
 @given(polygons())
 def test_additive_over_a_cut(ring):
@@ -328,6 +330,7 @@ def test_additive_over_a_cut(ring):
     assert cut.moment_of_inertia == pytest.approx(whole.moment_of_inertia, rel=1e-11, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "every edge cut into many", within="1e-11", control="within")
 @given(polygons(), st.integers(2, 40))
 def test_vertices_on_edges_change_nothing(ring, pieces):

@@ -97,6 +97,7 @@ def cascade(system, doublings):
     return bifurcations
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="6e-10")
 @pytest.mark.parametrize("case", BRANCHES)
 def test_bifurcations_of_the_symmetric_branch(case):
@@ -189,6 +190,7 @@ TWO_PARAMETERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="6e-10")
 @pytest.mark.parametrize("number", range(3))
 def test_curves_in_two_parameters(number):
@@ -323,6 +325,7 @@ def test_sum_rule_of_all_laws(linear):
             assert np.abs(expected - 2.0 * np.nansum(np.log(r), axis=1)).min() > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the same law in a table with more points; constant laws", within="1e-9")
 @pytest.mark.filterwarnings("ignore")
 def test_laws_by_speed_in_all_functions():
@@ -415,6 +418,7 @@ EXPONENTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853")
 @pytest.mark.parametrize("case", EXPONENTS)
 def test_exponents_of_chaos(case):
@@ -449,6 +453,7 @@ REGULAR = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program in 80-bit Taylor series and DOP853", within="2e-10")
 @pytest.mark.parametrize("case", REGULAR)
 def test_exponents_of_periodic_orbits(case):
@@ -490,6 +495,7 @@ BASINS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "two independent programs, cell for cell")
 @pytest.mark.parametrize("case", BASINS)
 def test_basins_cell_for_cell(case):
@@ -538,6 +544,7 @@ UNCERTAINTY = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "an independent program, other random starts")
 @pytest.mark.parametrize("case", UNCERTAINTY)
 def test_uncertainty_exponents(case):

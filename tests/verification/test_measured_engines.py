@@ -12,7 +12,7 @@ from rocking.dynamics.rolling import SpatialStart
 from rocking.identification import ImpactTimes, RotationSeries, identify
 from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
 
-pytestmark = pytest.mark.verifies(room="evidence")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="evidence")]
 
 BLOCK = rk.Block(width=0.1, height=0.4, density=2400.0)
 TOWER = Solid([Part(box(0.3, 0.2, 0.8), 2400.0), Part(box(0.1, 0.2, 0.3), 2400.0).moved(0.04, 0.0, 0.8)])

@@ -20,6 +20,7 @@ cleaned = import_module("notebooks").cleaned
 
 PATH_IS_SET = 'os.environ["PATH"] = sysconfig.get_path("scripts")'
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.verifies("behaviour", room="doors"),
     pytest.mark.filterwarnings("ignore"),  # those of kernels and their sockets are not ours
 ]

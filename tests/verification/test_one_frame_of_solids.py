@@ -23,6 +23,7 @@ def wedge(*, turn=0.0):
     return Solid(Part(shape, 2400.0, rotation=upright, translation=PLACE), ground=GROUND).turned(turn)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "a third of the base of a triangle", within="0.01", control="within")
 @pytest.mark.parametrize("units", [lambda solid: divided(solid, 24), lambda solid: voxels(solid, 60)])
 def test_slenderness_from_units_and_base(units):
@@ -83,6 +84,7 @@ def test_energy_lost_at_a_point_in_closed_form():
     assert found == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_slices_are_drawn_where_the_body_stands():
     """Axes of level slices are x and y of the user; heights are over the ground."""

@@ -24,7 +24,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import Segments
 from rocking.outcome import Outcome
 
-pytestmark = pytest.mark.verifies(room="rocking in the plane")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="rocking in the plane")]
 
 RIGHT, LEFT = RockingSide(0.3, 1.0, 1.0, 0.9), RockingSide(0.24, 0.95, 1.1, 0.92)
 # p h where one term of the error rules and rounding does not

@@ -58,6 +58,7 @@ def test_half_sines(omega, agreement):
     assert found.ratio != pytest.approx([math.sqrt(1.0 + omega**2)], rel=0.04)  # negative control: 6 % and more off
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "modes I and II of Zhang and Makris 2001", within="1e-10", control="within")
 @pytest.mark.parametrize("omega", SINE_ONE_IMPACT)
 def test_full_sines_with_their_gap(omega, agreement):

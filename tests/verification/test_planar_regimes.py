@@ -75,6 +75,7 @@ def _expected(push, friction, lever=0.25):
     return Regime.ROCK if friction > (push - turn * cosine) / (1.0 + turn * sine) else Regime.SLIDE_ROCK
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form", "boundaries of rest, sliding and rocking (Shenton 1996), written out", within="every cell"
 )

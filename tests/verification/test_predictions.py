@@ -8,6 +8,8 @@ import json
 import pytest
 from benchmarks import predictions
 
+pytestmark = pytest.mark.slow
+
 CASES, COUNT, MOTIONS = 200, 32, 40
 
 

@@ -80,6 +80,7 @@ def boundary(pulse, unit, guess, r, engine, *, width=0.01, **body):
     return 0.5 * (low + high), near["impacts"][over].tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form",
     "the roots of the boundary's equation to 17 digits (modes of Zhang and Makris 2001 for sines)",

@@ -15,7 +15,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.verifies(room="campaigns")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="campaigns")]
 
 HERE = Path(__file__).parent
 

@@ -315,6 +315,7 @@ def test_a_centre_beside_a_cone_is_outside():
         Solid(Part(box(1.0, 1.0, 1.0), 2000.0), mass=5.0)
 
 
+@pytest.mark.slow
 def test_models_in_space_that_need_the_distribution_refuse():
     """ked-3d and the units of a body of known moments are refused, and the models that need no more are named."""
     from rocking.restitution.space import impact_in_space

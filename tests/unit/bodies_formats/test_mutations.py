@@ -82,6 +82,7 @@ def outcomes(read, texts, count, seed):
     return bodies, refused, leaks
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("damage", "2,000 damaged files of each format", control="test_a_reader_without_guards_leaks")
 @pytest.mark.parametrize("kind", READERS)
 def test_mutations(kind):
@@ -103,6 +104,7 @@ def replaced(thing, rng):
     return copy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "count"), [("geojson", 2000), ("toml", 2000)])
 def test_replaced_nodes(kind, count):
     """Values of any other kind anywhere in a parsed document: a body or a refusal of ours, never a leak."""
@@ -148,6 +150,7 @@ def test_a_reader_without_guards_leaks():
     assert len(outcomes(naive_json, GEOJSON, 200, seed=11)[2]) > 100
 
 
+@pytest.mark.slow
 def test_mutated_dxf(tmp_path):
     """Three hundred damaged drawings: a body or a refusal of ours."""
     ezdxf = pytest.importorskip("ezdxf")

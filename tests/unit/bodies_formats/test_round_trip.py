@@ -36,6 +36,7 @@ def same(a, b):
     assert (a.mass, a.centre, a.moment_of_inertia) == (b.mass, b.centre, b.moment_of_inertia)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "the section that was written", control="test_a_changed_last_digit_is_noticed")
 @settings(max_examples=300)
 @given(

@@ -95,6 +95,7 @@ def test_a_mesh_beside_the_file(tmp_path, mesh):
         solid_from_toml(text)
 
 
+@pytest.mark.slow
 def test_inner_parts_are_stated_at_every_door(tmp_path, run, answered):
     """A box of .75 m3 in one of 6 m3, wound like it: refused by name, 6 or 5.25 t as stated, in every answer."""
     trimesh = pytest.importorskip("trimesh")
@@ -263,6 +264,7 @@ def test_what_is_no_file(tmp_path):
 JUNK = ["nan", "inf", "-1.0", "0", "1e300", "1e-300", "true", '"x"', "[]", "[1]", "{}", "[[0, 0], [1, 0], [0, 1]]"]
 
 
+@pytest.mark.slow
 def test_mutated_files_never_leak():
     """2,000 files with a value replaced: a body with finite mass and centre, or a refusal of this package."""
     texts = [f'units = "m"\n{PLINTH}[[solid.part]]\n{shape}\nat = [0.0, 0.0, 1.0]\n' for shape, _, _ in SHAPES.values()]

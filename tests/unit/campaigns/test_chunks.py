@@ -92,6 +92,7 @@ def detected(data):
     return False
 
 
+@pytest.mark.slow
 def test_every_flipped_bit_is_detected():
     """10,000 single bits, spread over the whole shard at random: none is missed, none raises anything else."""
     data = shard.pack(CHUNK, arrays())

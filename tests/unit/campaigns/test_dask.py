@@ -20,6 +20,7 @@ def cluster():
         yield made
 
 
+@pytest.mark.slow
 def test_cluster_gives_the_same_files(cluster, finished, campaign, shards):
     """Three workers, shuffled: byte by byte the shards of a serial run."""
     summary = campaign.run(DaskExecutor(cluster.scheduler_address), order_seed=3)

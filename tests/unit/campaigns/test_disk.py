@@ -134,6 +134,7 @@ def test_database_errors_have_sentences(tmp_path, code, kind, words):
         raise error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "words"), [(FileNotFoundError, (2, "no chart")), (OSError, ("odd",)), (sqlite3.OperationalError, ("x",))]
 )
@@ -177,6 +178,7 @@ def holding(folder):
     return process
 
 
+@pytest.mark.slow
 def test_second_resumer_is_told_who_runs_it(finished):
     """Two at once: the second one gets a sentence with process and machine, and harms nothing; after kill -9 it may."""
     before = finished.sha256()
@@ -259,6 +261,7 @@ def can_mount(folder):
     return "yes" in tried(f"mount -t tmpfs -o size=1m none {folder} && echo yes")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", range(1, 8))
 def test_disk_full_at_any_file(campaign, tmp_path, work, monkeypatch, call, shards):
     """Whichever write is the first to fail, what was recorded before stays, and a later run finishes the same bytes."""
@@ -287,6 +290,7 @@ def test_disk_full_at_any_file(campaign, tmp_path, work, monkeypatch, call, shar
     assert (shards(campaign), campaign.sha256()) == (shards(whole), whole.sha256())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", [errno.EROFS, errno.EACCES, errno.EDQUOT, errno.EIO, errno.EFBIG])
 def test_disk_that_refuses_from_workers(campaign, monkeypatch, code):
     """What goes wrong in a worker process is said where the campaign runs."""
@@ -311,6 +315,7 @@ def test_file_size_limit_of_the_system(campaign):
     assert campaign.run(workers=1).computed == 6
 
 
+@pytest.mark.slow
 def test_real_full_disk(tmp_path):
     """On a file system of 1 MB a campaign of 1.5 MB stops with a sentence; with more room it goes on and finishes."""
     room = tmp_path / "room"
@@ -330,6 +335,7 @@ def test_real_full_disk(tmp_path):
     assert third == "DONE 40 0"
 
 
+@pytest.mark.slow
 def test_real_read_only_disk(finished, tmp_path):
     """On a file system that became read-only nothing is computed or lost, and results can still be read."""
     room = tmp_path / "room"

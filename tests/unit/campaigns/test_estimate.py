@@ -61,6 +61,7 @@ def played(costs, workers, size):
         told.append((now, estimate, (COUNT - done) * now / done))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2, 8])
 @pytest.mark.parametrize("size", [COUNT, 3996, 252])
 @pytest.mark.parametrize("job", JOBS)
@@ -117,6 +118,7 @@ def clock(monkeypatch):
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("each", [2, 40, 400])
 def test_trial_counts_a_motion_once(tmp_path, clock, each):
     """Motions of 20 ms, with however many histories: what a history takes is its share of one motion."""

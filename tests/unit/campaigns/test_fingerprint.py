@@ -12,6 +12,7 @@ from rocking.dynamics.plane import fast_engine
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
+@pytest.mark.slow
 def test_fingerprints_tell_the_bits_apart(make, monkeypatch):
     """Instruction sets with the same results of 3000 histories have the same fingerprint, others another one."""
     work, found = make(3000), {}
@@ -53,6 +54,7 @@ def test_sample_has_all_outcomes():
     assert outcomes == [*[{0, 1, 2, 3}] * 4, *sliding, {0, 1, 2, 3, 5}]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chosen", ["fast", "reference"])
 def test_one_bit_is_seen(chosen, monkeypatch):
     """Negative control: the last bit of one number of one history gives another fingerprint."""

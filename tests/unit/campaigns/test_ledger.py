@@ -25,6 +25,7 @@ def records(campaign):
         return list(ledger.records())
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("damage", "single bits of the ledger flipped")
 def test_flipped_ledger_never_lies(finished, tmp_path):
     """Of 400 flips anywhere in the file each is refused with the way out, or changes nothing that is recorded."""
@@ -44,6 +45,7 @@ def test_flipped_ledger_never_lies(finished, tmp_path):
     assert len(refused) > FLIPS / 20  # most bytes of the small file are empty room
 
 
+@pytest.mark.slow
 def test_flips_within_rows_are_all_refused(finished):
     """A row that was changed by a bit in a text or a number does not carry its own sum any more."""
     path = finished.folder / "ledger.sqlite"
@@ -64,6 +66,7 @@ HARMS: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harm", HARMS)
 def test_run_makes_a_damaged_ledger_anew(finished, shards, harm):
     """Whatever became of the ledger, a run says so and adopts all shards; nothing is computed again or deleted."""

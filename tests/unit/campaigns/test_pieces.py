@@ -24,6 +24,8 @@ from rocking.studies import HistoryTable
 sys.path.insert(0, str(Path(__file__).parent))  # for the processes, too
 from slow import Motions, product
 
+pytestmark = pytest.mark.slow
+
 PLAN = Plan("a" * 64, 1000, 300, "fast", "1.0")
 
 

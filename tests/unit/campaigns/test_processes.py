@@ -18,7 +18,10 @@ from rocking.campaigns.executors import WorkerTask
 from rocking.dynamics.plane import fast_engine
 from rocking.errors import MissingExtraError
 
-pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail"),
+]
 nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
 FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 

@@ -22,6 +22,7 @@ def paths(campaign):
     return [campaign.folder / "shards" / f"{campaign.plan.chunk(k).name}.shard" for k in range(campaign.plan.chunks)]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("damage", "single bits of shards flipped on disk")
 def test_flips_on_disk_are_found_and_mended(finished, shards):
     """200 flips of shards on disk: reading refuses them, a run sets them aside and computes the same bytes again."""
@@ -42,6 +43,7 @@ def test_flips_on_disk_are_found_and_mended(finished, shards):
     assert len(finished.status().damaged) == DISK_FLIPS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [0, 1, 100, -1, None])
 def test_truncated_shard_is_mended(finished, shards, length):
     """A shard that was cut short is set aside and computed again; one that somebody deleted too, and that is said."""
@@ -70,6 +72,7 @@ def test_shards_that_nobody_recorded_are_adopted_or_set_aside(finished, tmp_path
     assert other.sha256() == finished.sha256()
 
 
+@pytest.mark.slow
 def test_identity_that_changed_is_refused(finished, work):
     """No bit of campaign.json may change: 300 flips, each with a sentence and a way out."""
     path = finished.folder / "campaign.json"

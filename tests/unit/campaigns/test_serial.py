@@ -274,6 +274,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_stop_records_what_is_finished(tmp_path, work, number):
     """A signal in the middle: the exception says what is safe, later runs go on, old handlers are back."""
@@ -310,6 +311,7 @@ def test_second_signal_is_not_held_back():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("executor", "chunk", "after"), [("serial", 5000, 2), ("serial", 1_000_000, 0), ("processes", 5000, 2)]
 )

@@ -2,6 +2,8 @@
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 COMMAND = "assess"
 BODY = ("--width", 0.8, "--height", 2.2, "--depth", 1.2, "--mass", 650, "--centre", "0.52,0.9")
 QUICK = (

@@ -60,6 +60,7 @@ STATUS = [
 RUN = ["computed_chunks", "resumed_chunks", "adopted_chunks", "set_aside", "retries", "run_seconds"]
 
 
+@pytest.mark.slow
 def test_run_status_resume_export(run, job, tmp_path):
     """The whole way in words, and again in JSON with keys that stay these."""
     folder = tmp_path / "c"
@@ -162,6 +163,7 @@ def test_damage_is_told(run, printed, job, tmp_path):
 HARMS = {"flip": "has changed", "cut": "cut short", "lose": "is missing", "swap": "holds another chunk"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harm", HARMS)
 def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     """A flipped bit, a file cut short, lost, or of other histories: named, not counted, exit code 6; resume mends."""
@@ -190,6 +192,7 @@ def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     assert run("verify", folder)[0] == 0
 
 
+@pytest.mark.slow
 def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     """Verify, status and export say that the ledger is damaged, with exit code 6; resume mends it, as verify says."""
     folder = tmp_path / "c"
@@ -221,6 +224,7 @@ def test_changed_job_is_told_alike(run, job, tmp_path):
     assert (code, out, "job.toml has changed since the campaign began; restore it" in err) == (6, "", True)
 
 
+@pytest.mark.slow
 def test_verify_reads_every_round(run, job, tmp_path):
     """A refined map, whose rounds are campaigns of their own: one bit of the last one is noticed."""
     folder = tmp_path / "c"
@@ -302,6 +306,7 @@ def wait_for(folder, chunks):
     raise AssertionError("it never started")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_kill_resume_export(run, job, tmp_path):
     """SIGKILL in the middle, resume, then SIGINT, resume: the file is byte for byte that of an undisturbed run."""

@@ -33,6 +33,7 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "objects.csv").write_text(OBJECTS)
 
 
+@pytest.mark.slow
 def test_rounds_in_words_and_in_json(refuses, run, printed, tmp_path):
     """Check is honest about the first round; status counts rounds; a campaign is complete after the last one."""
     out = run("campaign", "check", "map.toml")[1]
@@ -82,6 +83,7 @@ def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
     assert run("campaign", "resume", "c") == (3, "", "rocking: stopped; finished results are kept\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["r.html", "r.csv", "r.json", "r.xlsx", "all"])
 def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
     """A write that fails half way: exit code 4 with the path, no report under its name, no half of one beside it."""
@@ -118,6 +120,7 @@ def test_thresholds_are_named_with_their_table(run, tmp_path, key):
     assert f"inventory.thresholds: {key} must be" in err.replace("\n", " ")
 
 
+@pytest.mark.slow
 def test_inventory_is_that_of_the_other_command(run, tmp_path):
     """The same table and the same numbers as `rocking inventory`, in every form; provenance beside it."""
     pytest.importorskip("openpyxl")
@@ -136,6 +139,7 @@ def test_inventory_is_that_of_the_other_command(run, tmp_path):
     assert {path.name for path in (tmp_path / "all").iterdir()} == names | {"inventory.provenance.json"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "wanted"),
     [

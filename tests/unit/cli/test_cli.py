@@ -41,6 +41,7 @@ def test_cor_json_and_csv(run, tmp_path):
     assert [float(row["coefficient"]) for row in rows] == [row["coefficient"] for row in flat]
 
 
+@pytest.mark.slow
 def test_cor_options(run, own, tmp_path):
     """Unit, angle, one foot, chosen models, interface factor, identities, own model and picture all do their work."""
     picture = tmp_path / "body.svg"
@@ -81,6 +82,7 @@ def paper(run, reproduction, monkeypatch):
     return lambda *words: run("reproduce", *words)
 
 
+@pytest.mark.slow
 def test_paper_summary_and_json(paper):
     """`rocking reproduce` prints tables, claims, league and verdict, no number cut off; --json has numbers."""
     code, out, _ = paper("--details")
@@ -116,6 +118,7 @@ def test_paper_into_a_file_is_refused(paper, refuses, tmp_path):
     refuses(("reproduce", "--output", tmp_path / "file"), "cannot write to")
 
 
+@pytest.mark.slow
 def test_help_is_quick():
     """`rocking --help` in a fresh process loads neither numpy nor pydantic: that is what keeps it under 0.5 s."""
     code = (
@@ -127,6 +130,7 @@ def test_help_is_quick():
     assert "LOADED []" in done.stdout
 
 
+@pytest.mark.slow
 def test_cor_says_which_model_to_use(run):
     """With --recommend page and JSON say what Python says; without it neither does."""
     words = ("restitution", "--width", 2, "--height", 16, "--units", "cm")

@@ -12,6 +12,7 @@ FAMILY = ("--synthetic", "firm-ground", "--count", 6, "--restitution", "housner"
 GRID = ("--height", "60,400", "--slenderness", 5, "--units", "cm")
 
 
+@pytest.mark.slow
 def test_a_grid_of_bodies(printed, answered, tmp_path):
     """Every method has a line, and every body one of shares; JSON and CSV say the same, sources and readings too."""
     file = tmp_path / "codes.csv"
@@ -38,6 +39,7 @@ def test_a_grid_of_bodies(printed, answered, tmp_path):
     assert found["methods"]["italian-linear"]["called_safe"][0][1]["safe"] == 6
 
 
+@pytest.mark.slow
 def test_one_body_under_one_motion(printed, answered):
     """Of one case it is said whether it is safe; the levels are those of the motion; a side that is worse counts."""
     body = ("--width", 0.8, "--height", 2.2, "--centre", "0.52,0.9", "--mass", 650, "--depth", 1.2)
@@ -76,6 +78,7 @@ def test_levels_in_another_measure(answered):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_vertical_motion_is_in_the_answer(printed, answered, tmp_path):
     """Of a motion with a falling ground each method states its treatment, and the static limit includes it."""
     time = np.arange(1301) * 1e-3

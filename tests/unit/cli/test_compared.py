@@ -14,6 +14,7 @@ LEVELS = "--levels", "1,4"
 FAMILY = "--synthetic", "firm-ground", "--count", 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
     [
@@ -30,6 +31,7 @@ def test_the_model_of_a_solid_is_that_in_3d(run, file, words):
     assert "calibrated-3d. It is the default because its plane form" in out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "first"),
     [

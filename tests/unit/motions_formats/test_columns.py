@@ -109,6 +109,7 @@ def test_contradicting_step_is_refused() -> None:
         COLUMNS.read(_source(text), "g", 0.004)
 
 
+@pytest.mark.slow
 @given(st.lists(st.floats(-1e5, 1e5), min_size=2, max_size=20), st.sampled_from([1e-3, 0.005, 1.0 / 128.0, 0.02]))
 def test_round_trip_is_exact(values: list[float], step: float) -> None:
     """Every sample comes back to the last bit, and the step with it."""
@@ -276,6 +277,7 @@ def _damaged(text: str, chance: random.Random) -> str:
     return chance.choice(kinds)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [",", ";", "\t"])
 def test_damaged_copies_are_refused_or_have_a_sample_for_every_line(gap: str) -> None:
     """Of 600 damaged copies none raises another error, and none loses a line of numbers between the first and last."""
@@ -316,6 +318,7 @@ def _read_or_refused(text: str) -> tuple[list[list[float]], float] | str:
     return [part.acceleration.tolist() for part in record.components], record.components[0].time_step
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_plain_numbers_are_read_at_once_as_one_by_one(layout: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 300 damaged copies each has the same samples, or the same refusal with its line, as number by number."""

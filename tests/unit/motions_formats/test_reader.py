@@ -294,6 +294,7 @@ def test_what_cannot_be_written(samples: list[float], unit: str, step: float, me
         write_record(good, tmp_path / "absent" / "x.at2", "peer")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("filler", [b"1", b" ", b"(", b"UNITS OF ", b"CHAN 1: "])
 def test_endless_lines_do_not_hang(filler: bytes, made_up) -> None:
     """A line of 200 000 characters in any header line is read or refused at once, not searched for ever."""
@@ -332,6 +333,7 @@ def _damages(draw: st.DrawFn, content: bytes) -> bytes:
     return b"\n".join(lines)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns"])
 @given(data=st.data())
 def test_damage_of_any_kind(name: str, data: st.DataObject) -> None:

@@ -172,6 +172,7 @@ def test_what_is_no_surface(vertices, faces, repair, words):
         repaired(vertices, faces, repair=repair)
 
 
+@pytest.mark.slow
 def test_shells():
     """Prisms that share an edge add up, one inside another wound inward is a cavity, crossing ones are united."""
     other = np.concatenate([F, F + 8])
@@ -202,6 +203,7 @@ def enclosed(*signs):
     return 1.3 * 0.7 * sum(s * size**3 for s, size in zip(signs, (4.0, 3.0, 2.0, 1.0), strict=False))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outward", [1, -1], ids=["outward", "inward"])
 def test_shells_inside_shells(outward):
     """Four boxes one in the other, wound alternately, are a body, a cavity, a body and a cavity."""
@@ -211,6 +213,7 @@ def test_shells_inside_shells(outward):
     assert (len(done.repairs) == 1) == (outward > 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outward", [1, -1], ids=["outward", "inward"])
 def test_inner_parts_are_decided_by_the_user(outward):
     """Of parts wound like what surrounds them the user states what they are; each reading has its closed form.
@@ -255,6 +258,7 @@ def test_a_small_inner_part_is_within_the_bound_of_safe_repairs():
         repaired(np.concatenate([V, larger]), np.concatenate([F, F + 8]))
 
 
+@pytest.mark.slow
 def test_an_inner_part_through_the_wall_has_the_volume_of_the_solid_reading():
     """A part that pokes out by a thousandth is united: the solid reading of the part inside is continuous with it."""
     inner = V * 0.5 + np.array([0.0, 0.0, 1.0])

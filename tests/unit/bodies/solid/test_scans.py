@@ -16,7 +16,7 @@ from rocking.bodies.solid._repair import repaired
 from rocking.bodies.solid.standing import settled
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
-pytestmark = pytest.mark.verifies(room="bodies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="bodies")]
 
 trimesh = pytest.importorskip("trimesh")
 

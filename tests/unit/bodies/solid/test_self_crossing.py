@@ -218,6 +218,7 @@ def test_single_precision_is_no_crossing(seed):
     assert check_crossings(np.array(mesh.vertices, dtype=np.float32).astype(np.float64)[mesh.faces])
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(0.01, 0.6))
 def test_stars_are_never_refused(seed, rough):
@@ -239,6 +240,7 @@ def edges_through_faces(vertices, faces, slack):
     return bool(((u > -slack) & (v > -slack) & (u + v < 1.0 + slack) & (t > -slack) & (t < 1.0 + slack)).any())
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "every edge against every face", within="every ball")
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(0.02, 0.3))

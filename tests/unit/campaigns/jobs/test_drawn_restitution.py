@@ -57,6 +57,7 @@ def test_values_are_the_law_of_python(each):
         assert not np.array_equal(found, peaks_of(other), equal_nan=True)
 
 
+@pytest.mark.slow
 @EACH
 def test_posterior_is_the_law_of_python(each):
     """The map of the job is that of the posterior's law in Python, bit by bit; another seed and body are not."""
@@ -80,6 +81,7 @@ def test_so_many_values_of_the_posterior(each):
     assert not np.array_equal(peaks_of(named), peaks_of(named.replace("40", "41")), equal_nan=True)
 
 
+@pytest.mark.slow
 def test_labels():
     """The label says what is drawn, and whether the body is more slender than what was measured."""
     values = 'values = [0.95, 1.0, 0.9]\ntimes = "housner"\nseed = 1'  # draws may multiply a model
@@ -152,6 +154,7 @@ outline = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.5], [0.0, 1.2]]
 """
 
 
+@pytest.mark.slow
 @EACH
 @pytest.mark.parametrize("count", ["", "count = 30"])
 def test_a_body_with_unequal_sides(each, count):

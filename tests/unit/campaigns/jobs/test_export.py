@@ -80,6 +80,7 @@ def from_excel(path):
     return columns, dict(book["provenance"].iter_rows(values_only=True, max_col=2))["provenance"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("end", "read", "within"),
     [
@@ -96,6 +97,7 @@ def test_every_format_holds_all_numbers(finished, tmp_path, end, read, within):
     assert json.loads(provenance) == folder.job.provenance
 
 
+@pytest.mark.slow
 def test_the_same_bytes_whatever_the_chunks(text, tmp_path):
     """The bytes of the file do not depend on the chunks, which cut through rows; those of another study differ."""
     files = {}
@@ -140,6 +142,7 @@ def test_words_that_are_no_formulas(text, finished, tmp_path):
     assert all(cell.data_type != "f" for cell in cells)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [".nc", ".csv", ".mat", ".xlsx", ".xml"])
 def test_fragility(finished, tmp_path, end, text):
     """Fragility curves in every format; the parameters in CSV and NRML are those of the analysis."""
@@ -181,6 +184,7 @@ def test_refusals(finished, tmp_path, name, what, options, wanted):
     assert set(tmp_path.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_which_restitution(finished, tmp_path, text):
     """With several restitutions one must be named, and it decides the curve."""
     words = text("incremental").replace("value = 0.9", "values = [0.85, 0.95]")
@@ -243,6 +247,7 @@ print(folder.campaign.plan.count, running, before, peak())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="the peak of memory is read from /proc")
 @pytest.mark.parametrize(("end", "most"), [(".nc", 50e6), (".parquet", 200e6)])
 def test_memory_stays_bounded(tmp_path, text, end, most):
@@ -263,6 +268,7 @@ def test_memory_stays_bounded(tmp_path, text, end, most):
     assert 1024 * max(running, after) < 300_000_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [".nc", ".csv"])
 def test_a_map_says_what_its_safe_islands_are(finished, tmp_path, end):
     """The provenance in the file, or beside it, has the sentences of the Python attribute, by restitution."""

@@ -202,6 +202,7 @@ def digest(folder, restitution):
     return finished(folder, job_of(restitution)).campaign.sha256()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("executor", ["serial", "processes"])
 def test_own_model_computes_in_every_process(own, executor):
     """A model that returns 0.9 gives the bits of the value 0.9, in this process and in spawned ones; not of 0.8."""
@@ -235,6 +236,7 @@ def test_changed_model_is_refused(own):
     assert JobFolder.open(own / "c").run(workers=1).computed == 3
 
 
+@pytest.mark.slow
 def test_model_travels_with_its_source(own):
     """A process without the file makes the same model; with a remark in the file it is another class."""
     made = model_in_file(f"{own / 'mine.py'}:Mine")

@@ -16,6 +16,8 @@ from rocking.errors import InvalidValueError
 from rocking.studies import fragility_analysis
 from rocking.studies.fragility import model_of, to_csv, to_nrml
 
+pytestmark = pytest.mark.slow
+
 PERIODS = [round(0.4 + 0.05 * k, 2) for k in range(24)]
 STRIPES = job(
     "stripes", BODY, f"[motions]\npulse = {[f'sine:amplitude=1,period={period}' for period in PERIODS]}\n",

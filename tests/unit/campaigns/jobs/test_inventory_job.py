@@ -13,6 +13,8 @@ from rocking.decision.inventory.table import answer_of
 from rocking.errors import InvalidValueError
 from rocking.motions.formats import read_motion
 
+pytestmark = pytest.mark.slow
+
 OBJECTS = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,note
 tall vase,20,20,100,55,
 cabinet,90,45,180,,locked

@@ -14,6 +14,8 @@ from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
 from rocking.studies.fragility import fragility_analysis
 from rocking.studies.sensitivity import SampledRestitution
 
+pytestmark = pytest.mark.slow
+
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
 

@@ -17,6 +17,8 @@ from rocking.campaigns.jobs.exporting import exports_of, measures_table
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, compare_measures, fragility_analysis
 
+pytestmark = pytest.mark.slow
+
 COUNT, PGA = 40, 3.2
 NAMES = ["pga", "pgv", "p pgv/(g tan alpha)", "arias", "sa(1.0)"]
 HEAD = f"""[body]

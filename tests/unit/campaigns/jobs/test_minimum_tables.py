@@ -90,6 +90,7 @@ def searched(tmp_path_factory):
     return {name: sheet.columns for name, sheet in answer(folder).tables.items()}
 
 
+@pytest.mark.slow
 def test_crossings_mean_what_they_say(searched):
     """Acceleration is scale times peak and ratio times g tan(alpha); the verdict differs below and above."""
     made = {name: each.values for name, each in searched["crossings"].items()}

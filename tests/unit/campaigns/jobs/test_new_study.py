@@ -16,6 +16,7 @@ from rocking.spec.reference import keys_of, reference
 __all__ = ["added"]  # a fixture
 
 
+@pytest.mark.slow
 def test_one_file_is_a_study_everywhere(added, capsys):
     (added / "job.toml").write_text(JOB, encoding="utf-8")
     job = Job.read(added / "job.toml")
@@ -40,6 +41,7 @@ def test_one_file_is_a_study_everywhere(added, capsys):
     assert "| `factor` | number |" in page.partition("## [polarity]")[2]
 
 
+@pytest.mark.slow
 def test_one_file_is_a_command(added, run, refuses, monkeypatch):
     """Its options are the keys of its table; files say the same, and the list has it."""
     words = [

@@ -20,6 +20,7 @@ OTHERS = {
 OF_CALL = ["overturning-map", "rocking-spectrum", "stripes", "incremental", "cloud"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*OF_CALL, "several maps", "refined", "minimum-acceleration"])
 def test_picture(finished, tmp_path, capsys, kind):
     """By its ending, or by name, whatever the kind; several restitutions are compared where none is named."""
@@ -78,6 +79,7 @@ def test_search_without_a_result(tmp_path):
         write(folder.path, [str(tmp_path / "a.png")], **NOTHING)
 
 
+@pytest.mark.slow
 def test_which_restitution_is_drawn(finished, tmp_path, text):
     """Clouds and incremental analyses have a picture of each restitution, and none that compares them."""
     folder = finished("cloud", None, text("cloud") + TWO_MODELS)

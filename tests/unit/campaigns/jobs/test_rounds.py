@@ -25,6 +25,8 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies import SyntheticSet, boundary, minimum_overturning_accelerations, overturning_map
 
+pytestmark = pytest.mark.slow
+
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
 

@@ -39,6 +39,7 @@ def whole(tmp_path_factory):
     return finished(tmp_path_factory.mktemp("whole") / "c", MAP)
 
 
+@pytest.mark.slow
 def test_spawned_processes(whole, tmp_path):
     """Three chunks of 1000 in the first round, by spawned processes: the bits of one thread."""
     folder = begun(tmp_path / "c", MAP)
@@ -46,6 +47,7 @@ def test_spawned_processes(whole, tmp_path):
     assert digests(folder) == digests(whole)
 
 
+@pytest.mark.slow
 def test_cluster(whole, tmp_path):
     """The same by workers of a Dask cluster."""
     distributed = pytest.importorskip("distributed")
@@ -109,6 +111,7 @@ def test_full_disk_names_the_job(tmp_path, monkeypatch):
     assert str(told.value).endswith(f"go on with: rocking campaign resume {folder.path}")
 
 
+@pytest.mark.slow
 def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
     """Status and answers say how to go on, and going on computes nothing again."""
     folder = finished(tmp_path / "c", SMALL)
@@ -122,6 +125,7 @@ def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
     assert (verified(folder.path).whole, digests(folder)) == (True, before)
 
 
+@pytest.mark.slow
 def test_damaged_round_and_its_way_out(tmp_path):
     """A round's plan damaged: status, answers and runs say which folder to remove, and doing so is the way out."""
     folder = finished(tmp_path / "c", SMALL)

@@ -73,6 +73,7 @@ CASES = [("minimum", "crossings"), ("minimum", "minima"), ("map", "flips"), ("ma
 CASES += [("stripes", "flips"), ("stripes", "differences")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("which", "what"), CASES)
 def test_matlab(made, tmp_path, which, what):
     """A structure of columns with the values of the CSV file to the last bit, and where they come from."""
@@ -124,6 +125,7 @@ def test_no_crossings(made, tmp_path, end):
         assert np.size(table.crossing_acceleration) == np.size(table.crossing_motion) == 0
 
 
+@pytest.mark.slow
 def test_refined_maps(tmp_path):
     """Points and vertices of refined maps go to MATLAB too."""
     folder = finished(tmp_path / "refined", job("overturning-map", BODY, MAP, "refine = 1\n"))
