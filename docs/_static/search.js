@@ -5,7 +5,7 @@ const ASKING = new Set(
 );
 const SPELLED = new Map([["center", "centre"], ["centers", "centres"], ["meter", "metre"], ["meters", "metres"], ["color", "colour"]]);
 const WEIGHTS = { how_to: 1.7, choose_a_tool: 1.5, commands: 1.3, terms: 1.3, reference: 0.5, changes: 0.3 };
-const words = (term) => {
+const termOf = (term) => {
   const word = term.toLowerCase();
   if (ASKING.has(word)) return null;
   const spelled = SPELLED.get(word) ?? word;
@@ -15,7 +15,7 @@ const words = (term) => {
 const index = new MiniSearch({
   fields: ["title", "terms", "page", "text"],
   storeFields: ["title", "page", "address", "text"],
-  processTerm: words,
+  processTerm: termOf,
   searchOptions: {
     boost: { title: 5, terms: 4, page: 1.5 },
     fuzzy: (term) => (term.length > 5 ? 0.2 : false),
@@ -26,26 +26,26 @@ const index = new MiniSearch({
 index.addAll(sections);
 
 const element = (name, properties, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
+  const node = Object.assign(document.createElement(name), properties);
+  node.append(...children);
+  return node;
 };
 
 // The segment of the text around the first term, with all terms marked.
 function excerpt(text, terms) {
-  const wanted = terms.map((term) => term.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|");
-  const marks = new RegExp(`\\b(?:${wanted})`, "gi");
+  const pattern = terms.map((term) => term.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("|");
+  const marks = new RegExp(`\\b(?:${pattern})`, "gi");
   const first = Math.max(0, text.search(marks) - 60);
   const begin = first === 0 ? 0 : text.indexOf(" ", first) + 1;
-  const part = text.slice(begin, begin + 220);
-  const made = element("p", {}, begin ? "… " : "");
+  const shown = text.slice(begin, begin + 220);
+  const paragraph = element("p", {}, begin ? "… " : "");
   let last = 0;
-  for (const hit of part.matchAll(marks)) {
-    made.append(part.slice(last, hit.index), element("mark", { textContent: hit[0] }));
+  for (const hit of shown.matchAll(marks)) {
+    paragraph.append(shown.slice(last, hit.index), element("mark", { textContent: hit[0] }));
     last = hit.index + hit[0].length;
   }
-  made.append(part.slice(last), text.length > begin + 220 ? " …" : "");
-  return made;
+  paragraph.append(shown.slice(last), text.length > begin + 220 ? " …" : "");
+  return paragraph;
 }
 
 const query = new URLSearchParams(location.search).get("q") ?? "";

@@ -125,7 +125,7 @@ class RockingError(Exception):
         if isinstance(self.value, float) and self._name:  # for the decimal mark of the reader
             sentence = Message(sentence.text, {**sentence.facts, "value": Amount(self.value)} | self.facts)
         for location in reversed(places):
-            sentence = Message("{place}: {fault}", {"place": str(location), "fault": sentence})
+            sentence = Message("{location}: {fault}", {"location": str(location), "fault": sentence})
         if self.hint:
             sentence = Message("{fault}; {hint}", {"fault": sentence, "hint": as_message(self.hint)})
         return Message("{fault} (and {count} more)", {"fault": sentence, "count": self.more}) if self.more else sentence

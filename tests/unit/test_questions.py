@@ -71,7 +71,7 @@ def test_steps_say_what_they_take():
         ((found, keys),) = steps_of(f"{name}:{','.join(given)}")
         assert (found, len(keys)) == (name, len(given))
     described = [*steps().values(), *targets().values()]
-    assert [key for one in described for key, each in one["keys"].items() if not each["words"]] == []
+    assert [key for one in described for key, each in one["keys"].items() if not each["description"]] == []
     assert steps()["bandpass"]["keys"]["high"]["unit"] == "Hz"
     assert steps()["bandpass"]["keys"]["pads"]["choices"] == ["cut", "keep"]
     with pytest.raises(InvalidValueError, match="step taper: allowed keys are fraction"):

@@ -75,6 +75,13 @@ def test_a_campaign_of_schema_1_opens(name, tmp_path):
     assert opened.job.document == job.document
 
 
+def test_forms_of_a_project_have_the_present_keys():
+    """Each form keeps its values; a form with the present keys stays as it is."""
+    old = {"measure": {"what": "identify", "known": "no", "unit": "m"}, "space": {"asked": "motion"}}
+    new = {"measure": {"command": "identify", "body": "no", "unit": "m"}, "space": {"analysis": "motion"}}
+    assert migrated_document({"forms": old}) == migrated_document({"forms": new}) == {"forms": new}
+
+
 def test_documents_without_forms_or_inputs_stay():
     for document in ({}, {"inputs": None}, {"forms": {"decide": 3}}):
         assert migrated_document(document) == document

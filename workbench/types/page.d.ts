@@ -17,7 +17,7 @@ type Refusal = import("/app/api.js").ApiError & Partial<Server.Refusal> & { fiel
 type Look = { colour: string; dash?: number[] };
 
 /** Inputs that are kept beside those on the screen: app/inputs.js. */
-type Aside = { inputs: Server.Inputs; words: string; mine: boolean };
+type Aside = { inputs: Server.Inputs; label: string; mine: boolean };
 
 type CallOptions = {
   method?: string; json?: unknown; body?: BodyInit; query?: { [key: string]: any }; signal?: AbortSignal; keepalive?: boolean;
@@ -28,7 +28,7 @@ type MethodOf<Options> = Options extends { method: infer Method extends string }
 type Call = <const Path extends string, const Options extends CallOptions = {}>(path: Path, options?: Options)
   => Promise<Server.Answer<MethodOf<Options>, Path extends `/api/${infer Rest}` ? Rest : Path>>;
 
-/** What the views are given: app/main.js makes it. */
+/** The argument of all views, from app/main.js. */
 interface App {
   info: Server.Info;
   language: string;
@@ -73,7 +73,7 @@ type ChartOptions = {
   onZoom?: (interval: Point | null) => unknown;
 };
 type Ticks = { colour: string; at: number[] };
-type Marks = { vertical?: number[]; horizontal?: number[]; ticks?: Ticks[]; words?: string };
+type Marks = { vertical?: number[]; horizontal?: number[]; ticks?: Ticks[]; description?: string };
 type Chart = ReturnType<typeof import("/charts/line.js").lineChart>;
 type Time = { add: (chart: Chart) => Stop; show?: (instant: number) => unknown; onZoom?: ChartOptions["onZoom"] };
 
@@ -97,7 +97,7 @@ type Actor = {
   label: string; colour: string; dash: number[]; scaledDash: number[]; falls: boolean; rotation: Track; share: Track;
   impactTimes: Float64Array; impactFeet: Float64Array; impactWords: string[];
 };
-type Play = { shape: Shape; actors: Actor[]; ground: Track; end: number; rest: number; words: string };
+type Play = { shape: Shape; actors: Actor[]; ground: Track; end: number; restTime: number; description: string };
 
 type VNode = import("/vendor/preact/preact.mjs").VNode;
 type Signal<Of> = import("/vendor/preact/preact.mjs").Signal<Of>;
@@ -110,10 +110,10 @@ type SpaceStage = import("/space/stage.js").Stage;
 type Aim = { turned?: number; raised?: number; near?: number };
 type SpacePose = { turn: number[]; height: number; support: number[][]; up_in_file: number[] };
 type SpaceEdge = { name: string; from: number[]; to: number[] };
-type SpaceMotion = { time: Float32Array; turn: Float32Array; place: Float32Array; tilt: Float32Array };
+type SpaceMotion = { time: Float32Array; turn: Float32Array; centre: Float32Array; tilt: Float32Array };
 type SpaceModel = {
   points: Float32Array; faces: Uint32Array; colours: Uint8Array | null; hull: Float32Array | null; motion: SpaceMotion | null;
-  mended: Float32Array | null; base: number[][]; height: number; edges: SpaceEdge[]; poses: SpacePose[]; marks: { kind: string; place: number[] }[];
+  mended: Float32Array | null; base: number[][]; height: number; edges: SpaceEdge[]; poses: SpacePose[]; marks: { kind: string; position: number[] }[];
 };
 
 // Fields as components: parts/fields.js.
@@ -124,7 +124,7 @@ type FieldProps<Value> = {
 type Limits = { min?: number; above?: number; max?: number; integer?: boolean; moves?: boolean; optional?: boolean };
 type NumberProps = FieldProps<number | null> & Limits & { step?: number; aside?: boolean };
 
-/** What of a record may have to be told, what was, and what a file leaves open: views/motion-record-needs.js. */
+/** Properties of a record that a user may state, the stated ones, and those that a file omits: views/motion-record-needs.js. */
 type Need = Server.RecordFacts["needs"][number];
 type Told = { format?: string; units?: string; time_step?: number; component?: string; vertical?: string };
 type LeftOpen = { needs: Need[]; choices?: Server.RecordFacts["choices"]; components?: Server.ComponentFacts[]; [more: string]: any };
@@ -139,7 +139,7 @@ type Form = { readonly value: any; at: (...path: string[]) => { value: any } };
 /** What hinders asking: words, or words of a field. */
 type Wrong = string | { key?: string; text: string };
 
-// Views: what is asked and found (views/answer.js, questions/parts.js), what is drawn, and what is chosen.
+// Views: requests and results (views/answer.js, questions/parts.js), drawings and selections.
 type Asked<Found> = {
   answer: Signal<Found | null>; refused: Signal<Refusal | null>; closeup: Signal<any>; ask: () => void; shown: () => void; hidden: () => unknown;
   look: (window: Point | null) => Promise<undefined>;
@@ -159,11 +159,11 @@ type Words = { [key: string]: string | undefined };
 /** The polygon editor: views/body-editor.js. */
 type Editor = {
   state: {
-    place: Place; snap: boolean; step: number | null; grid: number | null; photo: any;
+    selected: Place; snap: boolean; step: number | null; grid: number | null; photo: any;
     tool: { kind: "pen" | "scale"; points: Ring; cursor: number[] | null } | null;
   };
   history: ReturnType<typeof import("/views/body-editor-model.js").createHistory>;
-  drawn: Signal<number>; told: Signal<string>; board: ReturnType<typeof import("/views/body-editor-canvas.js").createCanvas>;
+  drawn: Signal<number>; status: Signal<string>; board: ReturnType<typeof import("/views/body-editor-canvas.js").createCanvas>;
   tool: {
     put: (point: number[], reach?: number) => unknown; key: (name: string, times: number, start: () => number[]) => boolean; leave: () => void;
     take: (kind: "pen" | "scale") => unknown; close: (use?: (editor: Editor, points: Ring) => string | void) => unknown;
@@ -191,7 +191,7 @@ type StudyQuestion = { current: { name: string; tables: (inputs: Server.Inputs) 
 type Cell = { ix: number; iy: number };
 type PaintOf = (ix: number, iy: number) => string;
 type Lines = Point[][];
-type Layer = { value: string; text: string; legend: { paint: string; words: string }[]; paint: PaintOf };
+type Layer = { value: string; text: string; legend: { paint: string; label: string }[]; paint: PaintOf };
 type GridAxis = ReturnType<typeof import("/views/studies-grid.js").axisOf>;
 /** The result of a map, unpacked: app/packed.js. */
 type MapFound = Omit<Server.MapResult, "outcome" | "impacts" | "peak"> & { outcome: Row[][]; impacts: Row[][]; peak: Row[][] };

@@ -169,10 +169,10 @@ class SetAnswer:
 def _reason(reason: str | RockingError) -> dict[str, str]:
     """Return the reason for the exclusion of a file, with a hint if the error has one."""
     if isinstance(reason, str):
-        return {"why": reason}
+        return {"reason": reason}
     option = reason.hint.facts.get("option") if isinstance(reason.hint, Message) else None
     return {
-        "why": reason.cause,
+        "reason": reason.cause,
         "hint": str(reason.hint),
         "to_state": option.path if isinstance(option, Option) else "",
     }

@@ -242,7 +242,7 @@ class Response(ResponseBase):
             response = self.with_contact(friction)
         except InvalidValueError as error:
             return Message(_FLIGHT_UNKNOWN, {**facts, "reason": str(error)})
-        origin = "since friction is not given" if friction == math.inf else f"as {given_or_assumed(friction)}"
+        origin = "because no friction is stated" if friction == math.inf else f"as {given_or_assumed(friction)}"
         facts |= {"friction": response.law.friction, "origin": Message(origin), "flight": response.summary}
         return Message(_FLIGHT, facts)
 

@@ -136,9 +136,9 @@ def _from_times(measurement: ImpactTimes, prior: Knowledge) -> Identification:
     if extra:
         doubts.append(
             Message(
-                "{count} time between the impacts is no impact; bounces or echoes: {bounces}.",
+                "{count} time between the impacts is not an impact; bounces or echoes: {bounces}.",
                 {"count": extra, "bounces": bounces},
-                many="{count} times between the impacts are no impacts; bounces or echoes: {bounces}.",
+                many="{count} times between the impacts are not impacts; bounces or echoes: {bounces}.",
             )
         )
     if prior.asymmetry and prior.tilt_error:

@@ -221,7 +221,7 @@ def checked_level(motion: Any) -> Any:
         raise InvalidValueError(
             "component {component} of {file!r:.100} {orientation} and cannot be a horizontal motion",
             component=metadata.get("component", ""), file=metadata.get("file", motion.name), orientation=reason,
-            hint="use it along z, and a horizontal component along x",
+            hint="use this component along z, and a horizontal component along x",
         )  # fmt: skip
     return motion
 

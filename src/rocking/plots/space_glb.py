@@ -66,7 +66,7 @@ class GltfFile:
             ],
             "marks": [
                 {
-                    "kind": member.kind, "place": (member.points.mean(axis=0) - equilibria.centre).tolist(),
+                    "kind": member.kind, "position": (member.points.mean(axis=0) - equilibria.centre).tolist(),
                     "height": member.height, "energy": member.energy,
                 }
                 for member in (*equilibria.stable, *equilibria.saddles, *equilibria.summits)

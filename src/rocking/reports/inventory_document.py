@@ -61,7 +61,7 @@ def inventory_document(
     candidates = [
         sections.glance(pictures), sections.ranking(), sections.plan(), sections.refused(), sections.others(),
         sections.numbers(), sections.meaning(),
-        sections.shaking(), ReportSection(say("What is not covered"), [Paragraph(text) for text in limits(assessment)]),
+        sections.shaking(), ReportSection(say("Limitations"), [Paragraph(text) for text in limits(assessment)]),
     ]  # fmt: skip
     return Document(
         say("Overturning of objects in earthquakes"),

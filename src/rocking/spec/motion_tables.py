@@ -104,7 +104,7 @@ class MotionTable(_Along, MotionKeys):
 
     records: Names | None = key("record files, folder of record files, pattern such as *.at2, or list in a .csv file")
     files: dict[Text, FileKeys] | None = key(
-        'options of single files, which replace those of all files: one table per file name, [motions.files."a.txt"]'
+        'options of single files, in place of the common options: one table per file name, as motions.files."a.txt"'
     )
     pulse: Names | None = key("pulses, such as sine:amplitude=3,period=0.8")
     count: Annotated[int, Field(ge=1, le=10_000_000)] | None = key(

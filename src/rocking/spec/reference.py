@@ -131,7 +131,11 @@ def steps() -> dict[str, dict[str, Any]]:
         measures = {
             measure.name: _facts_of_key(f"{measure.words} [{measure.unit}]", None, float) for measure in scalable
         }
-        facts[name] = {"words": _summary(step), "one": has_level, "keys": {**_documented(step, keys), **measures}}
+        facts[name] = {
+            "description": _summary(step),
+            "single_key": has_level,
+            "keys": {**_documented(step, keys), **measures},
+        }
     return facts
 
 
@@ -140,7 +144,11 @@ def targets() -> dict[str, dict[str, Any]]:
     from rocking.motions.target_spectra import CODES
 
     return {
-        name: {"words": _summary(make), "one": False, "keys": _documented(make, signature(make).parameters)}
+        name: {
+            "description": _summary(make),
+            "single_key": False,
+            "keys": _documented(make, signature(make).parameters),
+        }
         for name, make in CODES.items()
     }
 
@@ -170,7 +178,7 @@ def _facts_of_key(description: str, default: Any, annotation: Any, *, needed: bo
     meaning, unit = meaning_and_unit(description)
     return {
         "unit": unit,
-        "words": meaning,
+        "description": meaning,
         "kind": _kind(annotation),
         "usual": _as_code(default).strip("`"),
         "needed": needed,
@@ -230,11 +238,11 @@ def _rows_of_entries(described: dict[str, dict[str, Any]]) -> list[tuple[str, st
     for name, entry in described.items():
         keys = ",".join(f"{key}={key_facts['usual']}" for key, key_facts in entry["keys"].items() if not entry["one"])
         meaning = "; ".join(
-            f"{key}: {key_facts['words'].rstrip('.')}" + (f" [{key_facts['unit']}]" if key_facts["unit"] else "")
+            f"{key}: {key_facts['description'].rstrip('.')}" + (f" [{key_facts['unit']}]" if key_facts["unit"] else "")
             for key, key_facts in entry["keys"].items()
         )
         head = f"{name}:{keys}" if keys else name
-        rows.append((head, f"{entry['words']}. {meaning}".strip()))
+        rows.append((head, f"{entry['description']}. {meaning}".strip()))
     return rows
 
 

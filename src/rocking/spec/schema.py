@@ -30,6 +30,13 @@ RENAMED: dict[int, dict[str, str]] = {
 """New names of keys by schema number of the old name, and by path of the old key, such as ``table.key``."""
 
 _FORMS = {"range": "minimum", "unknown": "predict"}  # tables by their name in the form of an assessment
+_FORM_KEYS = {
+    "decide": {"what": "command"},
+    "measure": {"known": "body", "what": "command"},
+    "records": {"asked": "sent"},
+    "space": {"asked": "analysis"},
+}
+"""New names of keys by the form of a project, and by the old name."""
 
 
 def migrated(tables: dict[str, Any]) -> dict[str, Any]:
@@ -61,6 +68,9 @@ def migrated_document(document: dict[str, Any]) -> dict[str, Any]:
             tables = migrated({table: decide[form_name] for form_name, table in _FORMS.items() if form_name in decide})
             parts = {form_name: tables[table] for form_name, table in _FORMS.items() if table in tables}
             forms = {**forms, "decide": {**decide, **parts}}
+        for name, keys in _FORM_KEYS.items():
+            if isinstance(form := forms.get(name), dict):
+                forms = {**forms, name: {keys.get(key, key): value for key, value in form.items()}}
         document = {**document, "forms": forms}
     return document
 

@@ -102,7 +102,7 @@ class StudyProblem:
         items: Any = getattr(self, field_name)
         if len(items) != 1:
             raise InvalidValueError(
-                "{name}: one is needed without a campaign, got {count}", parameter=field_name, name=field_name,
+                "{name} accepts one entry without a campaign, got {count}", parameter=field_name, name=field_name,
                 count=len(items), hint="rocking campaign accepts several",
             )  # fmt: skip
         return self.restitution if field_name == "restitutions" else items[0]

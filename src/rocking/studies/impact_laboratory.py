@@ -60,7 +60,7 @@ class Laboratory:
             checks.positive("modulus over thickness", self.modulus_over_thickness, "Pa/m")
         if self.profile and len(self.profile) != self.points:
             raise InvalidValueError(
-                "{parameter} must have {points} heights, one a point, got {count}", parameter="profile",
+                "{parameter} must have {points} heights, one per point, got {count}", parameter="profile",
                 points=self.points, count=len(self.profile),
             )  # fmt: skip
 

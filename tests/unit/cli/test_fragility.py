@@ -260,7 +260,7 @@ def test_curves_that_cross_are_shown_as_they_are_exported(run, answered, tmp_pat
     assert worst["dispersion"] == least["dispersion"]
     assert (worst["method"], worst["median_95"]) == ("common-dispersion", [None, None])
     reason = answer["crossing_curves"]["adjusted"]
-    assert reason.startswith("Fitted alone, curves cross: at ")
+    assert reason.startswith("Separately fitted curves cross: at ")
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--output", f"p58={tmp_path / 'p.csv'}", "--details")
     assert (code, err) == (0, "")
     words = " ".join(out.split())
@@ -304,7 +304,9 @@ def test_states_are_chosen(run, answered, tmp_path):
     # the outcomes of the lesser state form a step, which no common dispersion describes
     code, out, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", "0.2,overturning", "--output", f"p58={file}")
     assert code == 2
-    assert "They are kept, since no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
+    assert (
+        "The curves stay separate, because no common dispersion fits the states rotation > 0.2 alpha, overturned" in out
+    )
     assert "Select fewer states with --limit-states" in err
     for bad in ("falling", "overturned", "0.5,0.2,rocking", "rocking,rocking", ""):
         code, _, err = run(*SIZE, *FAMILY, *LEVELS, "--limit-states", bad)

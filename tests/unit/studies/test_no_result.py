@@ -191,5 +191,5 @@ def test_one_history_tells_both_verdicts():
     (assumed, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
     (none,) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts()
     assert assumed == none != words
-    assert "a coefficient of friction of 10, since friction is not given: " in none
+    assert "a coefficient of friction of 10, because no friction is stated: " in none
     assert not any("pull" in each for each in rk.simulate(LEANING, LIGHT[0], 0.8).answer(0.5)["warnings"])

@@ -207,7 +207,7 @@ def answered_with_file(description: str, *endings: str) -> dict[int | str, dict[
 
 Deleted: Any = shape("Deleted", "Identifier of the deleted item.", deleted=(str, "identifier in URLs"))
 QuantityAnswer: Any = shape(
-    "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, words=str, unit=str
+    "QuantityAnswer", "An intensity measure, or an axis of a map.", name=str, description=str, unit=str
 )
 PlaceData: Any = shape(
     "PlaceData",

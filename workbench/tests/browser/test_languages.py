@@ -244,7 +244,9 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     made += [one["title"] for one in (*info["formats"], *info["families"])]
     made += [one["origin"] for one in info["families"]]
     steps = [*info["steps"].values(), *info["targets"].values()]
-    made += [one["words"] for one in steps] + [each["words"] for one in steps for each in one["keys"].values()]
+    made += [one["description"] for one in steps] + [
+        each["description"] for one in steps for each in one["keys"].values()
+    ]
     made += [
         "Choose files",
         "from a file",
@@ -256,7 +258,7 @@ def test_what_the_catalogues_hold_is_said(open_page: Callable[..., Any], served:
     page = open_page(link(), locale=code)
     said = page.evaluate(SAID, made)
     assert [text for text, other in zip(made, said, strict=True) if text == other] == []
-    helps = [key["words"] for key in info["keys"]["predict"].values()]
+    helps = [key["description"] for key in info["keys"]["predict"].values()]
     stopped = page.evaluate(STOPPED, helps)
     assert [text for text, other in zip(helps, stopped, strict=True) if text.rstrip(".") in other] == []
     reasons = [one.reason for one in parse_inventory(LIST).not_assessed]

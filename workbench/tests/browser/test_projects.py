@@ -41,7 +41,7 @@ def test_what_was_typed_is_there_in_another_browser(open_page: Callable[..., Any
     document = served.api(f"projects/{project['id']}", method="GET")["document"]
     assert document["inputs"]["body"]["width"] == 0.75
     states = served.api(f"projects/{project['id']}/history", method="GET")["states"]
-    assert [each["words"] for each in states] == ["body", "begun"]
+    assert [each["description"] for each in states] == ["body", "begun"]
 
 
 def test_who_leaves_at_once_loses_nothing(open_page: Callable[..., Any]) -> None:
@@ -61,7 +61,7 @@ def test_a_reload_does_not_bring_back_what_is_old(open_page: Callable[..., Any],
     where = f"projects/{project['id']}"
     document = served.api(where, method="GET")["document"]
     document["inputs"]["body"]["width"] = 0.77
-    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    served.api(where, json={"version": project["version"], "document": document, "description": "elsewhere"})
     page.reload()
     expect(page.get_by_label("Width")).to_have_value("0.77")
     assert served.api(where, method="GET")["document"]["inputs"]["body"]["width"] == 0.77
@@ -153,7 +153,7 @@ def test_what_is_asked_belongs_to_the_project(open_page: Callable[..., Any], ser
     expect(column).to_have_value("rotation")
     (project,) = served.api("projects", method="GET")["projects"]
     states = served.api(f"projects/{project['id']}/history", method="GET")["states"]
-    assert "measure" in states[0]["words"].split(", ")
+    assert "measure" in states[0]["description"].split(", ")
     dialog = opened_dialog(other)
     with other.expect_download() as told:
         dialog.get_by_role("button", name=f"Export: {project['name']}").click()
@@ -261,7 +261,7 @@ def test_what_was_not_saved_before_a_reload_is_joined(open_page: Callable[..., A
         document["forms"] = {"decide": {"author": "A. Person"}}
     else:
         document["inputs"]["body"]["width"] = 0.77
-    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    served.api(where, json={"version": project["version"], "document": document, "description": "elsewhere"})
     page.reload()
     expect(page.get_by_label("Height")).to_have_value("3")
     if not apart:
@@ -289,7 +289,7 @@ def test_an_empty_table_is_no_change(open_page: Callable[..., Any], served: Any)
     where = f"projects/{project['id']}"
     document = served.api(where, method="GET")["document"]
     document["inputs"]["response"] = {"assumed_friction": 0.3}
-    served.api(where, json={"version": project["version"], "document": document, "words": "elsewhere"})
+    served.api(where, json={"version": project["version"], "document": document, "description": "elsewhere"})
     typed(page, "Peak acceleration, exactly", "5")
     expect(page.get_by_test_id("clash")).not_to_be_visible()
     inputs = served.api(where, method="GET")["document"]["inputs"]

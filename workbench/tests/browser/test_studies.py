@@ -422,7 +422,7 @@ LARGE_MAP = """async (count) => {
   const moved = (busy() - again) / 20;
   const paint = (x, y) => Array.from(canvas.getContext("2d").getImageData(
     Math.round(x * canvas.width), Math.round(y * canvas.height), 1, 1).data);
-  const legend = layersOf(found, 0, null)[2].legend.map((each) => each.words);
+  const legend = layersOf(found, 0, null)[2].legend.map((each) => each.label);
   const words = cellWords(found, 0, { ix: 3, iy: 5 });
   return { legend, words, shown, moved, upper: paint(0.3, 0.2), lower: paint(0.85, 0.6) };
 }"""

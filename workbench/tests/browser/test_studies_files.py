@@ -80,7 +80,7 @@ def test_where_no_curve_fits_the_chart_says_so(open_page: Callable[..., Any], se
     opened(page, made)
     why = page.get_by_test_id("no-curve").first
     # tan(alpha) g of a block of h/b 4
-    expect(why).to_contain_text(f"No curve is drawn: no uplift below {9.80665 / 4:.3f}\u00a0m/s\u00b2")
+    expect(why).to_contain_text(f"No curve: no uplift below {9.80665 / 4:.3f}\u00a0m/s\u00b2")
     expect(why).to_contain_text("a step from 0 to 1")
     chart = page.get_by_test_id("fragility-chart").first
     assert "maximum likelihood" not in chart.inner_text()

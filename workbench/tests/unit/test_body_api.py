@@ -169,7 +169,7 @@ def test_info_names_everything_that_can_be_chosen(client):
     assert set(info["pulses"]) == set(rk.pulses.catalogue())
     assert {name for one in info["pulses"].values() for name in one["parameters"]} <= set(PARAMETERS)
     assert info["pulses"]["harmonic"]["parameters"]["phase"]["default"] == 0.0
-    assert info["pulses"]["sine"]["parameters"]["period"] == {"unit": "s", "words": "period", "default": None}
+    assert info["pulses"]["sine"]["parameters"]["period"] == {"unit": "s", "description": "period", "default": None}
     assert {one["name"] for one in info["models"]} >= {"ked", "housner", "fixed"}
     assert {"m", "cm", "mm"} <= set(info["units"]["length"])
     assert info["limits"]["upload_bytes"] > 0

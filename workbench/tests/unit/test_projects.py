@@ -50,7 +50,7 @@ def test_undo_and_redo_walk_among_states(store):
         store.redo(project.id, project.version)
     states = store.history(project.id)
     assert [store.document(project.id, each.number)["n"] for each in states] == [7, 2, 1, 0]
-    assert [each.words for each in states] == ["n = 7", "n = 2", "n = 1", "begun"]
+    assert [state.description for state in states] == ["n = 7", "n = 2", "n = 1", "begun"]
     assert [each.here for each in states] == [True, False, False, False]
     back = store.restore(project.id, project.version, states[1].number)
     assert store.document(back.id) == {"n": 2}
@@ -208,12 +208,12 @@ def test_over_the_api(client, stranger):
     project = made.json()
     assert (project["name"], project["document"], project["version"]) == ("Hall 3", {"body": {"width": 1}}, 1)
     where = f"/api/projects/{project['id']}"
-    change = {"version": 1, "document": {"body": {"width": 2}}, "words": "width of the body"}
+    change = {"version": 1, "document": {"body": {"width": 2}}, "description": "width of the body"}
     saved = client.post(where, json=change)
     assert saved.json()["can_undo"] is True
     late = client.post(where, json=change)
     assert (late.status_code, late.json()["error"]["kind"]) == (409, "conflict")
-    assert client.get(f"{where}/history").json()["states"][0]["words"] == "width of the body"
+    assert client.get(f"{where}/history").json()["states"][0]["description"] == "width of the body"
     undone = client.post(f"{where}/undo", json={"version": 2}).json()
     assert undone["document"] == {"body": {"width": 1}}
     assert client.post(f"{where}/redo", json={"version": 3}).json()["document"] == {"body": {"width": 2}}

@@ -108,8 +108,12 @@ def _listed(loops: list[IntArray], points: FloatArray, changes: Changes) -> str:
     order = sorted(loops, key=lambda ring: -_width(points[ring]))
     holes = tuple(
         Message(
-            "{width:.3g} m wide ({edges} edges) at {place}",
-            {"width": _width(points[ring]), "edges": len(ring), "place": changes.describe(points[ring].mean(axis=0))},
+            "{width:.3g} m wide ({edges} edges) at {location}",
+            {
+                "width": _width(points[ring]),
+                "edges": len(ring),
+                "location": changes.describe(points[ring].mean(axis=0)),
+            },
         )
         for ring in order[:_LISTED]
     )

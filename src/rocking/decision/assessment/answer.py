@@ -56,8 +56,8 @@ _SIDES = {
 }
 _UPLIFT = "Uplift begins at {limit:.3g} g, at {factor:.3g} times {motion}."
 _UPLIFT_WITH_VERTICAL = (
-    "Without vertical acceleration, uplift begins at {limit:.3g} g; with that of {motion}, at {factor:.3g} times this "
-    "motion."
+    "Without vertical acceleration, uplift begins at {limit:.3g} g. With the vertical acceleration of {motion}, uplift "
+    "begins at {factor:.3g} times this motion."
 )
 _MARGIN_RANGE = "The margin is {low:.3g} ({lower}) to {high:.3g} ({higher}), depending on the restitution model."
 _SAME = "The margin is {low:.3g} with each of {models}."

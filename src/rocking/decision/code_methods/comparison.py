@@ -299,7 +299,7 @@ def compare_code_methods(
     """
     all_bodies: list[Any] = list(bodies) if isinstance(bodies, Sequence) else [bodies]
     if not all_bodies:
-        raise InvalidValueError("bodies must be at least one body, got none")
+        raise InvalidValueError("bodies must contain at least one body, got 0")
     selected = tuple(
         CODE_METHODS[checks.one_of("methods", name, list(CODE_METHODS))] for name in methods or CODE_METHODS
     )

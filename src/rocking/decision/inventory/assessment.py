@@ -265,7 +265,7 @@ class _Assessor:
         self.friction = friction
         self.inventory = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
         if not self.inventory.objects and not self.inventory.not_assessed:
-            raise InvalidValueError("an inventory must have at least one object, got none")
+            raise InvalidValueError("an inventory must have at least one object, got 0")
         if isinstance(restitution, ImpactLaw):
             raise InvalidValueError("restitution of an inventory must be a model or a coefficient, not an impact law")
         self.hazard, self.thresholds = hazard, thresholds or Thresholds()

@@ -340,7 +340,7 @@ def parts(
             )
         )
         raise InvalidValueError(
-            "{title} must have its sizes in a known order, got {cell}", title=title, cell=f"{text[:40]!r}", hint=hint
+            "The order of the sizes in {title} is not stated, got {cell}", title=title, cell=f"{text[:40]!r}", hint=hint
         )
     units = [[by for _, word in _PAIR.findall(piece) if (by := LENGTH_UNITS.get(_unit(word)))] for piece in pieces]
     measures = {}

@@ -184,10 +184,18 @@ class RowValues:
             )
             title, cell = self.titles["diameter"], f"{word!r:.40}"
             if shape == "box":
-                raise InvalidValueError("It has a {title} and the shape {cell}. Remove one.", title=title, cell=cell)
+                raise InvalidValueError(
+                    "The object has a {title} and the shape {cell}. Remove one of these entries.",
+                    title=title,
+                    cell=cell,
+                )
             if other:
                 side = FIELD_NAMES[other,]
-                raise InvalidValueError("It has a {title} and a different {side}. Remove one.", title=title, side=side)
+                raise InvalidValueError(
+                    "The object has a {title} and a different {side}. Remove one of these entries.",
+                    title=title,
+                    side=side,
+                )
             fields |= {"width": across, "depth": across}
             if half := self.approximate.pop("diameter", 0.0):
                 self.approximate |= {"width": half, "depth": half}

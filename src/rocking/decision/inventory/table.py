@@ -459,8 +459,11 @@ def sentence(verdict: Verdict, assessment: Assessment) -> str:
     failed, sliding_count, pull_count = worse.failed, worse.slid, worse.lost_contact
     also = [
         say("{failed} of {whole} motions could not be computed.", failed=failed, whole=worse.count + failed),
-        say("It slides in {slides} of them.", slides=sliding_count),
-        say("In {pulls} of them the contact force becomes tensile; the verdict assumes contact.", pulls=pull_count),
+        say("The object slides in {slides} of these motions.", slides=sliding_count),
+        say(
+            "The contact force becomes tensile in {pulls} of these motions. The verdict assumes contact.",
+            pulls=pull_count,
+        ),
     ]
     return " ".join(
         [f"{still}; {_outcome(worse, hazard.words(say.code), hazard.synthetic, say)}."]

@@ -403,9 +403,9 @@ def _check_titles(titles: Sequence[str], source: str) -> None:
     if ("motion" in titles) == ("x" in titles):
         raise InvalidValueError("use either the column motion, or x with y and z", hint=_HOW).at(source)
     if "motion" in titles and (unexpected := [axis for axis in AXES if axis in titles]):
-        raise InvalidValueError("column {column!r} goes with x: name the column motion x", column=unexpected[0]).at(
-            source
-        )
+        raise InvalidValueError(
+            "column {column!r} requires the column x. Rename the column motion to x.", column=unexpected[0]
+        ).at(source)
     for title in titles:
         title_words = set(title.replace("_", " ").replace("-", " ").split())
         candidates = [*(title_words & set(COLUMNS)), *difflib.get_close_matches(title, COLUMNS, n=1, cutoff=0.75)]

@@ -129,7 +129,8 @@ def _reader(path: Path, kind: str | None) -> Callable[[Source, ReaderOptions], M
         return _read_sound
     if suffix not in _TABLES:
         raise MeasurementError(
-            "the name must end in .wav, {extensions}", extensions=", ".join((*COMPRESSED, *VIDEOS, *_TABLES))
+            "the extension of the file must be .wav, {extensions}",
+            extensions=", ".join((*COMPRESSED, *VIDEOS, *_TABLES)),
         ).at(path.name)
     if kind == "video":
         raise MeasurementError("does not have the extension of a video, but kind='video'").at(path.name)

@@ -65,7 +65,9 @@ class Bhrc(RecordFormat):
         rows = headers.in_unit(record, self.name, "g/10", 3)
         names = [component.name for component in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:
-            raise RecordError("BHRC holds components L, V and T, got {components}", components=", ".join(names)[:60])
+            raise RecordError(
+                "BHRC requires the components L, V and T, got {components}", components=", ".join(names)[:60]
+            )
         lines: list[str] = []
         for component, values in zip(record.components, rows, strict=True):
             lines += _written(record, component, values)
@@ -109,7 +111,7 @@ def _component(source: Source, top: int, units: str | None, requested_step: floa
 def _written(record: Record, component: Component, values: FloatArray) -> list[str]:
     count = values.size
     if count > 99_999 or np.abs(values).max() >= 1e9:
-        raise RecordError("BHRC holds up to 99999 samples below 1e9 g/10, got {count}", count=count)
+        raise RecordError("BHRC allows at most 99999 samples below 1e9 g/10, got {count}", count=count)
     file, instrument, station = (record.text(key, 40) for key in ("file", "instrument", "station"))
     azimuth = one_line(component.metadata.get("azimuth", "0"), 3)
     duration = count * component.time_step

@@ -116,7 +116,7 @@ def _block(source: Source, line: int) -> tuple[str, FloatArray, float, tuple[int
         raise source.error(
             line,
             Message(
-                "{kind} data must be in {unit}, found {words}",
+                "{kind} data must be in {unit}, got {words}",
                 {"kind": kind, "unit": powers[0], "words": f"{tail.strip()[:40]!r}"},
             ),
         )

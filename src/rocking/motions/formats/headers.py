@@ -92,7 +92,7 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
         values = np.asarray(component.acceleration, dtype=np.float64)
         if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
             raise RecordError(
-                "component {component!r:.60} must be a row of at least 2 finite samples", component=component.name
+                "component {component!r:.60} must have at least 2 finite samples", component=component.name
             )
         if component.unit not in ACCELERATION_UNITS:
             raise RecordError(

@@ -69,7 +69,7 @@ class SmcUsgs(RecordFormat):
         rate, count = header.reals[1], header.integers[16]
         if count is None or count < 2:
             raise source.error(
-                TEXTS + 2, Message("number of samples must be at least 2, found {count}", {"count": count})
+                TEXTS + 2, Message("number of samples must be at least 2, got {count}", {"count": count})
             )
         if rate is not None and not rate > 0.0:
             raise source.error(TEXTS + WHOLES, "sampling rate must be above zero, found {rate:g}", rate=rate)

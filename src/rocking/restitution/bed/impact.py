@@ -296,7 +296,7 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     """
     rows = list(setups)
     if not rows:
-        raise InvalidValueError("at least one impact is needed, got none")
+        raise InvalidValueError("at least one impact is needed, got 0")
     number = checks.whole("threads", threads, 1)
     if fast.available():
         results = fast.many(rows, number)

@@ -160,7 +160,7 @@ class FragilityModel:
     def __post_init__(self) -> None:
         names = [curve.state for curve in self.curves]
         if not names or len(set(names)) < len(names):
-            raise InvalidValueError("curves must be at least one, of different states, got {names}", names=names)
+            raise InvalidValueError("curves must contain at least one curve, one per state, got {names}", names=names)
         levels = np.asarray(self.levels, dtype=np.float64)
         object.__setattr__(self, "levels", checked_levels("levels", levels, self.unit))
         for name, counts in {"trials": self.trials, **self.reached}.items():
@@ -328,14 +328,16 @@ def without_crossing(model: FragilityModel, crossing_curves: Crossing = "keep-up
 
 def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
     """Return the model with one dispersion for the states without a threshold of uplift."""
-    reason = Message("Fitted alone, curves cross: {excess}.", {"excess": excess.describe(model)})
+    reason = Message("Separately fitted curves cross: {excess}.", {"excess": excess.describe(model)})
     decided = tuple(c for c in model.curves if c.state == ROCKING and model.uplift_threshold is not None)
     others = replace(model, curves=tuple(c for c in model.curves if c not in decided))
     try:
         nested_model = with_common_dispersion(others) if crosses(others) is not None else others
     except InvalidValueError:
         names = ", ".join(curve.state for curve in others.curves)
-        kept = Message("They are kept, since no common dispersion fits the states {states}.", {"states": names})
+        kept = Message(
+            "The curves stay separate, because no common dispersion fits the states {states}.", {"states": names}
+        )
         return replace(model, adjusted=Message.joined([reason, kept]))
     joined = replace(nested_model, curves=(*decided, *nested_model.curves))
     reasons = [reason, nested_model.adjusted]
@@ -345,7 +347,7 @@ def _keeping_uplift(model: FragilityModel, excess: "Excess") -> FragilityModel:
     if crosses(joined) is None:
         reasons.append(Message("The curve of {state} is not changed: {uplift}.", facts))
     else:
-        reasons.append(Message("The state {state} is left out, since its curve would still cross: {uplift}.", facts))
+        reasons.append(Message("The state {state} is omitted, because its curve would still cross: {uplift}.", facts))
         joined = replace(nested_model, without={**model.without, ROCKING: reasons[-1]})
     return replace(joined, adjusted=Message.joined(reasons))
 
@@ -358,8 +360,8 @@ def uplift_words(model: FragilityModel) -> str:
 
 
 _COMMON = (
-    "One dispersion was fitted to several states, so that no curves cross; alone this state has median {median}, "
-    "dispersion {dispersion:.3g}."
+    "The states have a common dispersion, so that their curves do not cross. The separate fit of this state has median "
+    "{median}, dispersion {dispersion:.3g}."
 )
 
 
@@ -383,7 +385,7 @@ def with_common_dispersion(model: FragilityModel) -> FragilityModel:
         raise
     unit, size = _shown(model.im, model.unit)
     names = ", ".join(curve.state for curve in model.curves)
-    text = "One dispersion was fitted to the states {states}, so that their curves do not cross."
+    text = "The states {states} have a common dispersion, so that their curves do not cross."
     adjusted: str = Message(text, {"states": names})
     curves = []
     for curve, (median, dispersion) in zip(model.curves, fitted, strict=True):
@@ -453,7 +455,9 @@ class Excess:
         unit, size = _shown(model.im, model.unit)
         level = f"{self.level * size:.4g} {unit}".rstrip()
         facts = {"level": level, "worse": self.worse, "lesser": self.lesser, "size": self.size}
-        return Message("at {level} '{worse}' would be likelier than '{lesser}' by {size:.2g}", facts)
+        return Message(
+            "at {level} the probability of '{worse}' exceeds the probability of '{lesser}' by {size:.2g}", facts
+        )
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:

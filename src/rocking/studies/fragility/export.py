@@ -302,7 +302,7 @@ def _evidence(model: FragilityModel) -> dict[str, Any]:
         for name, (_, values, *_) in variables_of(model.curves, model.levels.size, model.unit).items()
     }
     texts = {name: values.astype(object) for name, values in evidence.items() if values.dtype.kind == "U"}
-    without = {"state": list(model.without), "why": list(model.without.values())}
+    without = {"state": list(model.without), "reason": list(model.without.values())}
     return evidence | texts | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
 
 

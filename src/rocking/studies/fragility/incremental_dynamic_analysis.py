@@ -182,8 +182,8 @@ FRACTION = (
 OWN, RANDOM = -1, 2  # kinds of `ImpactLaw`: a user's law, and a law with sampled coefficients
 
 OWN_LAW = (
-    "The restitution is a user-defined law. The limits of the intervals are valid only if its coefficient is the "
-    "same each time a motion is repeated."
+    "The restitution is a user-defined law. The limits of the intervals are valid only if a repeated motion gives "
+    "the same coefficients."
 )
 
 
@@ -191,8 +191,8 @@ def check_repeatable(law: ImpactLaw) -> None:
     """Refuse a restitution that changes when a motion is repeated."""
     if law.kind == RANDOM or law.per_history:
         raise InvalidValueError(
-            "{parameter} must be the same each time a motion is repeated, got {law}: with sampled coefficients, no "
-            "level starts the overturning", parameter="restitution", law=type(law).__name__,
+            "{parameter} must be repeatable, got {law}: sampled coefficients have no level at which overturning starts",
+            parameter="restitution", law=type(law).__name__,
             hint='Use analysis="stripes".',
         )  # fmt: skip
 

@@ -180,7 +180,7 @@ class Sensitivity:
         if state not in self.states:
             names = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
             raise InvalidValueError(
-                "{parameter} must be one of the study's, {names}; got {value}", parameter="state", names=names,
+                "{parameter} must be one of {names}, got {value}", parameter="state", names=names,
                 value=state,
             )  # fmt: skip
         first, second = (_curve(result.fits[state]) for result in pair)

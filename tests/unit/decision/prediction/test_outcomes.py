@@ -56,7 +56,7 @@ def test_a_bad_row_does_not_touch_the_others():
         ("motion,result", "first line names the columns motion"),
         ("scale,overturned", "either the column motion, or x with y and z"),
         ("motion,x,overturned", "use either"),
-        ("motion,y,overturned", "column 'y' goes with x"),
+        ("motion,y,overturned", "column 'y' requires the column x"),
         ("motion,scale,scale,overturned", "column 'scale' appears twice"),
         ("motion,scale factor,overturned", "unknown column 'scale factor'; rename it to 'scale'"),
         ("motion,scael,overturned", "rename it to 'scale'"),

@@ -152,7 +152,7 @@ def test_honest_where_there_is_nothing(tmp_path):
     assert not any(cell for name, cell in row.items() if any(word in name for word in ("median", "disp", "deviance")))
     assert made.dataset.attrs["without_curve rotation > 0.5 alpha"] == none.verdict
     found = loadmat(to_mat(made, tmp_path / "f.mat"), squeeze_me=True, struct_as_record=False)["fragility"]
-    assert found.without_curve.why == none.verdict
+    assert found.without_curve.reason == none.verdict
     common = with_common_dispersion(made)
     assert common.curves[0].agreement is common.curves[0].repeated is None
     assert np.isnan(common.dataset["pearson"].values).all()

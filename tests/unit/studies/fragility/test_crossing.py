@@ -57,7 +57,7 @@ def test_the_default_does_not_move_uplift(leaning):
         assert "is not changed: no motion lifts the body below 0.311 g" in made.adjusted
     else:
         assert "left out" in made.without["rocking"]
-    assert "One dispersion was fitted to the states rotation > 0.5 alpha, overturned" in made.adjusted
+    assert "The states rotation > 0.5 alpha, overturned have a common dispersion" in made.adjusted
     assert crosses(made) is None
     counts, trials = [leaning.counts[name] for name in names], leaning.trials
 
@@ -113,7 +113,7 @@ def test_a_state_that_would_still_cross_is_left_out():
     late = FragilityCurve("rocking", 2.6, 0.1)
     made = without_crossing(model((late, FAR, OVER), uplift_threshold=0.5))
     assert [curve.state for curve in made.curves] == ["rotation > 0.5 alpha", "overturned"]
-    assert made.without["rocking"].startswith("The state rocking is left out")
+    assert made.without["rocking"].startswith("The state rocking is omitted")
     assert made.without["rocking"] in made.adjusted
     early = without_crossing(model((FragilityCurve("rocking", 0.9, 0.1), FAR, OVER), uplift_threshold=0.8))
     assert [curve.state for curve in early.curves] == ["rocking", "rotation > 0.5 alpha", "overturned"]
@@ -138,7 +138,7 @@ def test_curves_that_do_not_cross_are_kept():
     bare = FragilityModel("body", "pga", "m/s2", (FAR, OVER), [1.0], np.array([9]), {})
     assert without_crossing(bare).curves == (FAR, OVER)
     assert (
-        "They are kept, since no common dispersion fits the states rotation > 0.5 alpha, overturned"
+        "The curves stay separate, because no common dispersion fits the states rotation > 0.5 alpha, overturned"
         in without_crossing(bare).adjusted
     )
     with pytest.raises(InvalidValueError, match="curves must not cross"):
@@ -190,4 +190,4 @@ def test_one_state_has_no_common_dispersion(leaning):
             leaning.fits["overturned"].dispersion,
         )
         assert curve.median_95 is not None
-    assert "One dispersion" in model_of(leaning, "cabinet", crossing_curves="common-dispersion").adjusted
+    assert "a common dispersion" in model_of(leaning, "cabinet", crossing_curves="common-dispersion").adjusted

@@ -317,7 +317,7 @@ def test_curves_that_cross_are_refused(tmp_path):
     # extreme where the densities are equal: a dense grid finds it as well
     grid = np.linspace(2.1, 60.0, 400_001)
     apart = CROSSED[1].probability(grid) - CROSSED[0].probability(grid)
-    words = f"at {grid[apart.argmax()] / 9.80665:.4g} g 'overturned' would be likelier.*by {apart.max():.2g}"
+    words = f"at {grid[apart.argmax()] / 9.80665:.4g} g the probability of 'overturned' exceeds .* by {apart.max():.2g}"
     for write in (lambda: to_nrml(crossed(), tmp_path / "f.xml"), lambda: fema_p58_table(crossed())):
         with pytest.raises(InvalidValueError, match=words):
             write()

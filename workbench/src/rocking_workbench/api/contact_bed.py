@@ -86,7 +86,11 @@ class ContactBedRequest(JobTable):
 
 
 BedResult: Any = shape(
-    "BedResult", "Results over the varied parameter.", unit=str, words=str, values=(list[float | None], "in `unit`")
+    "BedResult",
+    "Results over the varied parameter.",
+    unit=str,
+    description=str,
+    values=(list[float | None], "in `unit`"),
 )
 ContactBedAnswered: Any = shape(
     "ContactBedAnswered",
@@ -131,7 +135,7 @@ def answer(inputs: ContactBedRequest) -> JsonAnswer:
         "varied": inputs.varied, "unit": _unit(STUDIES[inputs.varied][0]), "values": values,
         "results": {
             str(name): {
-                "unit": _unit(entry.attrs["units"]), "words": entry.attrs.get("long_name", ""),
+                "unit": _unit(entry.attrs["units"]), "description": entry.attrs.get("long_name", ""),
                 "values": entry.values,
             }
             for name, entry in dataset.data_vars.items()

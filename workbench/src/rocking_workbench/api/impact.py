@@ -45,7 +45,7 @@ Stage: Any = shape(
     "Stage",
     "One stage of the impact.",
     name=Literal["before", "stage 1", "stage 2", "after"],
-    words=str,
+    description=str,
     energy=(float, "kinetic energy after the stage"),
     share=(float, "kinetic energy after the stage / energy before the impact"),
     velocity=list[Point],
@@ -70,7 +70,7 @@ ModelCurve: Any = shape(
     "The coefficient of homogeneous rectangles under one model.",
     "model slenderness_ratio[] coefficient[]",
 )
-ImpactWarning: Any = shape("ImpactWarning", "A warning and its models.", words=str, models=list[str])
+ImpactWarning: Any = shape("ImpactWarning", "A warning and its models.", description=str, models=list[str])
 ImpactAnswered: Any = shape(
     "ImpactAnswered",
     "Coefficients by impact foot; of two equal feet only the right foot.",
@@ -125,5 +125,5 @@ def _facts(inputs: ImpactRequest) -> Answer:
         "measured": measured_answer(),
         "curves": curves_answer(),
         "stages": {foot: stages_answer(body, foot) for foot in coefficients.tables},
-        "warnings": [{"words": sentence, "models": list(names)} for sentence, names in warned.items()],
+        "warnings": [{"description": sentence, "models": list(names)} for sentence, names in warned.items()],
     }

@@ -27,7 +27,7 @@ PARAMETERS = {
     "phase": ("rad", "phase"),
     "n": ("-", "main cycles"),
 }
-"""Unit and words of the parameters of pulses."""
+"""Unit and description of the parameters of pulses."""
 
 _DASHES = {"-": [], "--": [6.0, 4.0], "-.": [8.0, 3.0, 2.0, 3.0], ":": [2.0, 3.0]}
 UNLIMITED = "unlimited"  # JSON text for an infinite default
@@ -36,7 +36,7 @@ ParameterFacts: Any = shape(
     "ParameterFacts",
     "A parameter of a model or pulse.",
     unit=str,
-    words=str,
+    description=str,
     default=(
         float | Literal["unlimited"] | None,
         'in `unit`; "unlimited" where it is infinite, null where one must be given',
@@ -89,7 +89,7 @@ KeyFacts: Any = shape(
     "KeyFacts",
     "A key of a table or of a step.",
     unit=(str, "empty where it has none"),
-    words=str,
+    description=str,
     kind=(str, "text, number, whole number, list of number"),
     usual=(str, "as it is written; empty where there is none"),
     needed=bool,
@@ -100,7 +100,11 @@ KeyFacts: Any = shape(
     lt=(float | None, Field(None, description="upper limit, not included, in the unit of the key")),
 )
 StepFacts: Any = shape(
-    "StepFacts", "A step, or a spectrum.", words=str, one=(bool, "only one key is given"), keys=dict[str, KeyFacts]
+    "StepFacts",
+    "A step, or a spectrum.",
+    description=str,
+    single_key=(bool, "the step accepts one of its keys"),
+    keys=dict[str, KeyFacts],
 )
 AxisFacts: Any = shape(
     "AxisFacts",
@@ -210,8 +214,8 @@ def listed_measures() -> list[dict[str, str]]:
     return [_quantity(measure, measure.words) for measure in measures().values()]
 
 
-def _quantity(quantity: Any, words: str) -> dict[str, str]:
-    return {"name": quantity.name, "words": words, "unit": quantity.unit}
+def _quantity(quantity: Any, description: str) -> dict[str, str]:
+    return {"name": quantity.name, "description": description, "unit": quantity.unit}
 
 
 def _models() -> list[dict[str, Any]]:
@@ -247,5 +251,5 @@ def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
         # None: a value must be given
         default = None if parameter.default is inspect.Parameter.empty else parameter.default
         unlimited = isinstance(default, float) and math.isinf(default)
-        parameters[name] = {"unit": unit, "words": text, "default": UNLIMITED if unlimited else default}
+        parameters[name] = {"unit": unit, "description": text, "default": UNLIMITED if unlimited else default}
     return parameters

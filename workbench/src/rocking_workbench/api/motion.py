@@ -45,7 +45,7 @@ MeasureFacts: Any = shape(
     "MeasureFacts",
     "One intensity measure.",
     name=(str, "short name: pga, pgv, ..."),
-    words=str,
+    description=str,
 )
 MotionAnswered: Any = shape(
     "MotionAnswered",
@@ -106,7 +106,7 @@ def _facts(inputs: MotionRequest, records: RecordStore) -> Answer:
             "samples": int(curves.time.size),
         },
         "spectrum": spectrum_answer(spectrum_of(samples)) if inputs.spectrum else None,
-        "measures": [{"name": key, "words": measure.name} for key, measure in measures.items()],
+        "measures": [{"name": key, "description": measure.name} for key, measure in measures.items()],
     }
 
 

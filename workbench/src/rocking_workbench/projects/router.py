@@ -39,7 +39,7 @@ class NewProject(_Request):
     name: Name
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)] = Field(default_factory=dict)
     copy_of: Annotated[str | None, Field(max_length=40, description="another project")] = None
-    words: Annotated[str, Field(max_length=400, description="description for its history")] = ""
+    description: Annotated[str, Field(max_length=400, description="description for its history")] = ""
 
 
 class ProjectChange(_Request):
@@ -47,7 +47,7 @@ class ProjectChange(_Request):
 
     version: Version
     document: Annotated[dict[str, Any], Field(description=_DOCUMENT)]
-    words: Annotated[str, Field(max_length=200, description="description of the change")] = "changed"
+    description: Annotated[str, Field(max_length=200, description="description of the change")] = "changed"
 
 
 class ProjectStep(_Request):
@@ -101,7 +101,7 @@ async def create_project(request: Request, new: NewProject) -> JsonAnswer:
     def made(store: ProjectStore) -> Project:
         if new.copy_of is None:
             return store.create(new.name, new.document)
-        description = new.words or f"a copy of {store.get(new.copy_of).name}"
+        description = new.description or f"a copy of {store.get(new.copy_of).name}"
         return store.create(new.name, store.document(new.copy_of), description)
 
     return await _whole(request, made, 201)
@@ -131,7 +131,7 @@ async def get_project(request: Request, project: str) -> JsonAnswer:
 async def save_project(request: Request, project: str, change: ProjectChange) -> JsonAnswer:
     """Save a new state of a project; earlier states are kept."""
     saved = await run_in_threadpool(
-        _store(request).save, project, change.version, change.document, change.words or "changed"
+        _store(request).save, project, change.version, change.document, change.description or "changed"
     )
     return JsonAnswer(asdict(saved))
 

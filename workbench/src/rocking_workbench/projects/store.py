@@ -54,7 +54,7 @@ class ProjectState:
     """A saved state of a project."""
 
     number: int
-    words: Annotated[str, "description of the change"]
+    description: Annotated[str, "description of the change"]
     time: Annotated[str, "time in UTC"]
     here: Annotated[bool, "true for the current state"]
 

@@ -30,7 +30,7 @@ Coordinate: Any = shape(
     name=str,
     values=(list[float | int | str | None], "in `unit`; null where a value is not finite"),
     unit=str,
-    words=str,
+    description=str,
 )
 Result: Any = shape(
     "Result",
@@ -154,7 +154,7 @@ ColumnAnswer: Any = shape(
     "A column of a table.",
     name=str,
     unit=str,
-    words=str,
+    description=str,
     values=(list[float | int | bool | str | None], "in `unit`"),
 )
 Share: Any = shape(

@@ -64,7 +64,7 @@ def packed(values: np.ndarray) -> Any:
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
     """Return name, values and unit of a dimension of a study."""
     axis = study.job.study.coordinates[name]
-    return {"name": name, "values": axis.values, "unit": axis.unit, "words": axis.meaning}
+    return {"name": name, "values": axis.values, "unit": axis.unit, "description": axis.meaning}
 
 
 def coordinates(study: OpenStudy, **names: str) -> dict[str, Any]:
@@ -103,7 +103,7 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
     """Return the tables of an adaptive study."""
     return {
         name: [
-            {"name": title, "unit": column.unit, "words": column.meaning, "values": column.values}
+            {"name": title, "unit": column.unit, "description": column.meaning, "values": column.values}
             for title, column in table.columns.items()
         ]
         for name, table in study.answer.tables.items()
@@ -171,7 +171,7 @@ def findings_of(study: OpenStudy) -> dict[str, Any]:
     columns = AnswerRows.of_records(study.question.findings(study.job.problem, dataset)).columns
     about = {name: quantity(name) or Quantity(name, "", "") for name in columns}
     return {"findings": [
-        {"name": about[name].heading, "unit": about[name].unit, "words": about[name].meaning, "values": values}
+        {"name": about[name].heading, "unit": about[name].unit, "description": about[name].meaning, "values": values}
         for name, values in columns.items()
     ]} if columns else {}  # fmt: skip
 
@@ -228,7 +228,7 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
     measure = first.subject.measure
     unit = "" if measure.unit == "1" else measure.unit
     return {
-        "im": {"name": measure.name, "unit": measure.unit, "words": measure.words},
+        "im": {"name": measure.name, "unit": measure.unit, "description": measure.words},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,
@@ -282,7 +282,7 @@ def _fit(fit: Any, shared: Any) -> dict[str, Any]:
 def _curve(fit: Any, fine: FloatArray, shared: Any) -> dict[str, Any]:
     if shared is not None:
         drawn = {"x": fine, "probability": shared.probability(fine), "low": None, "high": None}
-        return {**drawn, "band": "no band: the curve shares one dispersion with other states"}
+        return {**drawn, "band": "no band: the curve has a common dispersion with other states"}
     curve = {"x": fine, "probability": fit.probability(fine), "low": None, "high": None}
     try:
         low, high = fit.band(fine, 0.95, "profile" if fit.counts.cluster_trials is None else "bootstrap")

@@ -121,7 +121,7 @@ def _ask_projects(script):
     made = script.ask("POST", "/api/projects", json={"name": "hall", "document": {"inputs": {}}})
     one, version = {"project": made["id"]}, made["version"]
     saved = script.ask(
-        "POST", "/api/projects/{project}", fill=one, json={"version": version, "document": {"n": 1}, "words": "n"}
+        "POST", "/api/projects/{project}", fill=one, json={"version": version, "document": {"n": 1}, "description": "n"}
     )
     undone = script.ask("POST", "/api/projects/{project}/undo", fill=one, json={"version": saved["version"]})
     done = script.ask("POST", "/api/projects/{project}/redo", fill=one, json={"version": undone["version"]})

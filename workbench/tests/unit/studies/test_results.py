@@ -96,7 +96,7 @@ def test_adaptive_studies_have_tables(result, map_job):
     """The points and polylines of an adaptive map come with it, each column with its unit; minima are tables alone."""
     refined = result(restitution={"model": "ked"}, map={**map_job()["map"], "refine": 1})
     assert set(refined["tables"]) == {"refined", "boundary"}
-    assert all({"name", "unit", "words", "values"} == set(column) for column in refined["tables"]["boundary"])
+    assert all({"name", "unit", "description", "values"} == set(column) for column in refined["tables"]["boundary"])
     assert set(result("minimum-acceleration", minimum={"samples": 20})["tables"]) == {"crossings", "minima"}
 
 

@@ -61,7 +61,7 @@ const Endpoint = ({ schema, operation }) => {
       <${Fields} title="Path and query" rows=${operation.parameters.map(parameterOf)} />
       <${Fields} title="Request body" rows=${fieldsOf(schema, operation.body)} />
       ${kind === "file" && html`<p>A file is sent as application/octet-stream.</p>`}
-      ${formsOf(schema, operation.answer).map(({ words: text, rows }) => html`<${Fields} title=${comesBack(text)} rows=${rows} heads=${TOLD} />`)}
+      ${formsOf(schema, operation.answer).map(({ description: text, rows }) => html`<${Fields} title=${comesBack(text)} rows=${rows} heads=${TOLD} />`)}
       ${files.length > 0 && html`<p>${`Response: a file, ${files.join(" or ")}.`}</p>`}
       <${Calls} operation=${operation} /></section>`;
 };

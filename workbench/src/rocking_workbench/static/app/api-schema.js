@@ -53,20 +53,20 @@ export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   });
 };
 
-/** Forms of an answer: [{words, rows}], one entry per form.
+/** Forms of an answer: [{description, rows}], one entry per form.
  * @param {any} schema @param {Shape} shape */
 export const formsOf = (schema, shape) => {
   const variants = shape?.oneOf ?? shape?.anyOf?.flatMap((/** @type {any} */ variant) => variant.oneOf ?? [variant]) ?? [];
   const forms = variants.map((/** @type {any} */ variant) => resolved(schema, variant));
   if (forms.length) {
-    return forms.map((form) => ({ words: plainText(form.description), rows: fieldsOf(schema, form) }));
+    return forms.map((form) => ({ description: plainText(form.description), rows: fieldsOf(schema, form) }));
   }
   const list = shape?.type === "array";
   const rows = fieldsOf(schema, list ? innerOf(schema, shape) : shape);
-  return [{ words: list ? "a list with the entries" : "", rows }];
+  return [{ description: list ? "a list with the entries" : "", rows }];
 };
 
-/** Statuses of errors and their meanings: [[status, words]]. @param {any} schema */
+/** Statuses of errors and their meanings: [[status, meaning]]. @param {any} schema */
 export const errorsOf = (schema) =>
   Object.entries(schema.components?.responses ?? {})
     .map(([name, { description }]) => [name.replace(/\D/g, ""), description]);

@@ -5,7 +5,7 @@ import { learnMessages, t } from "/app/words.js";
 
 /** A refusal of the server, in its own words. */
 export class ApiError extends Error {
-  /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [told] */
+  /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [details] */
   constructor(
     status, { kind = "internal", message = "the server sent no response", needs = [], ...more } = {},
   ) {

@@ -53,12 +53,12 @@ export const createInputs = (start) => {
       const [before, next] = [/** @type {any} */ (current), changedAt(current, path.split("."), value)];
       if (JSON.stringify(next[top]) !== JSON.stringify(before[top])) become(next, new Set([top]));
     },
-    /** Show inputs from elsewhere; the user's own go aside: {inputs, words, mine}, or null while there are none.
+    /** Show inputs from elsewhere; the user's own go aside: {inputs, label, mine}, or null while there are none.
      * @param {Server.Inputs} document @param {string} text */
     lend: (document, text) => {
       const own = aside?.mine ? aside.inputs : current;
       const same = [FIRST, document].some((other) => JSON.stringify(other) === JSON.stringify(own));
-      put(same ? null : { inputs: own, words: text, mine: true });
+      put(same ? null : { inputs: own, label: text, mine: true });
       replace(document);
     },
     aside: () => aside,
@@ -106,7 +106,7 @@ export const kept = () => inputsOf(stored(KEPT));
 const keptAside = () => {
   const entry = stored(ASIDE);
   const inputs = inputsOf(entry?.inputs);
-  return inputs && { inputs, words: String(entry.words), mine: Boolean(entry.mine) };
+  return inputs && { inputs, label: String(entry.label), mine: Boolean(entry.mine) };
 };
 
 /** Stored value of this tab; null if there is none. @param {string} key */

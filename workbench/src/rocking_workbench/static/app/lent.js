@@ -18,8 +18,8 @@ export const mountLent = (views, inputs) => {
 const Lent = ({ inputs, aside: { value: aside } }) => html`
   <div class="lent" role="status" data-testid="lent" hidden=${!aside}>${aside && html`
     <${Note} kind=${aside.mine ? "info" : "good"} text=${aside.mine
-      ? t("These inputs come from {shown}. Your own inputs are kept.", { shown: aside.words })
-      : t("Your own inputs are restored. The inputs from {shown} are kept.", { shown: aside.words })} />
+      ? t("These inputs come from {shown}. Your own inputs are kept.", { shown: aside.label })
+      : t("Your own inputs are restored. The inputs from {shown} are kept.", { shown: aside.label })} />
     <div class="toolbar">
       <${Button} kind="primary" onClick=${inputs.swap}>${aside.mine ? "Restore my inputs" : "Show the other inputs"}<//>
       <${Button} kind="quiet" onClick=${inputs.forget}>${aside.mine ? "Discard my inputs" : "Discard the other inputs"}<//></div>`}</div>`;

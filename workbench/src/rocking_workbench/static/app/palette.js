@@ -72,12 +72,12 @@ export const seriesStyle = (index) => {
 };
 
 /** Marker and words of the groups of published measurements. */
-/** @type {{ [group: string]: { marker: string, words: string } | undefined }} */
+/** @type {{ [group: string]: { marker: string, label: string } | undefined }} */
 export const GROUPS = {
-  table1: { marker: "square", words: "literature (Table 1)" },
-  S: { marker: "down", words: "specimens S" },
-  M: { marker: "circle", words: "specimens M" },
-  L: { marker: "up", words: "specimens L" },
+  table1: { marker: "square", label: "literature (Table 1)" },
+  S: { marker: "down", label: "specimens S" },
+  M: { marker: "circle", label: "specimens M" },
+  L: { marker: "up", label: "specimens L" },
 };
 
 /** @param {string | number} label */

@@ -29,10 +29,10 @@ const WAYS = {
   "identify.trend": "choose \u201cwith a trend\u201d under \u201cCoefficient of restitution\u201d",
 };
 
-/** Reason and remedy for a file that was excluded. @param {{ why: string, hint?: string, to_state?: string }} reason */
-export const whyLeftOut = ({ why: reason, hint, to_state: path }) => {
+/** Reason and remedy for a file that was excluded. @param {{ reason: string, hint?: string, to_state?: string }} leftOut */
+export const whyLeftOut = ({ reason, hint, to_state: path }) => {
   const way = WAYS[path ?? ""];
-  if (way) return t("{place}: {fault}", { place: reason, fault: way });
+  if (way) return t("{location}: {fault}", { location: reason, fault: way });
   return hint ? t("{fault}; {hint}", { fault: reason, hint }) : t(reason);
 };
 
@@ -55,7 +55,7 @@ export const refusalWords = (refusal) => {
   const hint = refusal.hint?.text ? spelt(refusal.hint) : "";
   const isWay = Object.values(refusal.hint?.facts ?? {}).some((fact) => fact?.kind === "option" && WAYS[fact.path]);
   const fault = within(places, spelt(inForm(refusal)));
-  return hint && isWay ? t("{place}: {fault}", { place: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
+  return hint && isWay ? t("{location}: {fault}", { location: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
 };
 
 /** The key of a form that a refusal is about. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
@@ -80,7 +80,7 @@ const sentenceOf = (error, units) => {
 };
 
 /** @param {string[]} places @param {string} fault */
-const within = (places, fault) => places.reduceRight((text, location) => t("{place}: {fault}", { place: location, fault: text }), fault);
+const within = (places, fault) => places.reduceRight((text, location) => t("{location}: {fault}", { location, fault: text }), fault);
 
 // The field shows the rejected number: it is repeated in the unit of its range.
 const MUST = ["{parameter} must be {allowed}, got {value}", "{parameter} must be a number {allowed}, got {value}"];

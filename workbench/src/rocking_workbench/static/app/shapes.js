@@ -3,26 +3,26 @@
 const SIDES = { unit: "", min: 3, max: 10000, step: 1, integer: true };
 
 /** Shapes with their fields; a field is a length by default. */
-/** @type {{ [shape: string]: { words: string, fields: [string, string, any?][] } }} */
+/** @type {{ [shape: string]: { label: string, fields: [string, string, any?][] } }} */
 export const SHAPES = {
-  block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },
+  block: { label: "Block", fields: [["width", "Width"], ["height", "Height"]] },
   trapezoid: {
-    words: "Trapezoid",
+    label: "Trapezoid",
     fields: [
       ["base", "Base"], ["top", "Top"], ["height", "Height"],
       ["lean", "Lean", { min: null, help: "Shift of the top to the right." }],
     ],
   },
   ellipse: {
-    words: "Ellipse",
+    label: "Ellipse",
     fields: [
       ["width", "Width"], ["height", "Height"],
       ["sides", "Sides", SIDES],
     ],
   },
   regular_polygon: {
-    words: "Regular polygon",
+    label: "Regular polygon",
     fields: [["sides", "Sides", SIDES], ["radius", "Radius"]],
   },
-  section: { words: "Polygon", fields: [] },
+  section: { label: "Polygon", fields: [] },
 };

@@ -13,7 +13,7 @@ const catalogue = new Map(); // translations by their English texts; of a text w
 const plurals = new Intl.PluralRules(language);
 const lists = new Intl.ListFormat(language === "en" ? "en-GB" : language);
 
-/** An English text in the language of the page, its places filled; of [one, other] the form for the fact `count`.
+/** An English text in the language of the page, with its facts; of [singular, plural] the form for the fact `count`.
  * @param {string | [string, string]} text @param {{ [name: string]: any }} [facts] @returns {string} */
 export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), facts) : translatedText(/** @type {string} */ (text)));
 

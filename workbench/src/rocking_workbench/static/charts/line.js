@@ -29,7 +29,7 @@ export const lineChart = (container, options) => {
   /** @type {Point | null} */
   let zoomed = null;
   const table = chartTable(options, () => data);
-  const still = () => ({ node: chartStill(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.words });
+  const still = () => ({ node: chartStill(plot, options, data, marks), alt: stage.getAttribute("aria-label"), note: marks.description });
   const csv = () => csvOf(options, data);
   figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, still, "chart", csv)));
 

@@ -48,7 +48,7 @@ const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
 
 /** @param {Server.MeasuredPoint} measurement @param {Axis} x @param {Axis} y */
 const point = (measurement, x, y) => {
-  const { marker: shape, words: text } = GROUPS[measurement.group] ?? { marker: "circle", words: measurement.group };
+  const { marker: shape, label: text } = GROUPS[measurement.group] ?? { marker: "circle", label: measurement.group };
   const [px, py] = [x.at(measurement.slenderness_ratio), y.at(measurement.coefficient)];
   const bar = measurement.coefficient_low === undefined || measurement.coefficient_low === null || measurement.coefficient_low === measurement.coefficient_high ? null
     : svg(

@@ -39,7 +39,7 @@ export const useRefused = (name) => {
   return [stands && !refused.past ? refused.text : "", () => stands && (refused.past = true)];
 };
 
-/** A box of one's own with the label and the words of a field.
+/** An input element with the label and the help of a field.
  * @param {FieldProps<any> & { id: string, beside?: any, children?: any }} props */
 export const Frame = ({ id, label, unit, beside, error, help, kind = "", hidden, children }) => html`
   <div class=${`field ${kind}`} hidden=${hidden}>
@@ -108,7 +108,7 @@ export const Field = ({
     <${tag} ...${saidOf(id, error)} type=${tag === "input" ? type : null} autocomplete="off" value=${held.text} onInput=${take} ...${more} /><//>`;
 };
 
-/** Choice from a list of [value, words]; `chosen` is the initial value, `own` are options named by users.
+/** Choice from a list of [value, label]; `chosen` is the initial value, `own` are options named by users.
  * @param {FieldProps<any> & { chosen?: unknown, own?: boolean, options: [any, string][] }} props */
 export const Choice = ({ label, name, value, on, chosen, options, own = false, help, error: message = "", hidden, ...more }) => {
   const id = useId("choice");
@@ -127,7 +127,7 @@ export const Choice = ({ label, name, value, on, chosen, options, own = false, h
       ${options.map(([key, text]) => html`<option key=${key} value=${String(key)} translate=${own ? "no" : null}>${text}</option>`)}</select><//>`;
 };
 
-/** A choice of one from a few [value, words], all in sight.
+/** A choice of one value from a few [value, label], all visible.
  * @param {FieldProps<any> & { options: [any, string][] }} props */
 export const Segmented = ({ label, value, on, options, hidden }) => {
   const name = useId("choice");
@@ -164,16 +164,16 @@ export const Slider = ({ label, unit = "", value, on, min, max, step, log = fals
 /** @type {{ [word: string]: string | undefined }} */
 const YES = { true: "yes", false: "no" };
 
-/** A field of a key, with the unit, the words and the choices of its description.
+/** A field of a key, with the unit, the description and the allowed values of the key.
  * @param {FieldProps<string> & { name: string, facts: Server.KeyFacts }} props */
 export const KeyField = ({ name, facts, ...more }) => {
   const label = name.replaceAll("_", " ");
   if (!facts.choices.length) {
-    return html`<${Field} name=${name} label=${label} unit=${facts.unit.replace(/^-$/, "")} help=${sentence(facts.words)}
+    return html`<${Field} name=${name} label=${label} unit=${facts.unit.replace(/^-$/, "")} help=${sentence(facts.description)}
       placeholder=${facts.usual} ...${more} />`;
   }
   const others = facts.choices.filter((word) => word !== facts.usual).map((word) => [word, YES[word] ?? word]);
-  return html`<${Choice} name=${name} label=${label} help=${sentence(facts.words)} ...${more}
+  return html`<${Choice} name=${name} label=${label} help=${sentence(facts.description)} ...${more}
     options=${[["", YES[facts.usual] ?? (facts.usual || "\u2013")], ...others]} />`;
 };
 

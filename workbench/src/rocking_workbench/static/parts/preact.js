@@ -6,7 +6,7 @@ import { useContext, useEffect, useLayoutEffect, useMemo, useRef, useState } fro
 import { batch, computed, signal } from "/vendor/signals/signals.mjs";
 import { attributesInWords, childrenInWords } from "/app/words.js";
 
-/** A template: html`<p class="note">${words}</p>`; text stays text, in the language of the page. */
+/** A template: html`<p class="note">${text}</p>`; a text is escaped and translated. */
 export const html = htm.bind((/** @type {any} */ tag, /** @type {any} */ attributes, /** @type {any[]} */ ...children) => (typeof tag === "string"
   ? h(tag, attributesInWords(tag, attributes), ...childrenInWords(tag, attributes, children)) : h(tag, attributes, ...children)));
 

@@ -108,10 +108,10 @@ export const ProjectDialog = ({ projects, app, handle }) => {
         <ul class="project-list states" aria-label="History">
           ${states.map((state) => html`
             <li key=${state.number}>
-              <p><span>${changed(state.words)}</span><span class="quiet">${dateTime(state.time)}</span></p>
+              <p><span>${changed(state.description)}</span><span class="quiet">${dateTime(state.time)}</span></p>
               ${state.here
                 ? html`<span class="project-open">now</span>`
-                : html`<${Button} aria-label=${t("Restore state {number}: {change}", { number: state.number, change: changed(state.words) })}
+                : html`<${Button} aria-label=${t("Restore state {number}: {change}", { number: state.number, change: changed(state.description) })}
                     onClick=${act(() => projects.restore(state.number))}>Restore<//>`}
             </li>`)}
         </ul>

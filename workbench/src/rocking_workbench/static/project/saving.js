@@ -92,7 +92,7 @@ export const createProjects = (app, first) => {
     sent = [...sent.slice(-3), document];
     note();
     try {
-      const facts = await ask("", { version: here.value.version, document, words: description });
+      const facts = await ask("", { version: here.value.version, document, description });
       [sent, refused, last] = [[], false, document];
       adopt(facts);
       saving.value = changed.size ? "saving" : "saved";
@@ -231,7 +231,7 @@ export const createProjects = (app, first) => {
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
     /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
-    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, words: t("copy of {name}", { name: userText(of) }) } })),
+    copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, description: t("copy of {name}", { name: userText(of) }) } })),
     /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
     /** @param {string} name */

@@ -19,7 +19,7 @@ export class Player {
     this.play = /** @type {Play | null} */ (null);
     this.lead = 0;
     this.groundMode = "true";
-    this.told = 0;
+    this.updated = 0;
     const seen = { role: "img", tabindex: "0", "data-testid": "scene-stage" };
     const stage = el("canvas", { class: "scene-stage", ...seen });
     const strip = el("canvas", { class: "scene-strip", "aria-hidden": "true" });
@@ -47,11 +47,11 @@ export class Player {
     this.play = play;
     this.lead = lead;
     this.clock.end = play.end;
-    if (!this.touched) this.clock.now = Math.min(play.rest, play.end);
+    if (!this.touched) this.clock.now = Math.min(play.restTime, play.end);
     this.clock.now = Math.min(this.clock.now, play.end);
     this.setGround(this.groundMode);
     this.strip.show(play, lead);
-    this.stageCanvas.setAttribute("aria-label", play.words);
+    this.stageCanvas.setAttribute("aria-label", play.description);
     this.draw();
   }
 
@@ -117,8 +117,8 @@ export class Player {
     this.stage.draw(this.clock.now, this.clock.speed);
     this.strip.draw(this.clock.now);
     this.onInstant(this.clock.now);
-    if (stamp - this.told > READOUT_MS || !this.clock.running) {
-      this.told = stamp;
+    if (stamp - this.updated > READOUT_MS || !this.clock.running) {
+      this.updated = stamp;
       this.tell();
     }
     noteFrame(performance.now() - started);

@@ -16,5 +16,5 @@ export const sceneStill = (stage, now, names) => {
   stage.paint(/** @type {any} */ (pen), camera, readColours(stage.canvas), play, now);
   const legend = legendOf(play.actors.map(({ colour, dash }, k) => ({ label: names[k], colour, dash })), camera.width);
   const drawing = svg("svg", { width: camera.width, height: camera.height }, pen.node);
-  return { node: under(legend, camera.width, camera.height, drawing), title: t("The body at {time} s", { time: fixed(now, 3) }), alt: play.words };
+  return { node: under(legend, camera.width, camera.height, drawing), title: t("The body at {time} s", { time: fixed(now, 3) }), alt: play.description };
 };

@@ -19,7 +19,7 @@ export const Edges = ({ question, answer, children }) => {
         stage.number(stage.model.edges);
         stage.draw();
       }}
-      words=${round ? "The base is round. The table lists four directions."
+      description=${round ? "The base is round. The table lists four directions."
         : t("The base has {count} edges. Edge 0 runs from corner 0 to corner 1.", { count: answer.edges.length + answer.edges_left_out })}
       legend=${[["holds", "edge with its number"], ["base", "corner"], ["plumb", "centre of mass and plumb line"]]} />
     ${children}

@@ -18,13 +18,13 @@ export const readGlb = (buffer) => {
     return new ARRAYS[componentType](buffer, at, count * WIDTHS[type]);
   };
   const [{ attributes, indices }] = header.meshes[0].primitives;
-  const [turns, places] = header.animations?.[0].samplers ?? [];
+  const [turns, centres] = header.animations?.[0].samplers ?? [];
   const { tilt, hull, mended, ...extras } = header.extras.rocking;
   return {
     ...extras,
     points: array(attributes.POSITION), faces: array(indices), colours: array(attributes.COLOR_0), hull: array(hull), mended: array(mended),
     motion: turns ? {
-      time: array(turns.input), turn: array(turns.output), place: array(places.output), tilt: array(tilt),
+      time: array(turns.input), turn: array(turns.output), centre: array(centres.output), tilt: array(tilt),
     } : null,
   };
 };

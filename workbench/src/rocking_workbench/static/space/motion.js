@@ -12,7 +12,7 @@ import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
 const WORTH = 0.01; // of the largest loss
-const TOLD = 100; // between two looks at words and curve while it is played [ms]
+const UPDATE_INTERVAL = 100; // between two updates of text and curve during playback [ms]
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
 /** @type {{ [key: string]: number }} */
 const STRIDES = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
@@ -31,13 +31,13 @@ const marked = (impacts) => {
 export const MotionScene = ({ question, answer }) => {
   const [now, running, text] = [useSignal(0), useSignal(false), useSignal("Loading the motion.")];
   const speed = useSignal("1");
-  /** @type {{ clock: Clock, played: Played, chart: Chart, told: number }} */
-  const kept = useRef(/** @type {any} */ ({ clock: new Clock(), played: null, chart: null, told: 0 })).current;
+  /** @type {{ clock: Clock, played: Played, chart: Chart, updated: number }} */
+  const kept = useRef(/** @type {any} */ ({ clock: new Clock(), played: null, chart: null, updated: 0 })).current;
   const curve = useRef(null);
   const { clock } = kept;
   const tell = () => {
     now.value = clock.now;
-    text.value = kept.played.words(clock.now);
+    text.value = kept.played.describe(clock.now);
     kept.chart.point(clock.now);
   };
   /** @param {number} instant */
@@ -56,8 +56,8 @@ export const MotionScene = ({ question, answer }) => {
     clock.speed = Number(speed.value);
     clock.tick(stamp);
     kept.played.show(clock.now);
-    if (stamp - kept.told > TOLD || !clock.running) {
-      kept.told = stamp;
+    if (stamp - kept.updated > UPDATE_INTERVAL || !clock.running) {
+      kept.updated = stamp;
       tell();
     }
     noteFrame(performance.now() - begun);
@@ -97,7 +97,7 @@ export const MotionScene = ({ question, answer }) => {
     kept.chart?.destroy();
   }, []);
   return html`
-    <${Scene} question=${question} words=${text.value} legend=${LEGEND} title="Motion of the body" onStage=${standing} onSpace=${toggle}
+    <${Scene} question=${question} description=${text.value} legend=${LEGEND} title="Motion of the body" onStage=${standing} onSpace=${toggle}
       label=${t("Motion of the body: {summary}", { summary: answer.summary })} />
     <div class="scene-row" role="group" aria-label="Play">
       <button type="button" class="button primary scene-play" data-testid="space-play" onClick=${toggle}>

@@ -35,7 +35,7 @@ export class Played {
 
   /** Put the body where it is at an instant [s], and draw it. @param {number} instant */
   show(instant) {
-    const { time, turn, place: positions, tilt } = this.motion;
+    const { time, turn, centre: positions, tilt } = this.motion;
     const last = time.length - 1;
     const k = Math.min(Math.max(0, lastBefore(time.length, (i) => time[i], instant)), Math.max(0, last - 1));
     const next = Math.min(k + 1, last);
@@ -58,7 +58,7 @@ export class Played {
   }
 
   /** State at a shown instant. @param {number} instant */
-  words(instant) {
+  describe(instant) {
     const { vertices = [], sliding_vertices: sliding = [] } = this.interval ?? {};
     const facts = { time: fixed(instant, 2), tilt: fixed(this.tilt * DEGREES, 2), contact: contactWords(vertices.length, sliding.length) };
     return instant >= this.fell ? t("At {time} s: tilt {tilt}\u00b0, {contact}; overturned.", facts)

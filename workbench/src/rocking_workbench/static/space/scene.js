@@ -24,8 +24,8 @@ const VIEWS = [
 const Key = ({ kind }) => html`<${Made} node=${useMemo(() => (kind === "rise" ? riseKey() : markKey(kind)), [kind])} />`;
 
 /** Picture of the body of a run, with the `title` of its file; `onStage` receives the stage, `onSpace` handles the space bar.
- * @param {{ question: Server.WholeQuestion, words: string, title: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
-export const Scene = ({ question, words: description, title, label, onStage, onSpace, legend }) => {
+ * @param {{ question: Server.WholeQuestion, description: string, title: string, label: string, onStage: (stage: Stage) => unknown, onSpace: () => unknown, legend: string[][] }} props */
+export const Scene = ({ question, description, title, label, onStage, onSpace, legend }) => {
   const canvas = useRef(null);
   const stage = useSignal(null);
   const trouble = useSignal("");
@@ -65,7 +65,7 @@ export const Scene = ({ question, words: description, title, label, onStage, onS
   /** @param {number} times */
   const nearer = (times) => stage.value && look({ near: stage.value.near * times });
   const photograph = () => {
-    if (!stage.value) throw new Error("The body is not drawn yet.");
+    if (!stage.value) throw new Error("The drawing of the body is not ready.");
     return stage.value.photograph();
   };
   /** @param {KeyboardEvent} event */

@@ -74,10 +74,10 @@ export class Stage {
   /** View target: mean of all positions of the center, and the visible distance. */
   frame() {
     const [low, high] = [[0, 0, this.model.height], [0, 0, this.model.height]];
-    const places = this.model.motion?.place ?? [];
-    for (let k = 0; k < places.length; k += 1) {
-      low[k % 3] = Math.min(low[k % 3], places[k]);
-      high[k % 3] = Math.max(high[k % 3], places[k]);
+    const centres = this.model.motion?.centre ?? [];
+    for (let k = 0; k < centres.length; k += 1) {
+      low[k % 3] = Math.min(low[k % 3], centres[k]);
+      high[k % 3] = Math.max(high[k % 3], centres[k]);
     }
     this.middle = new this.three.Vector3(...low.map((value, k) => 0.5 * (value + high[k])));
     this.reach = this.size + 0.5 * Math.hypot(...low.map((value, k) => high[k] - value));
@@ -126,11 +126,11 @@ export class Stage {
   }
 
   /** Marks on the body that keep their size on the screen.
-   * @param {number[][]} places @param {string} shape @param {string} paint */
-  dots(places, shape, paint) {
+   * @param {number[][]} positions @param {string} shape @param {string} paint */
+  dots(positions, shape, paint) {
     const { three } = this;
     const seenThrough = shape === "dot";
-    const geometry = new three.BufferGeometry().setFromPoints(places.map((position) => new three.Vector3(...position)));
+    const geometry = new three.BufferGeometry().setFromPoints(positions.map((position) => new three.Vector3(...position)));
     const material = new three.PointsMaterial({
       map: markTexture(three, shape), size: 15, sizeAttenuation: false, transparent: true, alphaTest: 0.4,
       depthTest: !seenThrough,

@@ -45,7 +45,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
     stage.current = settling(spaceStage);
     for (const kind of ["summit", "saddle", "stable"]) {
       const marks = spaceStage.model.marks.filter((mark) => mark.kind === kind);
-      spaceStage.dots(marks.slice(0, MOST).map(({ place: position }) => before(position, spaceStage.size)), kind, `--space-${kind}`);
+      spaceStage.dots(marks.slice(0, MOST).map(({ position }) => before(position, spaceStage.size)), kind, `--space-${kind}`);
     }
     spaceStage.colourful(true);
     stage.current.setIn(spaceStage.model.poses[shown]);
@@ -62,7 +62,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
     <p class="verdict" data-testid="verdict">${t(
       ["The body has one stable pose. From the given orientation it settles in pose {pose}.", "The body has {count} stable poses. From the given orientation it settles in pose {pose}."],
       { count: answer.stable.length, pose: answer.stands_in })}</p>
-    <${Scene} question=${question} words=${`${stands} ${leaves}`} onStage=${built} title="Stable poses" label="Body on its support polygon, with its equilibria"
+    <${Scene} question=${question} description=${`${stands} ${leaves}`} onStage=${built} title="Stable poses" label="Body on its support polygon, with its equilibria"
       onSpace=${() => {}} legend=${[
         ["stable", t("{number} stable equilibria", { number: answer.stable.length })], ["saddle", t("{number} saddles: balanced on an edge", { number: answer.saddles })],
         ["summit", t("{number} summits: balanced on a corner", { number: answer.summits })], ["plumb", "centre of mass and plumb line"],

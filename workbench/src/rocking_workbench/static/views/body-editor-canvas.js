@@ -95,21 +95,21 @@ export const createCanvas = (editor, element) => {
   const begin = (event) => {
     const regions = editor.regions();
     const point = pointOf(event);
-    const target = model.nearest(regions, point, REACH / view.scale, editor.state.place);
+    const target = model.nearest(regions, point, REACH / view.scale, editor.state.selected);
     const edge = event.target.closest("[data-edge]");
     if (editor.state.tool) {
       editor.tool.put(editor.state.tool.kind === "pen" ? neat(point) : point, REACH / view.scale);
       return board.focus({ preventScroll: true });
     }
-    if (target) drag = { place: target, begun: false };
+    if (target) drag = { vertex: target, begun: false };
     else if (edge) {
       const after = placeOf(edge.dataset.edge);
       editor.change(model.inserted(regions, after, neat(point)), { ...after, vertex: after.vertex + 1 });
-      drag = { place: editor.state.place, begun: true };
+      drag = { vertex: editor.state.selected, begun: true };
     } else drag = { from: pixelOf(event) };
-    if (!drag.place) return board.focus({ preventScroll: true });
-    editor.select(drag.place);
-    focusOn(keyOf(drag.place));
+    if (!drag.vertex) return board.focus({ preventScroll: true });
+    editor.select(drag.vertex);
+    focusOn(keyOf(drag.vertex));
   };
   board.addEventListener("pointerdown", (event) => {
     if (event.button > 0) return;
@@ -136,7 +136,7 @@ export const createCanvas = (editor, element) => {
     }
     if (!drag.begun) editor.keep();
     drag.begun = true;
-    return editor.adjust(model.moved(editor.regions(), drag.place, neat(pointOf(event))), drag.place);
+    return editor.adjust(model.moved(editor.regions(), drag.vertex, neat(pointOf(event))), drag.vertex);
   });
   /** @param {number} id @param {number[]} before @param {number[]} now */
   const pinch = (id, before, now) => {
@@ -166,8 +166,8 @@ export const createCanvas = (editor, element) => {
   board.addEventListener("focusin", (event) => {
     const key = /** @type {HTMLElement} */ (event.target).dataset?.place;
     if (!key) return;
-    if (key !== keyOf(editor.state.place)) editor.select(placeOf(key));
-    const point = model.ringAt(editor.regions(), editor.state.place)[editor.state.place.vertex];
+    if (key !== keyOf(editor.state.selected)) editor.select(placeOf(key));
+    const point = model.ringAt(editor.regions(), editor.state.selected)[editor.state.selected.vertex];
     if (!inSight(view, width, point)) lookAt(point);
   });
   /** @type {{ [key: string]: (() => unknown) | undefined }} */
@@ -225,7 +225,7 @@ const inSight = (view, width, [x, y]) =>
 
 /** @param {Editor} editor @param {Viewport} view @param {number} width */
 const chosenPoint = (editor, view, width) => {
-  const { place: vertexIndex, tool } = editor.state;
+  const { selected: vertexIndex, tool } = editor.state;
   const point = tool ? tool.cursor : model.ringAt(editor.regions(), vertexIndex)?.[vertexIndex.vertex];
   return point && inSight(view, width, point) ? point : null;
 };
@@ -238,7 +238,7 @@ const gridLines = (view, width, step) => {
   const isLabelled = (value) => Math.round(value / step) % many === 0;
   const digits = Math.max(4, Math.ceil(Math.log10(Math.max(Math.abs(left), Math.abs(right), Math.abs(top)) / step)) + 1);
   /** @param {number} value @param {string} zero @param {string} d */
-  const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : isLabelled(value) ? "grid-line told" : "grid-line", d });
+  const line = (value, zero, d) => svg("path", { class: Math.abs(value) < step / 2 ? zero : isLabelled(value) ? "grid-line labelled" : "grid-line", d });
   return svg("g", { "aria-hidden": "true", "data-step": step },
     multiples(left, right, step).map((value) => [
       line(value, "axis", `M${view.x(value)} 0V${HEIGHT}`),
@@ -284,7 +284,7 @@ const edges = (regions, view) =>
 // Edge after the selected vertex, with its dimensions.
 /** @param {Editor} editor @param {Region[]} regions @param {Viewport} view */
 const picked = (editor, regions, view) => {
-  const { from, to, length, angle } = model.edgeAt(regions, editor.state.place);
+  const { from, to, length, angle } = model.edgeAt(regions, editor.state.selected);
   const [[x1, y1], [x2, y2]] = [from, to].map(([x, y]) => [view.x(x), view.y(y)]);
   const flat = Math.abs(x2 - x1) > Math.abs(y2 - y1);
   return svg("g", { class: "edge-picked", "aria-hidden": "true" },
@@ -338,7 +338,7 @@ const putWords = (note, editor, view, width, point) => {
 
 /** @param {Editor} editor @param {Region[]} regions @param {Viewport} view */
 const vertices = (editor, regions, view) => {
-  const chosen = keyOf(editor.state.place);
+  const chosen = keyOf(editor.state.selected);
   return model.ringsOf(regions).flatMap(({ region, ring, points }) =>
     points.map(([x, y], vertex) => {
       const key = keyOf({ region, ring, vertex });
@@ -346,7 +346,7 @@ const vertices = (editor, regions, view) => {
       return svg("g", {
         class: `vertex${key === chosen ? " chosen" : ""}`, tabindex: "0", role: "button", "data-place": key,
         transform: `translate(${view.x(x)} ${view.y(y)})`,
-        "aria-label": t("Vertex {number} of {place}: x {x}, y {y} {unit}", { number: vertex + 1, place: where, x: number(x, 7), y: number(y, 7), unit: editor.units() }),
+        "aria-label": t("Vertex {number} of {ring}: x {x}, y {y} {unit}", { number: vertex + 1, ring: where, x: number(x, 7), y: number(y, 7), unit: editor.units() }),
       }, svg("circle", { class: "reach", r: 16 }), svg("circle", { class: "dot", r: 5.5 }));
     }));
 };
@@ -381,7 +381,7 @@ const onKey = (event, editor, start) => {
   return action(editor, placeOf(key), event.shiftKey ? 10 : 1);
 };
 
-/** @param {number} dx @param {number} dy @returns {(editor: Editor, place: Place, times: number) => void} */
+/** @param {number} dx @param {number} dy @returns {(editor: Editor, vertex: Place, times: number) => void} */
 const shifted = (dx, dy) => (editor, vertexIndex, times) => {
   const [x, y] = model.ringAt(editor.regions(), vertexIndex)[vertexIndex.vertex];
   const by = editor.step() * times;
@@ -404,7 +404,7 @@ const add = (editor, vertexIndex) => {
   );
 };
 
-/** @type {{ [key: string]: ((editor: Editor, place: Place, times: number) => unknown) | undefined }} */
+/** @type {{ [key: string]: ((editor: Editor, vertex: Place, times: number) => unknown) | undefined }} */
 const actions = {
   ArrowLeft: shifted(-1, 0), ArrowRight: shifted(1, 0), ArrowUp: shifted(0, 1), ArrowDown: shifted(0, -1),
   Delete: drop, Backspace: drop, Insert: add, "+": add,

@@ -182,9 +182,9 @@ export const createHistory = (most = 200) => {
       past = [...past, value].slice(-most);
       future = [];
     },
-    /** @param {(found: any) => any} nowLike */
+    /** @param {(entry: any) => any} nowLike */
     undo: (nowLike) => travel(past, future, nowLike),
-    /** @param {(found: any) => any} nowLike */
+    /** @param {(entry: any) => any} nowLike */
     redo: (nowLike) => travel(future, past, nowLike),
     canUndo: () => past.length > 0,
     canRedo: () => future.length > 0,
@@ -192,7 +192,7 @@ export const createHistory = (most = 200) => {
 };
 
 // The previous value is kept in the same unit as its replacement.
-/** @param {any[]} from @param {any[]} to @param {(found: any) => any} nowLike */
+/** @param {any[]} from @param {any[]} to @param {(entry: any) => any} nowLike */
 const travel = (from, to, nowLike) => {
   if (!from.length) return null;
   const entry = from.pop();

@@ -18,7 +18,7 @@ export const Tools = ({ editor, children }) => {
     ${travel("undo", "Undo", history.canUndo())}${travel("redo", "Redo", history.canRedo())}
     <${Button} onClick=${() => newRegion(editor)}>Add region<//>
     <${Button} onClick=${() => newHole(editor)}>Add hole<//>
-    <${Button} kind="danger" disabled=${state.place.ring < 0 && editor.regions().length < 2} onClick=${() => removePart(editor)}>Remove region or hole<//>
+    <${Button} kind="danger" disabled=${state.selected.ring < 0 && editor.regions().length < 2} onClick=${() => removePart(editor)}>Remove region or hole<//>
     <${Button} onClick=${() => editor.change(model.onTheGround(editor.regions(), tidy))}>Move to the ground<//>
     ${children}
   </div>`;
@@ -26,7 +26,7 @@ export const Tools = ({ editor, children }) => {
 
 /** The chosen vertex, the grid and the densities, in numbers. @param {{ editor: Editor }} props */
 export const Details = ({ editor }) => {
-  const { place: position, snap, step } = editor.state;
+  const { selected: position, snap, step } = editor.state;
   /** @type {Region[]} */
   const regions = editor.regions();
   const point = model.ringAt(regions, position)[position.vertex];
@@ -76,7 +76,7 @@ const newRegion = (editor) => {
 
 /** @param {Editor} editor */
 const newHole = (editor) => {
-  const { region } = editor.state.place;
+  const { region } = editor.state.selected;
   const regions = editor.regions();
   const hole = model.middleHole(regions[region].outline, (value) => tidy(value, 6));
   editor.change(
@@ -86,7 +86,7 @@ const newHole = (editor) => {
 
 /** @param {Editor} editor */
 const removePart = (editor) => {
-  const { region } = editor.state.place;
-  const next = model.withoutRing(editor.regions(), editor.state.place);
+  const { region } = editor.state.selected;
+  const next = model.withoutRing(editor.regions(), editor.state.selected);
   editor.change(next, { region: Math.min(region, next.length - 1), ring: -1, vertex: 0 });
 };

@@ -21,7 +21,7 @@ const HOW = {
 export const createTool = (editor) => {
   const held = () => /** @type {NonNullable<Editor["state"]["tool"]>} */ (editor.state.tool);
   /** @param {string} text */
-  const say = (text) => (editor.told.value = text);
+  const say = (text) => (editor.status.value = text);
   const tell = () => {
     const { points, cursor } = held();
     const count = points.length;
@@ -113,7 +113,7 @@ export const PenEnds = ({ editor: { state, tool } }) => html`
 export const EdgePart = ({ editor }) => {
   const box = useRef(null);
   const [rise, off, wrong] = [null, null, ""].map(useSignal);
-  const { place: position } = editor.state;
+  const { selected: position } = editor.state;
   const { length, angle } = model.edgeAt(editor.regions(), position);
   /** @param {string} key */
   const change = (key) => (/** @type {number} */ value) => {

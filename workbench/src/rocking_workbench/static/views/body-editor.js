@@ -21,7 +21,7 @@ export const Editor = ({ editor }) => {
         ${there && html`<${Tools} editor=${editor} drawn=${drawn}><${Pen} editor=${editor} drawn=${drawn} /><//>`}
         <div class="board-row">
           <div class="stack"><${Board} editor=${editor} />
-            <p class="field-help board-told" role="status" data-testid="board-told">${editor.told.value}</p>
+            <p class="field-help board-told" role="status" data-testid="board-told">${editor.status.value}</p>
             ${there && html`<${PenEnds} editor=${editor} drawn=${drawn} />`}</div>
           ${there && html`<${Details} editor=${editor} drawn=${drawn} />`}</div>
         ${there && html`<${EdgePart} editor=${editor} drawn=${drawn} /><${PhotoPart} editor=${editor} drawn=${drawn} />`}
@@ -62,19 +62,19 @@ export const createEditor = (app) => {
   const [drawn, boardText] = [signal(0), signal("")];
   // Photograph and tool are this browser's alone: they are no part of the body.
   /** @type {any} */
-  const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
+  const state = { selected: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   let { units } = body();
   // Feet and depth are typed next to the canvas: an undo step includes them only if it changed them.
-  const now = ({ whole: withSection = false } = {}) => {
+  const now = ({ withSection = false } = {}) => {
     const { section, units: of } = body();
-    return { section, regions: regions(), units: of, whole: withSection };
+    return { section, regions: regions(), units: of, withSection };
   };
   const step = () => state.grid ?? state.step ?? 0.05;
   /** @type {Editor} */
   const editor = {
-    state, history, regions, step, drawn, told: boardText, board: /** @type {any} */ (null), // until the first painting
+    state, history, regions, step, drawn, status: boardText, board: /** @type {any} */ (null), // until the first painting
     tool: /** @type {any} */ (null), // at the end
     shown: () => shapeOf(body()) === "section",
     section: () => body().section,
@@ -84,13 +84,13 @@ export const createEditor = (app) => {
     refusal: () => inUnitsOf(app.body.error()?.place, METRES[body().units]),
     refusalWords: () => app.body.error()?.message ?? "",
     /** @param {Region[]} next @param {Place} [position] */
-    change: (next, position = state.place) => {
+    change: (next, position = state.selected) => {
       history.keep(now());
       editor.adjust(next, position);
     },
     /** @param {Region[]} next @param {Place} [position] */
-    adjust: (next, position = state.place) => {
-      state.place = position;
+    adjust: (next, position = state.selected) => {
+      state.selected = position;
       app.inputs.set("body.section.region", weighed(next, /** @type {any} */ (body().section ?? {})));
       editor.tell();
     },
@@ -101,19 +101,19 @@ export const createEditor = (app) => {
     },
     /** @param {object} section */
     replace: (section) => {
-      history.keep(now({ whole: true }));
+      history.keep(now({ withSection: true }));
       editor.show(section, { region: 0, ring: -1, vertex: 0 });
     },
     /** @param {object} section @param {Place} position */
     show: (section, position) => {
-      state.place = position;
+      state.selected = position;
       app.inputs.set("body.section", section);
       editor.tell();
     },
     keep: () => history.keep(now()),
     /** @param {Place} position */
     select: (position) => {
-      state.place = position;
+      state.selected = position;
       editor.tell();
     },
     /** @param {number[]} point */
@@ -122,10 +122,10 @@ export const createEditor = (app) => {
     travel: (direction) => {
       const entry = history[direction](now);
       if (!entry) return;
-      const table = entry.whole ? entry.section : { region: entry.regions };
+      const table = entry.withSection ? entry.section : { region: entry.regions };
       const { section } = /** @type {any} */ (inUnits)({ units: entry.units, section: table }, body().units);
-      const position = withinReach(entry.regions, state.place);
-      if (entry.whole) editor.show(section, position);
+      const position = withinReach(entry.regions, state.selected);
+      if (entry.withSection) editor.show(section, position);
       else editor.adjust(section.region, position);
     },
     say: app.say,
@@ -134,7 +134,7 @@ export const createEditor = (app) => {
         if (units !== body().units) changeUnits(state, METRES[units] / editor.metres());
         ({ units } = body());
         const current = regions();
-        if (current.length) state.place = withinReach(current, state.place);
+        if (current.length) state.selected = withinReach(current, state.selected);
         editor.board?.follow(); // first: the canvas has the grid step
       }
       drawn.value += 1;

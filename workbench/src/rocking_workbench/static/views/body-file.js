@@ -51,7 +51,7 @@ export const BodyFile = ({ app }) => {
     <div ref=${box} class="stack">
       <${Drop} label="Drop a DXF, WKT, GeoJSON or TOML file here" name="Body file" accept=".dxf,.wkt,.txt,.geojson,.json,.toml"
         on=${take} data-testid="body-drop" />
-      <p class="field-help" data-testid="held-file">${name.value && t("File: {name}. Another unit reads the file again.", { name: name.value })}</p>
+      <p class="field-help" data-testid="held-file">${name.value && t("File: {name}. After a change of the unit the file is read again.", { name: name.value })}</p>
       <div class="refusal" role="alert" data-testid="file-refusal">${wrong.value && !ofUnit && html`<${Note} kind="error" text=${wrong.value} />`}</div>
       <${Choice} label="Unit of the file" value=${units.value} on=${inUnit} options=${UNITS} error=${ofUnit && wrong.value}
         help="WKT and GeoJSON contain no unit, TOML always, DXF sometimes." />

@@ -32,7 +32,7 @@ export const Form = ({ app, body, refusal }) => {
   const own = `${shape} ${units}`; // other fields, even if equal
   return html`<div class="stack">
     <${Choice} label="Shape" value=${shape} on=${become}
-      options=${[...Object.entries(SHAPES).map(([key, { words: text }]) => [key, text]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
+      options=${[...Object.entries(SHAPES).map(([key, { label: text }]) => [key, text]), ...(shape === "mass_points" ? FROM_FILE : [])]} />
     <${Segmented} label="Lengths in" options=${UNITS} value=${units} on=${(next) => app.inputs.set("body", inUnits(app.inputs.get().body, next))} />
     ${shape === "mass_points" ? html`<${Note} text="This body consists of mass points from a file." />`
       : html`<${Sizes} key=${own} shape=${shape} units=${units} table=${tableOfShape(body)} put=${put} error=${error} />`}

@@ -44,7 +44,7 @@ export const PastePart = ({ editor }) => {
 /** Points as the whole body; returns a message. @param {Editor} editor @param {Ring} points */
 export const asOutline = (editor, points) => {
   const lost = lostWords(editor.section(), editor.regions());
-  editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], points));
+  editor.replace(replaced(editor.section(), editor.regions()[editor.state.selected.region], points));
   const status = t("The body now consists of these {count} points.", { count: points.length });
   return lost ? `${status} ${lost}` : status;
 };
@@ -57,7 +57,7 @@ export const asRegion = (editor, points) => {
 
 /** Points as a hole of the chosen region. @param {Editor} editor @param {Ring} points */
 export const asHole = (editor, points) => {
-  const [regions, { region }] = [editor.regions(), editor.state.place];
+  const [regions, { region }] = [editor.regions(), editor.state.selected];
   editor.change(
     model.withHole(regions, region, points), { region, ring: regions[region].holes?.length ?? 0, vertex: 0 },
   );

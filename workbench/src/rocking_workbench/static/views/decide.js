@@ -14,7 +14,7 @@ const FAMILIES = [
   ["", "the motion of this project"], ["records", "record files"], ["firm-ground", "20 synthetic motions, firm ground"],
   ["soft-ground", "20 synthetic motions, soft ground"],
 ];
-const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", what: "assess", by_file: {} };
+const FIRST = { shaken: "", files: [], units: "", margin: "1", author: "", date: "", pga: "0.3", command: "assess", by_file: {} };
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {
@@ -87,7 +87,7 @@ const Decide = ({ app, questions }) => {
 };
 
 /** Ground motions of the body as job tables, their files, and missing inputs.
- * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string, own: object }} said @returns {Shaking} */
+ * @param {Server.Inputs} inputs @param {string} shaken @param {SentFile[]} files @param {{ units: string, pga: string, own: object }} options @returns {Shaking} */
 const motions = (inputs, shaken, files, { units, pga, own }) => {
   if (shaken === "records") {
     const motion = { records: files.map((file) => file.name), ...(units.trim() ? { units: units.trim() } : {}), ...own };
@@ -125,7 +125,7 @@ const crossings = (app, questions, range) => {
 /** @param {Given} props */
 const Found = (props) => html`<${FOUND[props.question.command] ?? Verdict} ...${props} />`;
 
-/** @type {{ [command: string]: ((given: Given) => VNode) | undefined }} */
+/** @type {{ [command: string]: ((props: Given) => VNode) | undefined }} */
 const FOUND = { "overturning-pga": (props) => Crossings(props), predict: (props) => Forecast(props) };
 
 const G = 9.80665;

@@ -68,7 +68,7 @@ const Emerged = ({ result: { varied, unit, values, results, rigid } }) => {
   const data = useMemo(() => [values, curve, ...beside.map(([, coefficients]) => coefficients)], [values, shown.value]);
   return html`
     <div class="stack" data-testid="bed-results">
-      <${Choice} label="Show" value=${shown} help=${results[shown.value].words && sentence(results[shown.value].words)}
+      <${Choice} label="Show" value=${shown} help=${results[shown.value].description && sentence(results[shown.value].description)}
         options=${Object.keys(results).map((name) => [name, name.replaceAll("_", " ")])} />
       <${Figure} shape=${shape} data=${data} interval=${null} marks=${NOTHING} time=${time} testid="bed-chart" />
     </div>`;

@@ -17,7 +17,7 @@ export const Evidence = ({ answer, foot, about }) => html`
     <div><${Pictured} title="Comparison with published measurements" about=${about}><${Drawn} draw=${cloudPicture} of=${[answer, foot]} />
       <ul class="legend">
         ${[...new Set(pointsOf(answer).map(({ group }) => group))].map((group) => html`
-          <li key=${group}><${Made} node=${groupKey(group)} />${GROUPS[group]?.words ?? group}</li>`)}
+          <li key=${group}><${Made} node=${groupKey(group)} />${GROUPS[group]?.label ?? group}</li>`)}
         <li><${Made} node=${bodyKey()} />this body</li>
         ${(answer.curves ?? []).map(({ model }) => html`
           <li key=${model}><${Swatch} label=${model} />${wordsOf(model)}</li>`)}

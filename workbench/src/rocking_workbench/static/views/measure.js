@@ -15,7 +15,7 @@ const KINDS = [
   ["angular velocity", "angular velocity"], ["acceleration", "acceleration"],
 ];
 
-const FIRST = { files: [], kind: "", column: "", unit: "", known: "yes", what: "identify", trend: "" };
+const FIRST = { files: [], kind: "", column: "", unit: "", body: "yes", command: "identify", trend: "" };
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
 export const mount = (section, app) => {

@@ -30,7 +30,7 @@ const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.lengt
 const titleOf = (name) => TITLES[name] || name.replaceAll("-", " ");
 
 /** @param {[string, Server.ParameterFacts]} parameter */
-const parameterOf = ([name, { unit, words: text, default: usual }]) => {
+const parameterOf = ([name, { unit, description: text, default: usual }]) => {
   const range = RANGES[name] || { label: text || name, low: 0.01, high: 100, log: true, usual: 1 };
   return { name, unit: unit === "-" ? "" : unit, needed: usual === null, ...range, usual: typeof usual === "number" ? usual : range.usual };
 };

@@ -39,8 +39,8 @@ export const blamedOf = (needs, refusal, text) => {
 };
 
 /** Fields for the `needs` of `answer`; `take` receives the values once all are valid.
- * @param {{ answer: LeftOpen, info: Server.Info, given: Told, blamed?: ReturnType<typeof blamedOf>, take: (given: Told) => unknown, button?: object, [more: string]: any }} props */
-export const Needs = ({ answer, info, given: initial, blamed, take, button, ...more }) => {
+ * @param {{ answer: LeftOpen, info: Server.Info, initial: Told, blamed?: ReturnType<typeof blamedOf>, take: (values: Told) => unknown, button?: object, [more: string]: any }} props */
+export const Needs = ({ answer, info, initial, blamed, take, button, ...more }) => {
   const form = useRef(null);
   const [answers, wrong, pressed] = [useSignal(initial), useSignal({}), useSignal(0)];
   /** @type {[Need, string[]][]} */

@@ -30,11 +30,11 @@ export const createRecord = (app, onChange) => {
   /** @param {object} [statement] */
   const send = async (statement) => {
     const sent = held;
-    Object.assign(sent.given, statement);
+    Object.assign(sent.stated, statement);
     status.value = { text: t("Reading {name}", { name: sent.file.name }) };
     try {
       sent.content ??= await contentOf(sent.file);
-      const query = { name: sent.file.name, ...picked(sent.given, TOLD) };
+      const query = { name: sent.file.name, ...picked(sent.stated, TOLD) };
       const facts = await app.call("records", { method: "POST", body: sent.content, query });
       if (sent === held) batch(() => took(facts));
     } catch (error) {
@@ -43,7 +43,7 @@ export const createRecord = (app, onChange) => {
   };
   // the components are chosen here, without a request
   /** @param {Need[]} needs */
-  const enough = (needs) => needs.every((need) => need === "component") && held.given.component !== undefined;
+  const enough = (needs) => needs.every((need) => need === "component") && held.stated.component !== undefined;
   /** @param {Server.RecordFacts} facts */
   const took = (facts) => {
     if (facts.needs.length && !enough(facts.needs)) {
@@ -52,11 +52,11 @@ export const createRecord = (app, onChange) => {
     }
     answer.value = facts;
     end(facts.doubts ? { text: t("Check the input: {doubts}.", { doubts: facts.doubts }), kind: "warning" } : {}, "read");
-    onChange({ record: facts.record, file_name: facts.file_name, ...picked(held.given, [...TOLD, "component"]) });
+    onChange({ record: facts.record, file_name: facts.file_name, ...picked(held.stated, [...TOLD, "component"]) });
     return app.say(t("{name} is read.", { name: facts.file_name }));
   };
   /** @param {LeftOpen} facts */
-  const ask = (facts) => ([openNeeds.value, blamed.value, waiting.value] = [{ answer: facts, given: { ...held.given } }, null, true]);
+  const ask = (facts) => ([openNeeds.value, blamed.value, waiting.value] = [{ answer: facts, initial: { ...held.stated } }, null, true]);
   /** @param {object} note @param {string} as */
   const end = (note, as) => ([status.value, openNeeds.value, waiting.value] = [{ ...note, as }, null, false]);
   /** @param {string} text @param {any[]} [places] */
@@ -102,7 +102,7 @@ export const createRecord = (app, onChange) => {
       forget();
       return together(files);
     }
-    held = { file, content: null, given: {} };
+    held = { file, content: null, stated: {} };
     if (files.length > 1) return end({ text: "A motion is one record. Add several records in the step Records.", kind: "error" }, "unread");
     [openNeeds.value, waiting.value] = [null, true];
     const most = app.info.limits?.upload_bytes;
@@ -113,13 +113,13 @@ export const createRecord = (app, onChange) => {
     held = null;
     [status.value, openNeeds.value, blamed.value, waiting.value] = [null, null, null, false];
   });
-  return { said: status, asked: openNeeds, blamed, waiting, answer, take, send, forget };
+  return { status, openNeeds, blamed, waiting, answer, take, send, forget };
 };
 
 /** The editor of a record; `lost`: the server no longer has the file.
  * @param {{ app: App, record: ReturnType<typeof createRecord>, motion: Server.MotionInput | null, lost: boolean, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Record = ({ app, record, motion, lost, onChange }) => {
-  const { said: status, asked: openNeeds, blamed, answer } = record;
+  const { status, openNeeds, blamed, answer } = record;
   const editor = useRef(null);
   /** @param {string} selector */
   const focus = (selector) => editor.current.querySelector(selector)?.focus();

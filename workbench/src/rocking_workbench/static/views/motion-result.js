@@ -29,7 +29,7 @@ export const Result = ({ app, answer, closeup, time, stale }) => {
   const { samples_shown: shown, samples: of } = answer.series;
   /** @type {any} */
   const series = useMemo(() => (closeup?.series ? detailed(answer.series, closeup.series) : answer.series), [answer, closeup]);
-  const measures = answer.measures.map(({ name, words: text }) => [text, answer.intensity[name], answer.units[name] === "1" ? "" : pretty(answer.units[name])]);
+  const measures = answer.measures.map(({ name, description: text }) => [text, answer.intensity[name], answer.units[name] === "1" ? "" : pretty(answer.units[name])]);
   /** @param {string} path @param {string} [name] */
   const save = (path, name = path.replaceAll("/", "-")) => app.download(path, app.inputs.get(), name);
   /** @param {string} text @param {string} path @param {string} label */
@@ -43,7 +43,7 @@ export const Result = ({ app, answer, closeup, time, stale }) => {
         <div class="motion-traces" data-testid="motion-traces">
           ${TRACES.filter(({ key }) => Array.isArray(series[key])).map((trace) => html`
             <${Trace} key=${trace.key} trace=${trace} series=${series} interval=${closeup?.window ?? null} time=${time} />`)}</div>
-        <p class="field-help">${of > shown && t("{shown} of {count} samples are drawn: the extremes of each pixel. {hint}", { shown, count: of, hint: LOOK })}</p>
+        <p class="field-help">${of > shown && t("The curve shows {shown} of {count} samples: the extremes of each pixel. {hint}", { shown, count: of, hint: LOOK })}</p>
         <div class="toolbar">${saver("CSV", "table/motion.csv", "Motion as CSV")}</div><//>
       <${Card} title="Response spectrum"><${Spectrum} spectrum=${answer.spectrum} />
         <div class="toolbar">${saver("CSV", "table/spectrum.csv", "Response spectrum as CSV")}</div><//>

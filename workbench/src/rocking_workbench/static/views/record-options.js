@@ -20,13 +20,13 @@ export const optionsOf = (byFile, records, app) => {
 /** Why files were not read, by their names: files that the result leaves out, or that the refusal names.
  * @param {Server.WholeQuestion | null} question @param {SentFile[]} records @returns {{ [name: string]: string }} */
 export const reasonsOf = (question, records) => {
-  /** @type {{ file: string, why: string }[]} */
+  /** @type {{ file: string, reason: string }[]} */
   const leftOut = question?.answer?.left_out ?? [];
   const refusal = question?.state === "refused" ? question.refusal : null;
   /** @param {string} path */
   const last = (path) => path.split("/").at(-1);
   /** @param {string} name */
-  const reasonOf = (name) => leftOut.find(({ file }) => last(file) === name)?.why
+  const reasonOf = (name) => leftOut.find(({ file }) => last(file) === name)?.reason
     ?? (last(String(refusal?.facts?.file ?? "")) === name ? refusal?.facts?.cause : undefined)
     ?? ((refusal?.places ?? []).some((/** @type {any} */ location) => location.kind === "file" && last(location.name) === name) ? spelt(refusal) : "");
   return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, reason]) => reason).slice(0, MOST_REASONS));

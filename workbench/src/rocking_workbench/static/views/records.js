@@ -48,7 +48,7 @@ const Records = ({ app, questions }) => {
         ? { key: "curve", text: "Add a spectrum file." }
         : shown === "target" && missingOf(form.value, app) ? { key: missingOf(form.value, app), text: "Enter a number." } : "";
     if (wrong.value) return;
-    form.at("asked").value = chainOf(steps).join("; ");
+    form.at("sent").value = chainOf(steps).join("; ");
     const job = single ? oneOf(form.value, app, /** @type {SentFile} */ (records.find((record) => record.name === shown))) : setOf(form.value, app, shown);
     questions.ask(job.tables, job.files, job.name, { command: single ? "record convert" : "record batch", format: single ? form.value.format : "" });
   };
@@ -101,15 +101,15 @@ const chainOf = (steps) => steps.map(({ name, keys }) => {
 const written = (text) => (parseNumber(text) === null ? text.replace(/[;,]/g, " ").trim() : String(parseNumber(text)));
 
 // Step of a rejection: its index if present, else its name.
-/** @param {Questions} questions @param {{ steps: RecordStep[], asked?: string }} form */
-const faultyOf = (questions, { steps, asked }) => {
+/** @param {Questions} questions @param {{ steps: RecordStep[], sent?: string }} form */
+const faultyOf = (questions, { steps, sent }) => {
   const refusal = questions.shown.value?.state === "refused" ? questions.shown.value.refusal : null;
   const step = refusal?.places?.find((/** @type {any} */ { kind }) => kind === "step");
-  if (!step || asked !== chainOf(steps).join("; ")) return null;
-  return { place: step.number - 1, text: sentence(spelt(refusal)) };
+  if (!step || sent !== chainOf(steps).join("; ")) return null;
+  return { index: step.number - 1, text: sentence(spelt(refusal)) };
 };
 
-/** @param {{ app: App, form: Form, stations: SentFile[], faulty: { place: number, text: string } | null }} props */
+/** @param {{ app: App, form: Form, stations: SentFile[], faulty: { index: number, text: string } | null }} props */
 const Chain = ({ app, form, stations, faulty }) => {
   const stepFacts = app.info.steps;
   /** @type {{ steps: RecordStep[] }} */
@@ -146,22 +146,22 @@ const Chain = ({ app, form, stations, faulty }) => {
           <${Button} kind="quiet" aria-label=${t("Move {name} later", { name })} disabled=${index === steps.length - 1} onClick=${() => moved(index, 1)}>\u2193<//>
           <${Button} kind="quiet" aria-label=${t("Remove {name}", { name })} onClick=${() => set(steps.filter((_, k) => k !== index))}>remove<//>
         </div>
-        <p class="field-help">${sentence(stepFacts[name].words)}</p>
+        <p class="field-help">${sentence(stepFacts[name].description)}</p>
         <div class="fields">
-          ${stepFacts[name].one && html`<${Choice} label="parameter" value=${by(index)} options=${Object.keys(stepFacts[name].keys).map((key) => [key, key])} />`}
+          ${stepFacts[name].single_key && html`<${Choice} label="parameter" value=${by(index)} options=${Object.keys(stepFacts[name].keys).map((key) => [key, key])} />`}
           ${keysOf(steps[index], stepFacts[name]).map(([key, facts]) => html`<${KeyField} key=${key} name=${key}
             facts=${key === "stations" ? { ...facts, choices: stations.map((station) => station.name) } : facts} value=${keyed(index, key)} />`)}
         </div>
-        ${faulty?.place === index && html`<${Note} kind="error" role="alert" text=${faulty?.text} />`}
+        ${faulty?.index === index && html`<${Note} kind="error" role="alert" text=${faulty?.text} />`}
       </li>`)}</ol>
       <${Choice} label="Add a step" value=${added}
-        options=${[["", "\u2013"], ...Object.entries(stepFacts).map(([name, { words: text }]) => [name, `${name}: ${t(text)}`])]} />
+        options=${[["", "\u2013"], ...Object.entries(stepFacts).map(([name, { description: text }]) => [name, `${name}: ${t(text)}`])]} />
     </div>`;
 };
 
-// All keys of a step; of one that takes a single one, that which was chosen.
-/** @param {{ keys: object }} step @param {Server.StepFacts} known */
-const keysOf = ({ keys }, { one: single, keys: facts }) => {
+// All keys of a step; of a step with a single key, the selected key.
+/** @param {{ keys: object }} step @param {Server.StepFacts} facts */
+const keysOf = ({ keys }, { single_key: single, keys: facts }) => {
   const all = Object.entries(facts);
   return single ? [all.find(([key]) => key in keys) ?? all[0]] : all;
 };
@@ -169,7 +169,7 @@ const keysOf = ({ keys }, { one: single, keys: facts }) => {
 /** @param {{ app: App, form: Form, questions: Questions }} props */
 const Target = ({ app, form, questions }) => {
   const { code } = form.value;
-  const codes = Object.entries(app.info.targets).map(([name, { words: text }]) => [name, `${name}: ${t(text)}`]);
+  const codes = Object.entries(app.info.targets).map(([name, { description: text }]) => [name, `${name}: ${t(text)}`]);
   return html`
     <${Choice} label="Target spectrum" value=${form.at("code")} options=${[...codes, ["file", "a file (CSV) of periods and accelerations"]]} />
     ${code === "file" ? html`<${FileDrop} label="Drop the spectrum here, or" name="curve" accept=".csv" files=${form.at("curve")} questions=${questions} app=${app}

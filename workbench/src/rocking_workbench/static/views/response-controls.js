@@ -61,7 +61,7 @@ const Size = ({ app, body }) => {
     app.inputs.set("body", scaledBody(drawn.current, next));
   };
   return html`<${Slider} label="Size of the body, all lengths" min=${0.2} max=${5} log hidden=${!canBeScaled(body)}
-    help="Relative to the drawn body. Larger bodies are more stable." value=${factor.current} on=${resize} />`;
+    help="Relative to the body in the drawing. Larger bodies are more stable." value=${factor.current} on=${resize} />`;
 };
 
 /** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */

@@ -123,7 +123,7 @@ const OneFigure = ({ kind, answers, lead, rows, ticked, interval, friction, time
   const marks = useMemo(() => ({
     ticks: rows,
     horizontal: kind === "rotation" ? [-1, 1] : kind === "friction" ? [friction] : [],
-    words: [rows.some(({ at }) => at.length) && t("Ticks on the axis: impacts of {model}.", { model: ticked }), t(DASHED[kind] ?? "")].filter(Boolean).join(" "),
+    description: [rows.some(({ at }) => at.length) && t("Ticks on the axis: impacts of {model}.", { model: ticked }), t(DASHED[kind] ?? "")].filter(Boolean).join(" "),
   }), [rows, friction, ticked]);
   return html`<${Figure} shape=${shape} data=${columns} interval=${interval} marks=${marks} time=${time} testid=${`chart-${kind}`} />`;
 };

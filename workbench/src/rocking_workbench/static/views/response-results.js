@@ -13,7 +13,7 @@ import { t } from "/app/words.js";
  * @param {{ answers: any[], lead: string | null }} props */
 export const Cards = ({ answers, lead }) => html`
   <fieldset class="outcomes" data-testid="outcomes">
-    <legend class="visually-hidden">Model drawn solid in the animation</legend>
+    <legend class="visually-hidden">Model with solid lines in the animation</legend>
     ${answers.map((answer) => (answer.error ? html`
       <div key=${answer.label} class="outcome outcome-unknown outcome-refused"><${Head} label=${answer.label} />
         <span class="outcome-facts">${answer.error}</span></div>`

@@ -38,7 +38,7 @@ export const Scene = ({ player, body, answers, lead, stale }) => {
     if (!actors.length) return;
     const leadIndex = Math.max(0, actors.findIndex(({ label }) => label === lead));
     const { time, ground_displacement: moved } = longest(answers).series;
-    const about = { rest: restOf(actors[leadIndex]), words: sceneWords(answers), end: highest(actors.map(lastOf)) };
+    const about = { restTime: restOf(actors[leadIndex]), description: sceneWords(answers), end: highest(actors.map(lastOf)) };
     player.show({ shape: shapeOf(body), actors, ground: new Track(time, moved), ...about }, leadIndex);
   }, [actors, lead]);
   return html`<div class=${`scene-holder ${stale ? "stale" : ""}`} hidden=${!answers.length}>

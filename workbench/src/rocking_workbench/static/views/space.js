@@ -29,10 +29,10 @@ const LAWS = [
 
 const OWN = "project"; // chosen in place of a scan
 const FIRST = {
-  files: [], chosen: "", asked: "equilibria", units: "", up: "", repair: "", surface: "", inner: "", density: "", pose: null,
+  files: [], chosen: "", analysis: "equilibria", units: "", up: "", repair: "", surface: "", inner: "", density: "", pose: null,
   shaken: "x", friction: "0.4", law: "ked-3d", coefficient: "0.8", times: "1", recordUnits: "", along_x: [], along_y: [], along_z: [],
 };
-const BODY = ["files", "chosen", "asked", "units", "up", "repair", "surface", "inner", "density"];
+const BODY = ["files", "chosen", "analysis", "units", "up", "repair", "surface", "inner", "density"];
 const MOVES = ["shaken", "friction", "law", "coefficient", "times", "recordUnits"];
 
 /** Scan of the analysis: the selected one, or the last; none if the body of the project is used.

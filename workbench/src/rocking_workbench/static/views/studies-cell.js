@@ -66,11 +66,11 @@ export const createCell = (app, study) => {
     opens.value = false;
     ask();
   };
-  return { words: summary, data, curve, opens, show, open };
+  return { description: summary, data, curve, opens, show, open };
 };
 
 /** The panel of a cell. @param {{ cell: ReturnType<typeof createCell> }} props */
-export const Cell = ({ cell: { words: text, data, curve, opens, open } }) => html`
+export const Cell = ({ cell: { description: text, data, curve, opens, open } }) => html`
   <div class="cell-history" data-testid="cell-history">
     <h3>Time history of a cell</h3>
     <p class="quiet" data-testid="cell-words">${text.value}</p>

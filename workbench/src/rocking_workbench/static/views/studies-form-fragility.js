@@ -37,7 +37,7 @@ export const FragilityQuestion = ({ app, question, visits }) => {
       ${field(NumberField, "seed", "Seed", { ...limitsOf(motions.seed), step: 1, integer: true })}
     </div>
     <${RecordChoice} app=${app} taken=${records} visits=${visits} hidden=${source !== "records"} />
-    ${choice("measure", "Intensity measure", measures.map(({ name, words: text, unit }) =>
+    ${choice("measure", "Intensity measure", measures.map(({ name, description: text, unit }) =>
       [name, unit === "1" ? text : `${text} [${pretty(unit)}]`]))}
     <div hidden=${kind === "cloud"}><${Range} key=${measure} name="Levels of the measure" unit=${unitOf(measured)} range=${levels} /></div>
     ${field(NumberField, "state", "Rocking limit state", {

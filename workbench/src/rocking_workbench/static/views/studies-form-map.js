@@ -30,7 +30,7 @@ export const MapQuestion = ({ app, question }) => {
   };
   /** @param {"x" | "y"} which @param {any} range */
   const side = (which, range) => html`
-    <${Choice} label=${SIDES[which]} options=${offered.map(({ name, words: text }) => [name, greek(text)])}
+    <${Choice} label=${SIDES[which]} options=${offered.map(({ name, description: text }) => [name, greek(text)])}
       value=${chosen[which]} on=${(name) => (own.value = { ...own.value, [which]: name })} />
     <${Range} key=${which + chosen[which]} name=${t("{quantity}, values", { quantity: SIDES[which] })} range=${range}
       unit=${unitOf(offered.find(({ name }) => name === chosen[which]))} />`;

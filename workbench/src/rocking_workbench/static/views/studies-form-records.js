@@ -17,7 +17,7 @@ export const RecordChoice = ({ app, taken, visits, hidden }) => {
     const options = toldOf(record);
     const { format, units, time_step } = options;
     const seen = await app.call(`records/${record}`, { query: { format, units, time_step } }).then(
-      (found) => ({ found, told: options, missing: found.needs.filter((need) => options[need] === undefined) }),
+      (facts) => ({ facts, stated: options, missing: facts.needs.filter((need) => options[need] === undefined) }),
       (error) => ({ refused: error.message }),
     );
     looked.value = { ...looked.value, [record]: seen };
@@ -79,7 +79,7 @@ const NOT_SEEN = {};
 const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) => {
   const row = useRef(null);
   const answered = useRef(false);
-  const { found, told, missing = [], refused } = seen;
+  const { facts, stated, missing = [], refused } = seen;
   const open = missing.length > 0;
   useLayoutEffect(() => {
     if (answered.current) row.current.querySelector(open ? ".record-asked :is(input, select)" : "input:enabled")?.focus();
@@ -87,7 +87,7 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
   }, [seen]);
   /** @param {Told} statement */
   const take = (statement) => {
-    rememberTold({ record, ...told, ...statement });
+    rememberTold({ record, ...stated, ...statement });
     answered.current = true;
     look(record);
   };
@@ -104,16 +104,16 @@ const Row = ({ app, record, name, seen = NOT_SEEN, ticked, tick, look, gone }) =
   };
   return html`
     <li ref=${row} class="record-row">
-      <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!found || open}
+      <label class="record-tick"><input type="checkbox" checked=${ticked} disabled=${!facts || open}
         onChange=${(event) => tick(record, event.target.checked)} /><span translate=${false}>${name}</span></label>
       <${Button} kind="quiet" aria-label=${t("Delete {name}", { name: userText(name) })} onClick=${remove}>Delete<//>
-      <span class="quiet">${refused ?? (open ? "Missing input:" : found && factsOf(found, told))}</span>
-      ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...found, needs: missing }} info=${app.info} given=${told}
+      <span class="quiet">${refused ?? (open ? "Missing input:" : facts && factsOf(facts, stated))}</span>
+      ${open && html`<${Needs} key=${seen} class="record-asked" answer=${{ ...facts, needs: missing }} info=${app.info} initial=${stated}
         take=${take} button=${{ "aria-label": t("Apply to {name}", { name: userText(name) }) }} />`}
     </li>`;
 };
 
-/** @param {Server.RecordFacts} found @param {Told} told */
+/** @param {Server.RecordFacts} facts @param {Told} stated */
 const factsOf = ({ components }, { units, component, vertical }) => {
   const chosen = components.find(({ name }) => name === component) ?? components[0];
   const step = chosen?.time_step;

@@ -6,7 +6,7 @@ import { FragilityQuestion } from "/views/studies-form-fragility.js";
 import { SpectrumQuestion } from "/views/studies-form-spectrum.js";
 import { KeysQuestion } from "/views/studies-form-keys.js";
 
-/** Forms of studies by the table of their jobs. @type {{ [table: string]: ((given: any) => VNode) | undefined }} */
+/** Forms of studies by the table of their jobs. @type {{ [table: string]: ((props: any) => VNode) | undefined }} */
 const QUESTIONS = { map: MapQuestion, fragility: FragilityQuestion, spectrum: SpectrumQuestion };
 /** @type {{ [table: string]: string | undefined }} */
 const LABELS = {

@@ -26,7 +26,7 @@ export const Fragility = ({ study, result, chosen }) => {
 /** @param {{ result: Server.FragilityResult, analysis: Server.AnalysisFacts }} props */
 const Analysis = ({ result, analysis }) => {
   const unit = result.im.unit === "1" ? "" : result.im.unit;
-  const x = { label: result.im.words, unit };
+  const x = { label: result.im.description, unit };
   // without a curve the points still show the results; the reason is below them once
   const isDrawn = (/** @type {string} */ state) => state in analysis.curves;
   const fitted = Object.entries(analysis.verdicts).filter(([state]) => isDrawn(state) || !(state in analysis.points));
@@ -46,7 +46,7 @@ const Analysis = ({ result, analysis }) => {
 };
 
 /** @param {string | undefined} verdict @param {number | null} threshold @param {string} unit */
-const whyNone = (verdict, threshold, unit) => stopped(t("No curve is drawn: {reason}", {
+const whyNone = (verdict, threshold, unit) => stopped(t("No curve: {reason}", {
   reason: verdict ? plainWords(t(verdict)) : stepWords(threshold, unit),
 }));
 

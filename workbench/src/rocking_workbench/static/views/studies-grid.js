@@ -294,12 +294,12 @@ export const createGrid = (canvas, x, y) => {
     look(...places.map((position, k) => around(position, seen[k][1] - seen[k][0])));
   };
   const isWhole = () => seen.every(([from, to]) => to - from > 1 - 1e-9);
-  return { fit, draw, asSvg, cellAt, sharesAt, look, closer, reveal, isWhole, whole: () => look(WHOLE, WHOLE) };
+  return { fit, draw, asSvg, cellAt, sharesAt, look, closer, reveal, isWhole, showAll: () => look(WHOLE, WHOLE) };
 };
 
 /** @param {MapAxis} axis @param {number} room */
 const axisText = (axis, room) => {
   const unit = axis.unit && axis.unit !== "1" ? ` [${pretty(axis.unit)}]` : "";
-  const all = t(greek(axis.words));
+  const all = t(greek(axis.description));
   return (7 * all.length > room ? all.split(/[,;，；]/)[0] : all) + unit;
 };

@@ -7,12 +7,12 @@ import { t } from "/app/words.js";
 
 const FAILED = "#999999";
 const VERDICTS = [
-  { paint: "#F2F0E8", words: "no uplift" },
-  { paint: "#9CC9E8", words: "rocks, does not overturn" },
-  { paint: "#B33D00", words: "overturns without an impact" },
-  { paint: "#AC5B2B", words: "overturns after one impact" },
-  { paint: "#F5DC57", words: "overturns after more impacts" },
-  { paint: FAILED, words: "could not be computed" },
+  { paint: "#F2F0E8", label: "no uplift" },
+  { paint: "#9CC9E8", label: "rocks, does not overturn" },
+  { paint: "#B33D00", label: "overturns without an impact" },
+  { paint: "#AC5B2B", label: "overturns after one impact" },
+  { paint: "#F5DC57", label: "overturns after more impacts" },
+  { paint: FAILED, label: "could not be computed" },
 ];
 const RAMP = ["#F2F0E8", "#C6DDEE", "#8FBEDD", "#5A9BC7", "#2F77A8", "#1B557F", "#0C3557"];
 
@@ -47,10 +47,10 @@ export const layersOf = (result, k, other) => {
       legend: [
         ...RAMP.map((paint, n) => ({
           paint,
-          words: `${number(n / RAMP.length, 2)}\u2013${number((n + 1) / RAMP.length, 2)} \u03b1`,
+          label: `${number(n / RAMP.length, 2)}\u2013${number((n + 1) / RAMP.length, 2)} \u03b1`,
         })),
-        { paint: "#B33D00", words: "overturns" },
-        { paint: FAILED, words: "could not be computed" },
+        { paint: "#B33D00", label: "overturns" },
+        { paint: FAILED, label: "could not be computed" },
       ],
       /** @param {number} ix @param {number} iy */
       paint: (ix, iy) =>
@@ -60,9 +60,9 @@ export const layersOf = (result, k, other) => {
       value: "impacts",
       text: "Impacts",
       legend: [
-        { paint: RAMP[0], words: "none" },
-        { paint: RAMP[RAMP.length - 1], words: `${most}` },
-        { paint: FAILED, words: "could not be computed" },
+        { paint: RAMP[0], label: "none" },
+        { paint: RAMP[RAMP.length - 1], label: `${most}` },
+        { paint: FAILED, label: "could not be computed" },
       ],
       /** @param {number} ix @param {number} iy */
       paint: (ix, iy) => (outcome[iy][ix] > 2 ? FAILED : ramp(impacts[iy][ix] / (most + 1))),
@@ -77,9 +77,9 @@ const difference = (result, k, other) => {
   const [mine, theirs] = [result.outcome[k], result.outcome[other]];
   const names = [k, other].map((index) => modelWords(result.restitutions[index]));
   const legend = [
-    { paint: "#F2F0E8", words: "same outcome" },
-    { paint: "#D96C00", words: t("overturns only with {model}", { model: names[0] }) },
-    { paint: "#0070B2", words: t("overturns only with {model}", { model: names[1] }) },
+    { paint: "#F2F0E8", label: "same outcome" },
+    { paint: "#D96C00", label: t("overturns only with {model}", { model: names[0] }) },
+    { paint: "#0070B2", label: t("overturns only with {model}", { model: names[1] }) },
   ];
   /** @param {number} ix @param {number} iy */
   const paint = (ix, iy) => {
@@ -94,9 +94,9 @@ export const cellWords = (result, k, { ix, iy }) => {
   const outcome = result.outcome[k][iy][ix];
   const impacts = result.impacts[k][iy][ix];
   /** @param {Server.Coordinate} axis @param {number} index */
-  const named = ({ words: label, values, unit }, index) => `${t(greek(label))} = ${quantity(Number(values[index]), unit)}`;
+  const named = ({ description: label, values, unit }, index) => `${t(greek(label))} = ${quantity(Number(values[index]), unit)}`;
   const where = `${named(result.x, ix)}; ${named(result.y, iy)}`;
   const verdict = outcome === 1 ? t("rocks, does not overturn, peak {rotation} \u03b1", { rotation: number(result.peak[k][iy][ix]) })
-    : t(VERDICTS[verdictOf(outcome, impacts)].words);
+    : t(VERDICTS[verdictOf(outcome, impacts)].label);
   return `${where}: ${verdict}`;
 };

@@ -82,7 +82,7 @@ export const OverturningMap = ({ app, study, result, chosen }) => {
     if (event.key === "Enter" && aim.value) return same(aim.value, kept.value) ? cell.open() : keep(aim.value);
     const factor = CLOSER[event.key];
     if (factor && !event.ctrlKey && !event.metaKey) return look(() => painter.current.closer(aim.value, factor));
-    if (event.key === "0") return look(painter.current.whole);
+    if (event.key === "0") return look(painter.current.showAll);
     const step = STEPS[event.key];
     if (!step) return undefined;
     event.preventDefault();
@@ -94,7 +94,7 @@ export const OverturningMap = ({ app, study, result, chosen }) => {
   const pointer = usePointer({ canvas, painter, frame, keep, preview, aim, look });
   const showAll = () => {
     canvas.current.focus();
-    look(painter.current.whole);
+    look(painter.current.showAll);
   };
   const looked = kept.value ?? aim.value;
   const leave = () => (aim.value = kept.value ?? aim.value);
@@ -106,9 +106,9 @@ export const OverturningMap = ({ app, study, result, chosen }) => {
       </div>
       <${Pictured} title="Overturning map" more=${`: ${t(layer.text)}`} canvasOf=${() => painter.current.asSvg(layer.paint, linesOf(layer))}>
         <div class="map-stage"><canvas ref=${canvas} class="map-canvas" tabindex="0" role="application" data-testid="map-canvas"
-          aria-label=${t(MAP, { x: greek(result.x.words), y: greek(result.y.words) })}
+          aria-label=${t(MAP, { x: greek(result.x.description), y: greek(result.y.description) })}
           onKeyDown=${walk} onPointerLeave=${leave} ...${pointer}></canvas></div>
-        <ul class="map-legend">${layer.legend.map(({ paint, words: text }) => html`
+        <ul class="map-legend">${layer.legend.map(({ paint, label: text }) => html`
           <li key=${text}><span class="map-key" aria-hidden="true" style=${{ backgroundColor: paint }}></span>${text}</li>`)}</ul><//>
       <div class="toolbar"><${Button} hidden=${looks.value === 0 || painter.current.isWhole()} onClick=${showAll}>Show the whole map<//></div>
       ${(result.islands?.[k.value] ?? []).map((/** @type {string} */ island) => html`<p key=${island} class="quiet" data-testid="map-islands">${island}</p>`)}

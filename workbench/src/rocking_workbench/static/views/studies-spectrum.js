@@ -16,7 +16,7 @@ export const Spectrum = ({ result }) => {
   const share = quantity.value === "overturned";
   const data = useMemo(() => [periods, ...result.curves.map((curve) => curve[/** @type {"median" | "high" | "overturned"} */ (quantity.value)])], [quantity.value]);
   const marks = useMemo(() => ({
-    words: count === 1 ? "A gap means that the block overturns." : t("{count} motions. A gap means that the block overturns.", { count }),
+    description: count === 1 ? "A gap means that the block overturns." : t("{count} motions. A gap means that the block overturns.", { count }),
   }), []);
   const shape = {
     title: share ? "Fraction of the motions that overturn the block" : "Peak rotation over the slenderness angle",
@@ -29,7 +29,7 @@ export const Spectrum = ({ result }) => {
     ${count > 1 && html`<${Segmented} label="Show" options=${SHOWN} value=${quantity} />`}
     <div data-about=${result.restitutions.map(modelWords).join(", ")}>
       <${Figure} shape=${shape} data=${data} marks=${marks} testid="spectrum-chart" /></div>
-    <p class="quiet">${marks.words}</p>`;
+    <p class="quiet">${marks.description}</p>`;
 };
 
 /** @param {Server.SpectrumResult} result @param {Server.SpectrumCurve} curve */

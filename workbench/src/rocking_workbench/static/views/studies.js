@@ -100,7 +100,7 @@ const Outcome = ({ app, shown, from, result, refused, chosen }) => {
     </section>`;
 };
 
-/** @type {{ [kind: string]: ((given: any) => VNode) | undefined }} */
+/** @type {{ [kind: string]: ((props: any) => VNode) | undefined }} */
 const SHOW = {
   "overturning-map": OverturningMap,
   "rocking-spectrum": Spectrum,
