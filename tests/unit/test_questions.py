@@ -67,7 +67,7 @@ def test_steps_say_what_they_take():
     for name, step in steps().items():
         usual = "stations=x.xml,angle=1,time_step=1,low=1,high=2,before=1,start=0,end=1,number=1,storeys=2,period=1"
         given = [word for word in usual.split(",") if step["keys"].get(word.partition("=")[0], {}).get("needed")]
-        given += ["factor=2"] if step["one"] else []
+        given += ["factor=2"] if step["single_key"] else []
         ((found, keys),) = steps_of(f"{name}:{','.join(given)}")
         assert (found, len(keys)) == (name, len(given))
     described = [*steps().values(), *targets().values()]
