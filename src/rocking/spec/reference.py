@@ -236,7 +236,9 @@ def _rows_of_entries(described: dict[str, dict[str, Any]]) -> list[tuple[str, st
     """Return one row per step or spectrum: name with keys, and meaning."""
     rows = []
     for name, entry in described.items():
-        keys = ",".join(f"{key}={key_facts['usual']}" for key, key_facts in entry["keys"].items() if not entry["single_key"])
+        keys = ",".join(
+            f"{key}={key_facts['usual']}" for key, key_facts in entry["keys"].items() if not entry["single_key"]
+        )
         meaning = "; ".join(
             f"{key}: {key_facts['description'].rstrip('.')}" + (f" [{key_facts['unit']}]" if key_facts["unit"] else "")
             for key, key_facts in entry["keys"].items()
