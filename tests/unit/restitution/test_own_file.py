@@ -130,12 +130,11 @@ def test_negative_controls(own, value, name, reason):
     assert set(registry._MODELS) == before
 
 
-def test_a_command_and_a_server_refuse_the_file(own, run, monkeypatch):
-    """A file that is not there, or is no code, stops every command, serve too, with words and no traceback."""
-    monkeypatch.setattr("rocking.cli.serve._serve", lambda *_, **__: pytest.fail("it serves"))
+def test_a_command_refuses_the_file(own, run):
+    """A file that is missing, or is no code, stops every command, with a sentence and no traceback."""
     path = own("(")
-    for words in (["restitution", "--width", "1", "--height", "4"], ["serve", "--no-browser"]):
-        code, _, err = run(*words)
-        assert (code, f"rocking: {path}" in err) == (2, True)
+    words = ["restitution", "--width", "1", "--height", "4"]
+    code, _, err = run(*words)
+    assert (code, f"rocking: {path}" in err) == (2, True)
     path.unlink()
-    assert "cannot be read" in run("serve", "--no-browser")[2]
+    assert "cannot be read" in run(*words)[2]

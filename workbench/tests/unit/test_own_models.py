@@ -94,3 +94,13 @@ def test_the_page_lists_it(own):
     (listed,) = (model for model in _models() if model["name"] == "listed")
     assert (listed["label"], listed["colour"], listed["dash"]) == ("listed", "#7a5195", [])
     assert listed["citation"].startswith("own model, mine.py, SHA-256 ")
+
+
+def test_serve_refuses_the_file(own, run, monkeypatch, tmp_path):
+    """A file that is missing, or is no code, stops the server before it starts."""
+    monkeypatch.setattr("rocking_workbench.command._serve", lambda *_, **__: pytest.fail("it serves"))
+    own("(")
+    code, _, err = run("serve", "--no-browser")
+    assert (code, "rocking: " in err) == (2, True)
+    (tmp_path / "mine.py").unlink()
+    assert "cannot be read" in run("serve", "--no-browser")[2]
