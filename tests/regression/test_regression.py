@@ -8,6 +8,7 @@ processor to another, are left out. Where a change is meant, CHANGELOG gives it 
 import json
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ import pytest
 from rocking.dynamics.plane import fast_engine
 
 HERE = Path(__file__).parent
+APPLICATION = pytest.mark.skipif(find_spec("rocking_workbench") is None, reason="rocking-workbench is not installed")
 PROGRAM = """
 import gzip, json, sys
 import golden, trees
@@ -34,7 +36,7 @@ print(json.dumps(trees.differences(kept, now, 1e-6)))
 
 @pytest.mark.slow
 @pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
-@pytest.mark.parametrize("group", ["python", "commands", "application"])
+@pytest.mark.parametrize("group", ["python", "commands", pytest.param("application", marks=APPLICATION)])
 def test_answers_are_what_they_were(group: str) -> None:
     """No answer has moved; a change of one number by 1e-5 is noticed (the negative control)."""
     command = [sys.executable, "-c", PROGRAM, group]
