@@ -4,7 +4,9 @@ Each doubt is a `PlausibilityWarning` that begins with "check the input". A warn
 example in dimensionless studies: ``warnings.simplefilter("ignore", rocking.errors.PlausibilityWarning)``.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -232,6 +234,25 @@ def of_truncation(cut: float, foot: str, most: float) -> tuple[str, ...]:
         f"{percent(cut)} of the distribution of the coefficient of restitution onto the {foot} foot lies outside "
         f"[0, {most:.4g}], where an impact would gain energy, and is truncated; check the body of this distribution",
     )
+
+
+_RAW: ContextVar[bool] = ContextVar("raw", default=False)
+
+
+@contextmanager
+def before_processing() -> Iterator[None]:
+    """Suppress the doubts about values of records inside: their processing steps follow."""
+    token = _RAW.set(True)
+    try:
+        yield
+    finally:
+        _RAW.reset(token)
+
+
+def warn_of_values(sentences: Iterable[str]) -> None:
+    """Issue doubts about the values of a motion as warnings, unless processing steps follow."""
+    if not _RAW.get():
+        warn(sentences)
 
 
 def warn(sentences: Iterable[str]) -> None:

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
 from rocking.messages import Message, Range
@@ -194,6 +194,13 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
             allowed=Range(0.0, math.inf, "m2/s3", low_open=True), hint=Message("check for a record of zeros"),
         )  # fmt: skip
     return _crossing(motion, husid, 0.01 * start), _crossing(motion, husid, 0.01 * end)
+
+
+def integral_doubts(motion: GroundMotion) -> tuple[str, ...]:
+    """Return the doubts about a motion by its integrated velocity and displacement."""
+    velocity, displacement = ground_velocity(motion), ground_displacement(motion)
+    ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
+    return plausibility.of_integrals(*ends)
 
 
 def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:

@@ -74,7 +74,7 @@ class GroundMotion:
         checks.of_kind("name", self.name, str, "a string")
         object.__setattr__(self, "metadata", _metadata(self.metadata))
         object.__setattr__(self, "provenance", _provenance(self.provenance))
-        plausibility.warn(self.doubts)
+        plausibility.warn_of_values(self.doubts)
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -1,10 +1,12 @@
 """Construction of motions and restitutions from their tables."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking import plausibility
 from rocking.bodies import Body
 from rocking.bodies.solid import Solid
 from rocking.conventions import FEET
@@ -14,6 +16,7 @@ from rocking.errors import InvalidValueError, located
 from rocking.motions.components import Components
 from rocking.motions.formats.file_options import by_path
 from rocking.motions.formats.reader import read_motion
+from rocking.motions.integrals import integral_doubts
 from rocking.motions.pipeline import processed
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
@@ -187,7 +190,17 @@ def _records(table: "MotionTable", inputs: InputFiles) -> "list[Motion]":
 def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
     """Return a record after its processing steps."""
     steps = with_files(table, inputs)
-    return processed(_unprocessed(path, table, inputs), steps)  # type: ignore[no-any-return]
+    if not steps:
+        return _unprocessed(path, table, inputs)
+    return doubted_once(lambda: processed(_unprocessed(path, table, inputs), steps), path.name)
+
+
+def doubted_once(read: Callable[[], Any], name: str) -> Any:
+    """Return a record after its processing steps; the doubts about values are those of the processed record."""
+    with plausibility.before_processing():
+        motion = read()
+    plausibility.warn(f"{name}: {doubt}" for doubt in (*motion.doubts, *integral_doubts(motion)))
+    return motion
 
 
 def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
@@ -205,13 +218,19 @@ def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | N
     chains = {tuple(axis_table.process or ()) for axis_table in tables.values()}
     is_joint = len(tables) > 1 and len(chains) == 1 and chains != {()}
     for axis, axis_table in tables.items():
-        with located(axis):
+        with located(axis), plausibility.before_processing() if is_joint else nullcontext():
             motions[axis] = motion_of(axis_table, inputs, raw=is_joint)
     if is_joint and inputs is not None:
         components = Components(*(motions.get(axis) for axis in "xyz"))
         steps = with_files(next(iter(tables.values())), inputs)
-        processed_parts = zip("xyz", processed(components, steps).parts, strict=True)
-        motions = {axis: motion for axis, motion in processed_parts if motion is not None}
+        with plausibility.before_processing():
+            parts = processed(components, steps).parts
+        motions = {axis: motion for axis, motion in zip("xyz", parts, strict=True) if motion is not None}
+        plausibility.warn(
+            f"{axis}: {doubt}"
+            for axis, motion in motions.items()
+            for doubt in (*motion.doubts, *integral_doubts(motion))
+        )
     factors = {axis: axis_table.scale * scale for axis, axis_table in tables.items()}
     return {axis: motion if factors[axis] == 1.0 else motion.scaled(factors[axis]) for axis, motion in motions.items()}
 

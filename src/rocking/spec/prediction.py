@@ -1,8 +1,11 @@
 """The problem of a prediction: an uncertain body and its motions; and its answer."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from rocking.bodies import Body, Solid
 from rocking.decision.prediction import Prediction, predict
@@ -83,8 +86,25 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
         from rocking.decision.inventory.hazard import IntensityLevel
 
         options["pga"] = IntensityLevel.of("PGA", options["pga"]).value
+    if "axis" in options:
+        options["azimuth"] = _azimuth(body, options.pop("axis"), document.predict.azimuth)
     model = options.get("restitution")
     if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY}:
         table = RestitutionTable(model=model)
         options["restitution"] = next(iter(restitutions_of(table, 0, [body], inputs).values()))
     return options
+
+
+def _azimuth(body: Body | Solid, axis: Any, azimuth: Any) -> float:
+    """Return the azimuth of a body whose axis, in the axes of its file, is the x component of the motion [rad]."""
+    if azimuth is not None:
+        raise InvalidValueError("Use predict.axis or predict.azimuth, not both.")
+    if not isinstance(body, Solid):
+        raise InvalidValueError("{parameter} applies to scans only; use predict.azimuth", parameter="predict.axis")
+    x, y, z = (body.turn @ np.array(axis, dtype=np.float64)).tolist()
+    if not math.hypot(x, y) > abs(z):
+        raise InvalidValueError(
+            "{parameter} must be a horizontal direction of the upright body, got {value}", parameter="predict.axis",
+            value=axis, hint="use the axes of the scan file",
+        )  # fmt: skip
+    return -math.atan2(y, x)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,10 @@ from rocking.exported import Exported
 from rocking.messages import by_key
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
+from rocking.motions.pipeline import processed
+from rocking.spec.array_file import SUFFIX, ArrayFile
 from rocking.spec.bodies import any_body_of
-from rocking.spec.construction import motion_of
+from rocking.spec.construction import doubted_once, motion_of
 from rocking.spec.prediction import options_of
 from rocking.spec.reading import InputFiles, checked, tables_in
 
@@ -26,7 +29,7 @@ if TYPE_CHECKING:
     from rocking.spec.documents.validation import ValidationDocument
     from rocking.tables import Table
 
-_HOW = "a folder contains one body file, record files, and one table of outcomes"
+_HOW = "a folder contains one body file, record files or one array file (.npz), and one table of outcomes"
 
 
 def files_of(folder: Path) -> tuple[Path, Path]:
@@ -36,8 +39,11 @@ def files_of(folder: Path) -> tuple[Path, Path]:
     files = sorted(path for path in folder.iterdir() if path.is_file())
     outcome_tables = [path for path in files if path.suffix.lower() == ".csv" and is_outcomes(path)]
     bodies = [path for path in files if path.suffix.lower() in FORMATS]
-    # an input file may name another file as its body
+    # an input file or a body file may name another file, such as a scan
     questions = [path for path in bodies if is_question(path)]
+    if not questions:
+        scans = {name for path in bodies for name in _named_files(path)}
+        bodies = [path for path in bodies if path.name not in scans]
     body = _only_file(questions or bodies, folder, f"body file ({', '.join(FORMATS)})")
     return body, _only_file(
         outcome_tables, folder, "table of outcomes, a .csv file with the columns motion and overturned"
@@ -47,6 +53,12 @@ def files_of(folder: Path) -> tuple[Path, Path]:
 def is_question(path: Path) -> bool:
     """Return True if a file has a table [body] or [predict], False for a body file. Never raises."""
     return bool({"body", "predict"} & set(tables_in(path) or ()))
+
+
+def _named_files(path: Path) -> set[str]:
+    """Return the files that the tables of a body file name."""
+    tables = (tables_in(path) or {}).values()
+    return {str(table["file"]) for table in tables if isinstance(table, dict) and "file" in table}
 
 
 def _only_file(paths: Sequence[Path], folder: Path, content: str) -> Path:
@@ -116,7 +128,7 @@ class ValidationProblem:
     outcomes: Outcomes
     trials: tuple[Trial, ...]  # with readable records
     refused: tuple[RefusedRow, ...]
-    clusters: tuple[str, ...]  # record files of each trial; the components of one file belong to one motion
+    clusters: tuple[str, ...]  # earthquake of each trial, or its record files; components of one file are one motion
     motions: dict[tuple[Any, float], dict[str, GroundMotion]]  # by files and scale
     name: str
 
@@ -142,9 +154,7 @@ class ValidationProblem:
             raise InvalidValueError("No row is usable", hint=reason).at(outcomes.source)
         options = {**options_of(document, body, inputs), "contributions": False}
         name = files[0].stem
-        clusters = tuple(
-            " ".join(records.file_and_component(word)["record"] for _, word in trial.files) for trial in trials
-        )
+        clusters = tuple(trial.earthquake or records.files(trial) for trial in trials)
         return cls(body, options, outcomes, tuple(trials), tuple(refused), clusters, motions, name)
 
     def answer(
@@ -192,6 +202,17 @@ class _Records:
     def __init__(self, inputs: InputFiles, keys: dict[str, Any]) -> None:
         self._inputs, self._keys, self._read = inputs, keys, dict[str, GroundMotion | RockingError]()
 
+    @cached_property
+    def _arrays(self) -> ArrayFile | None:
+        """The array file of the folder, if there is one."""
+        paths = sorted(path for path in self._inputs.folder.iterdir() if path.suffix.lower() == SUFFIX)
+        if len(paths) > 1:
+            raise InvalidValueError(
+                "Use one {content}, got {files:.200}", content="array file (.npz)",
+                files=", ".join(path.name for path in paths), hint=_HOW,
+            ).at(str(self._inputs.folder))  # fmt: skip
+        return ArrayFile(self._inputs.file(paths[0].name)) if paths else None
+
     def motion(self, trial: Trial) -> dict[str, GroundMotion]:
         motion = {}
         for axis, word in trial.files:
@@ -206,21 +227,38 @@ class _Records:
             motion[axis] = record.scaled(trial.scale)
         return motion
 
+    def files(self, trial: Trial) -> str:
+        """Return the record files of a trial."""
+        return " ".join(self._file_and_component(word)["record"] for _, word in trial.files)
+
     def _record(self, word: str) -> GroundMotion:
+        record = self._in_file(word)
+        if record.peak == 0.0:
+            raise InvalidValueError("The acceleration of {motion} is zero at all times.", motion=word)
+        return record
+
+    def _in_file(self, word: str) -> GroundMotion:
         from rocking.spec.motion_tables import OneMotionTable
 
-        own = self.file_and_component(word)
+        own = self._file_and_component(word)
         if not (self._inputs.folder / own["record"]).is_file():
+            if self._arrays is not None:
+                return self._in_arrays(self._arrays, word)
             raise InvalidValueError(
                 "The record file {record} does not exist in {folder}.", record=own["record"], folder=self._inputs.folder
             )
         record = motion_of(checked(OneMotionTable, {**self._keys, **own}), self._inputs)
         assert isinstance(record, GroundMotion)
-        if record.peak == 0.0:
-            raise InvalidValueError("The acceleration of {motion} is zero at all times.", motion=word)
         return record
 
-    def file_and_component(self, word: str) -> dict[str, str]:
+    def _in_arrays(self, arrays: ArrayFile, word: str) -> GroundMotion:
+        """Return a motion of the array file after its processing steps."""
+        if odd := sorted(set(self._keys) - {"units", "time_step", "process"}):
+            raise InvalidValueError("[motion] accepts units, time_step and process with an array file, got {key}",
+                                    key=odd[0])  # fmt: skip
+        return doubted_once(lambda: processed(arrays.motion(word, self._keys), self._keys.get("process") or ()), word)
+
+    def _file_and_component(self, word: str) -> dict[str, str]:
         """Return the record file and the component from FILE#COMPONENT."""
         path, mark, component = word.rpartition("#")
         if mark and not (self._inputs.folder / word).is_file():

@@ -114,7 +114,7 @@ def test_several_times_of_equal_content_are_one():
     record = COLUMNS.read(_source(text + "\n".join(rows)))
     assert [(part.name, part.acceleration[1]) for part in record.components] == [("a", 0.1), ("b", 0.2)]
     assert record.metadata["left out"] == "Time [s]"
-    with pytest.raises(RecordError, match="are both times"):
+    with pytest.raises(RecordError, match="times with different steps"):
         COLUMNS.read(_source(text + "\n".join([*rows[:-1], rows[-1].replace(";0.06;", ";0.07;")])))
 
 

@@ -227,7 +227,7 @@ def test_several_accelerations_keep_their_names_and_units() -> None:
         ("L V T\n1 2 3\n2 3 4", "no time among 'L', 'V', 'T'"),
         ("T [s],a [g]\n0.0,1\n0.1,2", r"'T \[s\]' may be periods"),
         ("period [s],Sa [m/s2]\n0.1,1\n0.2,2", "may be periods of a spectrum"),
-        ("time,elapsed time,acc\n0,0.0,1\n1,0.1,2", "'time', 'elapsed time' are both times; keep"),
+        ("time,elapsed time,acc\n0,0.0,1\n1,0.1,2", "'time', 'elapsed time' are times with different steps; keep"),
         (",time,acc\n0,0.0,1\n1,0.1,2", "column 1 has no name; add a name"),
         ("time,acc,acc\n0.0,1,1\n0.1,2,2", "column 'acc' appears twice; rename or remove one"),
         ("time [ms],acc\n0,1\n10,2", "must be in seconds"),

@@ -298,13 +298,16 @@ EVENTS = {"overturned": "overturning", "rocked": "uplift", "slid": "sliding"}
 """Columns of observed outcomes, and the event of each in a prediction."""
 
 AXES = ("x", "y", "z")
-COLUMNS = ("motion", *AXES, "scale", *EVENTS)
-"""Columns of a table: motion, or x with y and z for several components."""
+CLUSTER = "earthquake"
+COLUMNS = ("motion", *AXES, "scale", CLUSTER, *EVENTS)
+"""Columns of a table: motion, or x with y and z for several components; tests of one earthquake are dependent."""
+
+_SYNONYMS = {"record": "motion", "shake": "motion", "cluster": CLUSTER, "event": CLUSTER}
 
 _OBSERVED = {"1": 1.0, "yes": 1.0, "true": 1.0, "0": 0.0, "no": 0.0, "false": 0.0, "": float("nan")}
 _HOW = (
     "a table of outcomes is a .csv file with commas, semicolons or tabs; the first line names the columns motion (or "
-    "x, y, z), overturned, and optionally scale, rocked, slid"
+    "x, y, z), overturned, and optionally scale, earthquake, rocked, slid"
 )
 
 
@@ -316,6 +319,7 @@ class Trial:
     files: tuple[tuple[str, str], ...]  # axis and record file of each component
     scale: float  # factor on the acceleration [-]
     observed: dict[str, float]  # 1, 0, or NaN if unknown, by event
+    earthquake: str = ""  # name of the earthquake; empty if not stated
 
     @property
     def motion(self) -> str:
@@ -365,7 +369,7 @@ class Outcomes:
         if delimiter is None:
             raise InvalidValueError(_HOW).at(source)
         (_, head), *rows = rows_of(text, delimiter, source)
-        titles = [title.strip().casefold() for title in head]
+        titles = [_SYNONYMS.get(title, title) for title in (raw.strip().casefold() for raw in head)]
         _check_titles(titles, source)
         rows = [(line, cells) for line, cells in rows if any(cell.strip() for cell in cells)]
         numbers = (dict(zip(titles, cells, strict=False)).get("scale", "") for _, cells in rows)
@@ -436,7 +440,9 @@ def _trial(line: int, cells: Sequence[str], titles: Sequence[str], mark: Decimal
         if word not in _OBSERVED:
             raise InvalidValueError(parameter=column, allowed="1, 0, yes, no, true, false or empty", value=row[column])
         observed[event] = _OBSERVED[word]
-    return Trial(line, files, scale, observed)
+    if CLUSTER in row and not row[CLUSTER]:
+        raise InvalidValueError("{parameter} is empty; enter the name of the earthquake", parameter=CLUSTER)
+    return Trial(line, files, scale, observed, row.get(CLUSTER, ""))
 
 
 def column(trials: Sequence[Trial], event: str) -> FloatArray:

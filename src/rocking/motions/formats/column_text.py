@@ -370,12 +370,17 @@ class NamedColumns:
         return cls(times[0] if times else None, accelerations, left_out, tuple(times[1:]))
 
     def with_one_time(self, source: Source, values: FloatArray) -> "NamedColumns":
-        """Return these columns with one time; further times must be equal."""
+        """Return these columns with one time: from their first values, all times differ by less than half a step."""
         if not self.more_times or self.time is None:
             return self
-        if any((values[:, column.index] != values[:, self.time.index]).any() for column in self.more_times):
-            times = _listed([self.time, *self.more_times])
-            raise source.error(None, "{columns} are both times; keep only one", columns=times)
+        times = values[:, self.time.index] - values[0, self.time.index]
+        for column in self.more_times:
+            others = values[:, column.index] - values[0, column.index]
+            if not (np.abs(others - times) <= 0.5 * times[-1] / max(1, times.size - 1)).all():
+                raise source.error(
+                    None, "{columns} are times with different steps; keep only one, or use one file per time",
+                    columns=_listed([self.time, *self.more_times]),
+                )  # fmt: skip
         return replace(self, more_times=(), left_out=(*self.left_out, *(column.text for column in self.more_times)))
 
     def with_stated_unit(self, source: Source, unit: str | None, unknown: str, requested: str | None) -> "NamedColumns":

@@ -7,8 +7,6 @@ from functools import cache
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
-
 from rocking import checks, plausibility
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
@@ -17,7 +15,7 @@ from rocking.motions.components import with_vertical
 from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.formats.stations import Places
-from rocking.motions.integrals import ground_displacement, ground_velocity
+from rocking.motions.integrals import integral_doubts
 from rocking.motions.motion import GroundMotion
 
 _STARTS = ("starttime", "Record Time", "first time")
@@ -324,10 +322,8 @@ def _motion(source: Source, record: Record, component: Component) -> GroundMotio
     motion = GroundMotion(acceleration, component.time_step, None, name, metadata, (note, *by_hand, *source.doubts))
     if quiet := plausibility.of_quiet(motion.peak):
         motion = motion.changed(f"{source.name}: {quiet[0]}")
-        plausibility.warn(f"{source.name}: component {component.name}: {doubt}" for doubt in quiet)
-    velocity, displacement = ground_velocity(motion), ground_displacement(motion)
-    ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
-    plausibility.warn(f"{source.name}: {doubt}" for doubt in plausibility.of_integrals(*ends))
+        plausibility.warn_of_values(f"{source.name}: component {component.name}: {doubt}" for doubt in quiet)
+    plausibility.warn_of_values(f"{source.name}: {doubt}" for doubt in integral_doubts(motion))
     return motion
 
 

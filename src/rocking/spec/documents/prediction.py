@@ -19,6 +19,9 @@ class PredictTable(JobTable):
     centre: Any = key("scale factor of the height of the centre of mass, default [0.97, 1.03] [-]")
     polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
     azimuth: Any = key("azimuth of the plane of the body for motions with two components, default uniform [rad]")
+    axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
+        "direction of the x component of the motion in the axes of the scan file, instead of azimuth"
+    )
     sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
     pga: Text | None = key("peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2")
     count: int = key("number of sampled bodies for each motion, a power of two", 128, ge=4, le=1 << 20)
