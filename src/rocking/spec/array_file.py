@@ -83,7 +83,9 @@ class ArrayFile:
 
     def _array(self, name: str) -> Any:
         if name not in self.names:
-            raise InvalidValueError("The array {name!r:.60} is not in {file}", name=name, file=self.path.name, hint=_HOW)
+            raise InvalidValueError(
+                "The array {name!r:.60} is not in {file}", name=name, file=self.path.name, hint=_HOW
+            )
         try:
             with np.load(self.path, allow_pickle=False) as arrays:
                 values = arrays[name]

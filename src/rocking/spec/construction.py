@@ -192,7 +192,7 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
     steps = with_files(table, inputs)
     if not steps:
         return _unprocessed(path, table, inputs)
-    return doubted_once(lambda: processed(_unprocessed(path, table, inputs), steps), path.name)
+    return doubted_once(lambda: processed(_unprocessed(path, table, inputs), steps), path.name)  # type: ignore[no-any-return]
 
 
 def doubted_once(read: Callable[[], Any], name: str) -> Any:

@@ -42,7 +42,7 @@ def files_of(folder: Path) -> tuple[Path, Path]:
     # an input file or a body file may name another file, such as a scan
     questions = [path for path in bodies if is_question(path)]
     if not questions:
-        scans = {name for path in bodies for name in _named_files(path)}
+        scans = {name for path in bodies for name in _named_files(tables_in(path))}
         bodies = [path for path in bodies if path.name not in scans]
     body = _only_file(questions or bodies, folder, f"body file ({', '.join(FORMATS)})")
     return body, _only_file(
@@ -55,10 +55,12 @@ def is_question(path: Path) -> bool:
     return bool({"body", "predict"} & set(tables_in(path) or ()))
 
 
-def _named_files(path: Path) -> set[str]:
+def _named_files(tables: Any) -> set[str]:
     """Return the files that the tables of a body file name."""
-    tables = (tables_in(path) or {}).values()
-    return {str(table["file"]) for table in tables if isinstance(table, dict) and "file" in table}
+    if isinstance(tables, dict):
+        own = {tables["file"]} if isinstance(tables.get("file"), str) else set()
+        return own.union(*map(_named_files, tables.values()))
+    return set[str]().union(*map(_named_files, tables)) if isinstance(tables, list) else set()
 
 
 def _only_file(paths: Sequence[Path], folder: Path, content: str) -> Path:
@@ -256,7 +258,7 @@ class _Records:
         if odd := sorted(set(self._keys) - {"units", "time_step", "process"}):
             raise InvalidValueError("[motion] accepts units, time_step and process with an array file, got {key}",
                                     key=odd[0])  # fmt: skip
-        return doubted_once(lambda: processed(arrays.motion(word, self._keys), self._keys.get("process") or ()), word)
+        return doubted_once(lambda: processed(arrays.motion(word, self._keys), self._keys.get("process") or ()), word)  # type: ignore[no-any-return]
 
     def _file_and_component(self, word: str) -> dict[str, str]:
         """Return the record file and the component from FILE#COMPONENT."""

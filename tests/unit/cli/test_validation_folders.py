@@ -104,7 +104,9 @@ def test_scan_with_units_in_its_body_file(answered, tmp_path):
     (tmp_path / "body.toml").unlink()
     few = ("--set", "predict.count=4", "--set", "predict.azimuth=0.0")
     by_option = answered(tmp_path, *few, "--units", "mm,m/s2")
-    (tmp_path / "body.toml").write_text("units = 'm'\n[solid]\nfile = 'rock.obj'\nunits = 'mm'\n", "utf-8")
+    (tmp_path / "body.toml").write_text(
+        "units = 'm'\n[[solid.part]]\nmesh = { file = 'rock.obj', units = 'mm' }\n", "utf-8"
+    )
     assert answered(tmp_path, *few)["events"] == by_option["events"]
 
 
@@ -139,7 +141,7 @@ def test_doubts_about_raw_records_follow_the_steps(tmp_path):
             motion_of(table, CommandFiles(tmp_path))
         return [str(item.message) for item in caught if issubclass(item.category, PlausibilityWarning)]
 
-    raw, scaled = doubts(), doubts("scale:factor=1.5")
+    raw, scaled = doubts(), doubts("scale:factor=0.5")
     assert len(raw) == len(scaled) == 1
     assert "check the baseline correction" in raw[0]
     assert "check the baseline correction" in scaled[0]

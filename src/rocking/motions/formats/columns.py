@@ -44,7 +44,7 @@ class Columns(RecordFormat):
 
     Text above the numbers is allowed. The reader uses ``Time Step: 0.01``, ``acceleration in g``, ``sampling rate
     200 Hz``, ``NPTS = 600``, ``Component NS``, also in comments; other text about the sampling raises an error.
-    Several columns of times with the same step count once. Text after the last number, such as ``END``, gives a warning.
+    Several columns of times with equal steps count once. Text after the last number, such as ``END``, gives a warning.
 
     Commas that are no separators are decimal commas. Files with decimal commas and decimal points, and files with
     ambiguous commas, raise an error.
