@@ -99,9 +99,10 @@ def _azimuth(body: Body | Solid, axis: Any, azimuth: Any) -> float:
     """Return the azimuth of a body whose axis, in the axes of its file, is the x component of the motion [rad]."""
     if azimuth is not None:
         raise InvalidValueError("Use predict.axis or predict.azimuth, not both.")
-    if not isinstance(body, Solid):
+    turn = getattr(body, "turn", None)  # from the axes of a scan file
+    if turn is None:
         raise InvalidValueError("{parameter} applies to scans only; use predict.azimuth", parameter="predict.axis")
-    x, y, z = (body.turn @ np.array(axis, dtype=np.float64)).tolist()
+    x, y, z = (turn @ np.array(axis, dtype=np.float64)).tolist()
     if not math.hypot(x, y) > abs(z):
         raise InvalidValueError(
             "{parameter} must be a horizontal direction of the upright body, got {value}", parameter="predict.axis",
