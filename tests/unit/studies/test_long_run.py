@@ -134,6 +134,12 @@ def test_what_cannot_be_computed_is_refused():
         "excitation": lambda: rk.basin(BLOCK, rk.pulses.sine(1.0, 1.0)),
         "at": lambda: rk.poincare(BLOCK, given, at="noon"),
         "points": lambda: rk.periodic_orbits(BLOCK, given, points=3),
+        "limits": lambda: rk.periodic_orbits(BLOCK, given, limits=(2.0, 1.0)),
+        "cycles": lambda: rk.poincare(BLOCK, given, cycles=100),
+        r"cycles\[0\]": lambda: rk.lyapunov(BLOCK, given, cycles=(10, 20)),
+        "amplitude": lambda: rk.bifurcation(BLOCK, given, "amplitude", [-1.0, 1.0]),
+        "speeds": lambda: rk.basin(BLOCK, given, speeds=[-0.1, 0.1]),
+        "phases": lambda: rk.basin(BLOCK, given, phases=[np.nan]),
     }.items():
         with pytest.raises(InvalidValueError, match=name):
             call()

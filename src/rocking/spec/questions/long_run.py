@@ -115,7 +115,7 @@ class OrbitsTable(HarmonicTable):
     """Periodic orbits: ground motion of the first orbit, parameter of the branches and its limits."""
 
     axis: Literal["amplitude", "frequency", "restitution"] = key("parameter of the branches", "amplitude")
-    lowest: Positive = key("lower limit of the parameter [-]", 0.05)
+    lowest: Positive = key("lower limit of the parameter [-]", 0.01)
     highest: Positive = key("upper limit of the parameter [-]", 10.0)
     doublings: int = key("number of branches that branch off in turn: pitchfork, then period doublings", 2, ge=0, le=8)
     points: int = key("number of orbits of each branch in files and pictures", 400, ge=16, le=100_000)

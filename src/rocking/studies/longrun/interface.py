@@ -11,6 +11,7 @@ from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.longrun import study
 from rocking.studies.longrun.basins import cells
+from rocking.studies.longrun.exponents import ALIGNED
 from rocking.studies.longrun.system import Harmonic
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ def poincare(  # noqa: PLR0913 - every one of them is a question that users ask
     cycles : tuple of int, optional
         Number of periods before the section, and of the section.
     at : {"period", "impact"}, optional
-        States at the ends of periods: rotation over alpha, angular velocity over alpha p. Or after impacts: phase of
-        the ground motion [rad], angular velocity over alpha p.
+        States at the ends of periods: rotation over alpha, angular velocity over alpha p. Or after the first impacts,
+        8 per period at most: phase of the ground motion [rad], angular velocity over alpha p.
     seed : int, optional
         Random seed of the initial states.
     linear : bool, optional
@@ -145,7 +146,7 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
     orbits : int, optional
         Number of orbits with random initial states; orbits that overturn within 60 periods are replaced if possible.
     cycles : tuple of int, optional
-        Number of periods before growth is counted, and with counted growth.
+        Number of periods before growth is counted, at least 60, and with counted growth.
     seed, linear, gravity, threads
         As for `poincare`.
 
@@ -168,7 +169,7 @@ def lyapunov(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> bool((exponents["exponent"] < 0.0).all())
     True
     """
-    settled, kept = _cycles(cycles)
+    settled, kept = _cycles(cycles, ALIGNED)
     task = study.Exponents(checks.whole("orbits", orbits, 1), settled, kept, checks.whole("seed", seed))
     return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, threads)
 
@@ -241,7 +242,7 @@ def basin(  # noqa: PLR0913 - every one of them is a question that users ask
 
 
 def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that users ask
-    body: Body, excitation: Harmonic, axis: str = "amplitude", limits: tuple[float, float] = (0.05, 10.0),
+    body: Body, excitation: Harmonic, axis: str = "amplitude", limits: tuple[float, float] = (0.01, 10.0),
     restitution: Any = DEFAULT_RESTITUTION, *, doublings: int = 2, points: int = 400, linear: bool = False,
     gravity: float = conventions.g,
 ) -> "xr.Dataset":  # fmt: skip
@@ -288,7 +289,8 @@ def periodic_orbits(  # noqa: PLR0913 - every one of them is a question that use
     """
     checks.one_of("axis", axis, ("amplitude", "frequency", "restitution"))
     points, doublings = checks.whole("points", points, 16), checks.whole("doublings", doublings, 0, 8)
-    task = study.Branches(axis, (float(limits[0]), float(limits[1])), doublings, points)
+    lowest, highest = checks.finite("limits", limits, shape=(2,)).tolist()
+    task = study.Branches(axis, (lowest, highest), doublings, points)
     return _computed(study.systems_of(body, excitation, restitution, linear=linear, gravity=gravity), task, None)
 
 
@@ -301,8 +303,10 @@ def _states(starts: Any, seed: int) -> FloatArray:
     return states
 
 
-def _cycles(cycles: tuple[int, int]) -> tuple[int, int]:
-    return checks.whole("cycles[0]", cycles[0], 0), checks.whole("cycles[1]", cycles[1], 1)
+def _cycles(cycles: Any, minimum: int = 0) -> tuple[int, int]:
+    if not isinstance(cycles, list | tuple) or len(cycles) != 2:
+        raise InvalidValueError(parameter="cycles", allowed="two numbers of periods", value=cycles)
+    return checks.whole("cycles[0]", cycles[0], minimum), checks.whole("cycles[1]", cycles[1], 1)
 
 
 def _computed(systems: Any, task: Any, threads: int | None) -> "xr.Dataset":

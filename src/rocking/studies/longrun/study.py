@@ -22,7 +22,7 @@ from rocking.studies.histories import Histories, checked_range
 from rocking.studies.longrun import attractors, basins, orbits
 from rocking.studies.longrun import system as engine
 from rocking.studies.longrun.attractors import start_states
-from rocking.studies.longrun.exponents import ALIGNED, lyapunov_exponents
+from rocking.studies.longrun.exponents import ALIGNED, LyapunovExponents, lyapunov_exponents
 from rocking.studies.longrun.orbits import Branch, OrbitNotFoundError, PeriodicOrbit
 from rocking.studies.longrun.system import NONE, OVERTURNED, Harmonic, HarmonicRocking, Numerics, Parameter
 from rocking.studies.motion_sets import MotionList
@@ -225,16 +225,13 @@ class Exponents(Task):
         return {**_of_modes(modes), **values}
 
     def findings(self, system: HarmonicRocking, results: "xr.Dataset") -> list[dict[str, Any]]:
-        both = np.column_stack([results[name].values for name in ("exponent", "second_exponent")])
-        finite = both[np.isfinite(both).all(axis=1)]
-        number = len(finite)
-        mean = finite.mean(axis=0) if number else np.full(2, np.nan)
-        error = finite[:, 0].std(ddof=1) / np.sqrt(number) if number > 1 else np.nan
+        by_orbit = np.column_stack([results[name].values for name in ("exponent", "second_exponent")])
+        found = LyapunovExponents(system, by_orbit, results["impact_rate"].values, np.nan)
+        (mean, second), error = found.values.tolist(), float(found.standard_errors[0])
         return [{
-            "exponent": float(mean[0]), "exponent_error": float(error), "exponent_over_p": float(mean[0] / system.p),
-            "second_exponent": float(mean[1]), "orbits_counted": number,
-            "orbits_sticking": int(np.isneginf(both[:, 0]).sum()),
-            "orbits_overturned": int(np.isnan(both[:, 0]).sum()),
+            "exponent": mean, "exponent_error": error, "exponent_over_p": mean / system.p, "second_exponent": second,
+            "orbits_counted": len(found.finite), "orbits_sticking": found.sticking,
+            "orbits_overturned": found.overturned,
         }]  # fmt: skip
 
 
@@ -297,6 +294,9 @@ class Branches(Task):
     limits: tuple[float, float]
     doublings: int = 2
     points: int = 400
+
+    def __post_init__(self) -> None:
+        checks.increasing("limits", np.array(self.limits))
 
     @property
     def columns(self) -> dict[str, Any]:

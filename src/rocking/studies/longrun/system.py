@@ -205,7 +205,7 @@ class HarmonicRocking:
         checks.one_of("parameter", parameter, ("amplitude", "frequency", "restitution", "slenderness"))
         sides, motion = self.sides.copy(), self.excitation
         if parameter == "amplitude":
-            motion = replace(motion, amplitude=value * self.unit)
+            motion = replace(motion, amplitude=checks.within("amplitude", value, 0.0, math.inf) * self.unit)
         elif parameter == "frequency":
             motion = replace(motion, period=2.0 * math.pi / (checks.positive("frequency", value) * self.p))
         elif parameter == "restitution":
