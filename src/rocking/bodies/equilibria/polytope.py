@@ -123,7 +123,7 @@ class Polytope:
     def descent(self, vertex: int, down: FloatArray) -> int:
         """Return the stable facet at the end of the steepest descent of the centre, from a contact on a vertex."""
         # vertex: the lowest vertex for the downward unit vector `down` in the body's frame
-        return self.rolled(self._swung(vertex, down))
+        return self.rolled(int(self._swung(np.array([vertex]), np.asarray(down)[None])[0]))
 
     def rolled(self, facet: int) -> int:
         """Return the stable facet at the end of the steepest descent from a facet; a stable facet is its own end."""
@@ -132,7 +132,10 @@ class Polytope:
                 return facet
             edges, side = self.edges_of(facet)
             facing = np.flatnonzero(self._facing[edges, side])
-            facet = int(self.sides[edges[facing[0]], 1 - side[facing[0]]]) if len(facing) else self._tipped(facet)
+            if len(facing):
+                facet = int(self.sides[edges[facing[0]], 1 - side[facing[0]]])
+            else:
+                facet = int(self._tipped(np.array([facet]))[0])
         raise GeometryError(_ENDLESS)
 
     @cached_property
@@ -145,8 +148,8 @@ class Polytope:
         tilting, first_hit = np.unique(owner[hits], return_index=True)
         following = np.arange(len(self.normals))
         following[tilting] = self.sides[edge, 1 - side][hits[first_hit]]
-        for facet in np.setdiff1d(np.flatnonzero(~self.stable), tilting).tolist():
-            following[facet] = self._tipped(facet)
+        tipping = np.setdiff1d(np.flatnonzero(~self.stable), tilting)
+        following[tipping] = self._tipped(tipping)
         following[self.stable] = np.flatnonzero(self.stable)
         for _ in range(len(self.normals).bit_length()):
             following = following[following]
@@ -160,33 +163,54 @@ class Polytope:
         outside: BoolArray = (self.inward <= 0.0) & ((self.beyond[:, :1] <= 0.0) & (self.beyond[:, 1:] >= 0.0))
         return outside
 
-    def _tipped(self, facet: int) -> int:
-        """Return the next facet of a descent that leaves a facet through a corner."""
-        corners = np.unique(self.ends[self.edges_of(facet)[0]])
-        foot = self.heights[facet] * self.normals[facet]
-        nearest = np.argmin(((self.vertices[corners] - foot) ** 2).sum(axis=1))
-        return self._swung(int(corners[nearest]), self.normals[facet])
+    def _tipped(self, facets: IntArray) -> IntArray:
+        """Return the next facet of each descent that leaves a facet through a corner."""
+        corner, _, first = self.borders
+        owner, index = _listed(first, facets)
+        corners, feet = corner[index], self.heights[facets, None] * self.normals[facets]
+        distance = ((self.vertices[corners] - feet[owner]) ** 2).sum(axis=1)
+        order = np.lexsort((corners, distance, owner))
+        nearest = corners[order][np.unique(owner, return_index=True)[1]]
+        return self._swung(nearest, self.normals[facets])
 
-    def _swung(self, vertex: int, down: FloatArray) -> int:
-        """Return the first facet of the steepest descent from a vertex."""
+    def _swung(self, vertices: IntArray, down: FloatArray) -> IntArray:
+        """Return the first facet of the steepest descent from each vertex."""
+        facets, active = np.full(len(vertices), -1, dtype=np.int64), np.arange(len(vertices))
+        order, first = self._by_vertex
         for _ in range(len(self.ends)):
-            lever = down * float(down @ self.vertices[vertex]) - self.vertices[vertex]
-            edges, end = self.edges_at(vertex)
-            others = self.ends[edges, 1 - end]
-            chords = self.vertices[others] - self.vertices[vertex]
-            rate = chords @ lever
-            gap = np.where(rate > 0.0, np.maximum(-(chords @ down), 0.0) / np.where(rate > 0.0, rate, 1.0), np.inf)
-            first = int(np.argmin(gap))  # Eq. 245
-            if not math.isfinite(gap[first]):  # local maximum of the height: any direction leads down
-                return int(self.sides[edges[first], 0])
-            turned = down + float(gap[first]) * lever
-            down = turned / np.linalg.norm(turned)
-            edge, vertex = int(edges[first]), int(others[first])
-            if self.beyond[edge, 0] < 0.0 < self.beyond[edge, 1]:
-                # a valley between two vertices: continue along the edge, away from the projection of the centre
-                ahead = self.normals[self.sides[edge]] @ (self.feet[edge] - down * float(down @ self.feet[edge]))
-                return int(self.sides[edge, int(np.argmin(ahead))])
+            owner, index = _listed(first, vertices)
+            edges, end = np.divmod(order[index], 2)
+            others, start = self.ends[edges, 1 - end], self.vertices[vertices]
+            lever = down * (down * start).sum(axis=1, keepdims=True) - start
+            chords = self.vertices[others] - start[owner]
+            rate = (chords * lever[owner]).sum(axis=1)
+            fall = np.maximum(-(chords * down[owner]).sum(axis=1), 0.0)
+            gap = np.where(rate > 0.0, fall / np.where(rate > 0.0, rate, 1.0), np.inf)
+            least = np.minimum.reduceat(gap, np.flatnonzero(np.diff(owner, prepend=-1)))
+            hits = np.flatnonzero(gap == least[owner])
+            earliest = hits[np.flatnonzero(np.diff(owner[hits], prepend=-1))]  # Eq. 245
+            edges, vertices, gap = edges[earliest], others[earliest], gap[earliest]
+            summit = ~np.isfinite(gap)  # local maximum of the height: any direction leads down
+            turned = down + np.where(summit, 0.0, gap)[:, None] * lever
+            down = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+            # a valley between two vertices: continue along the edge, away from the projection of the centre
+            valley = ~summit & (self.beyond[edges, 0] < 0.0) & (self.beyond[edges, 1] > 0.0)
+            flat = self.feet[edges] - down * (down * self.feet[edges]).sum(axis=1, keepdims=True)
+            ahead = (self.normals[self.sides[edges]] * flat[:, None]).sum(axis=2)
+            following = np.where(summit, self.sides[edges, 0], self.sides[edges, (ahead[:, 1] < ahead[:, 0]).astype(int)])
+            done = summit | valley
+            facets[active[done]] = following[done]
+            active, vertices, down = active[~done], vertices[~done], down[~done]
+            if not len(active):
+                return facets
         raise GeometryError(_ENDLESS)
+
+    def moved(self, shift: FloatArray) -> "Polytope":
+        """Return the polytope about a centre at a distance from the present one [m]."""
+        heights = self.heights - (self.normals * shift).sum(axis=1)
+        other = Polytope(self.vertices - shift, self.normals, heights, self.ends, self.sides)
+        other.__dict__.update({name: getattr(self, name) for name in ("along", "borders", "_by_facet")})
+        return other
 
     def climbed(self, vertex: int) -> int:
         """Return the summit at the end of the ascent from a vertex, always to the next lowest vertex."""
@@ -340,3 +364,11 @@ def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
     # a sparse matrix sorts its rows by counting
     rows = coo_matrix((indices, (members.ravel(), indices)), shape=(count, members.size)).tocsr()
     return rows.data, rows.indptr.astype(np.int64)
+
+
+def _listed(first: IntArray, groups: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the members of groups, by their positions in a sorted list, and the group number of each."""
+    sizes = first[groups + 1] - first[groups]
+    owner = np.repeat(np.arange(len(groups)), sizes)
+    index = np.arange(len(owner)) + np.repeat(first[groups] - np.cumsum(sizes) + sizes, sizes)
+    return owner, index

@@ -70,7 +70,8 @@ class SolidHistories:
         self.components = [Components(*components_of(motions[k])) for k in range(len(motions))]
         for components in self.components:
             ground_components(components)  # raises an error for other types
-        inputs = {"friction": friction, "base": 0.0, "centre": 1.0, "restitution": 0.0}
+        fixed = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "restitution": 0.0}
+        inputs = {"friction": friction, **fixed}
         self._mechanics, self._options = SampledInSpace(solid, self.components, inputs, options["gravity"]), options
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()
         self._edges, self._outward = pose.edge_distances, _outward(pose)
@@ -125,7 +126,7 @@ class SolidHistories:
     def polarities(self) -> int:
         """Number of different polarities: 1 for a solid that is symmetric under half a turn, otherwise 2."""
         size, inertia = self._edges.min() * SAME, self._mechanics.inertia
-        corners = np.round(self._mechanics.corners / size) + 0.0
+        corners = np.round(self._mechanics.shapes.corners / size) + 0.0
         same = set(map(tuple, corners.tolist())) == set(map(tuple, (corners * [-1.0, -1.0, 1.0] + 0.0).tolist()))
         return 1 if same and np.abs(inertia[2, :2]).max() <= SAME * np.trace(inertia) else 2
 

@@ -38,6 +38,8 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     friction: Any = None,
     base: Any = None,
     centre: Any = None,
+    offset: Any = None,
+    level: Any = None,
     polarity: Any = None,
     azimuth: Any = None,
     sliding_beyond: float = SLIDING_BEYOND,
@@ -73,10 +75,16 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         Coefficient of Coulomb friction; default: uniform, 0.3 to 0.8 [-].
     base : input, optional
         Inset of each foot from the nominal base, independent; default: up to 2 % of the base width. Solids: negative
-        values are the inset of the base corners, by default up to 1 % of the mean radius. Positive values are the
-        height of further contact points, by default up to 0.5 % of the centre height and 5 mm [m].
+        values are the inset of all contact points from the outline, with the same default. Positive values are the
+        height of further contact points [m].
     centre : input, optional
         Factor on the height of the centre of mass; default: uniform, 0.97 to 1.03 [-].
+    offset : input, optional
+        Horizontal offset of the centre of mass; solids: in x and y, independent. Default: uniform, up to 3 % of the
+        half size of the body. It is smaller where the body would not remain in its pose [m].
+    level : input or {"floor", "shelf", "pedestal", "road"}, optional
+        Slope of the support, positive if the support descends towards x of the body; solids: towards x and y,
+        independent. Default: that of a floor by DIN 18202 over the width of the base [rad].
     polarity : input, optional
         1 as recorded, -1 reversed; default: both, equally likely; plane bodies only [-].
     azimuth : input, optional
@@ -123,8 +131,8 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     check_progress(progress)
     thread_count(threads)
     inputs = {
-        "restitution": restitution, "friction": friction, "base": base, "centre": centre, "polarity": polarity,
-        "azimuth": azimuth,
+        "restitution": restitution, "friction": friction, "base": base, "centre": centre, "offset": offset,
+        "level": level, "polarity": polarity, "azimuth": azimuth,
     }  # fmt: skip
     half_count = checks.whole("count", count, 4, 1 << 24) // 2
     min_sliding = checks.positive("sliding_beyond", sliding_beyond, "m")

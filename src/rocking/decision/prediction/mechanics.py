@@ -16,6 +16,7 @@ from rocking.motions.components import Components, components_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import GROUND, support_of
+from rocking.decision.prediction.placement import STEEPEST, level_default
 
 _WAYS = ({"low", "high"}, {"mean", "deviation"}, {"median", "dispersion"}, {"values"})
 _Ends = tuple[float, float]
@@ -195,8 +196,15 @@ class SampledBodies(ABC):
             along, across, _ = ground_components(self.motions[k])
             self.names.append(along.name)
             self._turns |= across is not None
-        self.stated, self.inputs = inputs, dict[str, Uncertain]()
+        self.stated, self.inputs = dict(inputs), dict[str, Uncertain]()
         self.assumed: dict[str, str] = {}  # reason by input; a sentence on no single input has an empty reason
+
+    def _level(self, width: float) -> Usual:
+        """Return the default slope of the support in each direction, by its name or the width of the base [m]."""
+        default, reason = level_default(self.stated.get("level"), width)
+        if default is not None:
+            self.stated["level"], self.reasons = None, {**self.reasons, "level": reason}
+        return default, -STEEPEST, STEEPEST, "rad"
 
     def _set_inputs(self, usual: Mapping[str, Usual]) -> None:
         """Set the stated inputs, and the defaults of the others with their reasons."""

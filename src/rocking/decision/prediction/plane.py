@@ -25,6 +25,7 @@ from rocking.decision.prediction.mechanics import (
     ground_components,
     with_reason,
 )
+from rocking.decision.prediction.placement import FARTHEST, OFFSET, OFFSET_REASON
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import coefficients_of
 from rocking.dynamics.plane_frictional.batch import RowsWithContact
@@ -45,7 +46,7 @@ DIRECTIONS = 36
 """Directions over half a turn; sampled azimuths are rounded to them."""
 
 NOT_SAMPLED = {
-    "placement": Message("the ground is level and the body has contact at both feet"),
+    "placement": Message("the body is free-standing and has contact at both feet"),
     "density": DENSITY_REASON,
 }
 
@@ -55,6 +56,7 @@ _REASONS = {
         "inset of each foot from the nominal base, for chipped or rounded edges: up to 2 % of the base width"
     ),
     "centre": CENTRE_REASON,
+    "offset": OFFSET_REASON,
     "polarity": Message("as recorded or reversed: the orientation of the body is unknown"),
     "azimuth": AZIMUTH_REASON,
 }
@@ -77,11 +79,14 @@ class SampledInPlane(SampledBodies):
         self._levers, self._height = np.array([left.half_width, right.half_width]), right.centre_height
         self._spread = body.moment_of_inertia / body.mass
         max_inset, full_turn = 0.9 * float(self._levers.min()), 2.0 * math.pi
+        offset = OFFSET * 0.5 * float(self._levers.sum())
         self.assumed |= dict.fromkeys(body.assumed, "")
         self._set_inputs({
             "friction": FRICTION,
             "base": ((0.0, min(BASE * float(self._levers.sum()), max_inset)), 0.0, max_inset, "m"),
             "centre": CENTRE,
+            "offset": ((-offset, offset), -max_inset, max_inset, "m"),
+            "level": self._level(float(self._levers.sum())),
             "polarity": ({"values": [-1.0, 1.0]}, -1.0, 1.0, "-"),
             **({"azimuth": ((0.0, full_turn), -full_turn, full_turn, "rad")} if self._turns else {}),
         })  # fmt: skip
@@ -133,8 +138,10 @@ class SampledInPlane(SampledBodies):
         """Return the outcomes of bodies under a motion times a factor."""
         levels, values = self.probabilities(draws), self.values(draws)
         segments, motion_index, mirrored = self._ground(motion, values)
-        levers = self._levers - values["base"]
         height = self._height * values["centre"][:, 0]
+        levers = _moved(
+            self._levers - values["base"], values["offset"][:, 0] + height * np.tan(values["level"][:, 0])
+        )  # fmt: skip
         coefficients = self._coefficients(levels["restitution"][:, 0], levers, height)
         levers, coefficients = _turned(levers, mirrored), _turned(coefficients, mirrored)
         rows: dict[str, FloatArray] = {
@@ -191,6 +198,13 @@ class SampledInPlane(SampledBodies):
     def _impact(self, old: Any, new: Any, height: Any) -> ImpactGeometry:
         half = np.asarray(0.5 * self._spread)
         return ImpactGeometry(height, old, new, half, half)
+
+
+def _moved(levers: FloatArray, shift: FloatArray) -> FloatArray:
+    """Return the levers of both feet with the plumb line moved to the right, within 90 % of the nearer lever [m]."""
+    limit = FARTHEST * levers.min(axis=1)
+    within = np.clip(shift, -limit, limit)
+    return levers + np.column_stack([within, -within])
 
 
 def _turned(pairs: FloatArray, mirrored: BoolArray) -> FloatArray:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from copy import copy
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -25,13 +26,12 @@ from rocking.decision.prediction.mechanics import (
     ground_components,
     with_reason,
 )
+from rocking.decision.prediction.placement import OFFSET, OFFSET_REASON
+from rocking.decision.prediction.shapes import Shapes
 from rocking.dynamics.frictional import histories
-from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.histories import HullRows, numbers_of_rows
-from rocking.dynamics.frictional.motion import standing
 from rocking.dynamics.frictional.restitution import FixedPosition
 from rocking.dynamics.frictional.settings import HullSettings
-from rocking.dynamics.rolling.attitude import product, turn
 from rocking.dynamics.rolling.ground import ground_of
 from rocking.dynamics.settings import thread_count
 from rocking.errors import InvalidValueError
@@ -39,28 +39,26 @@ from rocking.evidence import restitution_distribution
 from rocking.messages import Message
 from rocking.outcome import Status
 
-INSIDE, ABOVE, THICK = 0.01, 0.005, 0.005
-"""Defaults: inset of the base corners over the mean radius of the base, height of further contact points over the
-height of the centre of mass, and its limit [m]."""
-
-ANOTHER = math.cos(math.radians(10.0))
-"""Cosine of the smallest angle between two different stable poses; rough bodies have many similar poses."""
+INSIDE, STEPS = 0.02, 32
+"""Default of the largest inset of the contact points over the width of the base, and number of sampled bases."""
 
 _UPRIGHT = -1.0 + 1e-12
-_SETTINGS = HullSettings(tolerance=1e-8)
+_SETTINGS = HullSettings(tolerance=1e-6, rest_speed=1e-3)
+"""Coarser than those of single histories: outcomes differ like those of histories whose motions differ by 1e-6."""
 
 NOT_SAMPLED = {
-    "placement": Message("the ground is level and the body is free-standing"),
+    "placement": Message("the body is free-standing"),
     "density": DENSITY_REASON,
 }
 
 _REASONS = {
     "friction": FRICTION_REASON,
     "base": Message(
-        "negative: inset of the base corners from the nominal ones, for wear and chips; positive: height of further "
-        "contact points, for an uneven scan or floor"
+        "inset of the contact points from the outline, for rounded or crushed edges and error of the scan: up to 2 % "
+        "of the base width, in 32 equal steps"
     ),
     "centre": CENTRE_REASON,
+    "offset": OFFSET_REASON,
     "azimuth": AZIMUTH_REASON,
 }
 _LAWS = {
@@ -73,6 +71,7 @@ class SampledInSpace(SampledBodies):
     """A 3D body that may slide, hop, fly and overturn onto another side."""
 
     reasons, never_sampled = _REASONS, NOT_SAMPLED
+    widths_of: Mapping[str, int] = MappingProxyType({"offset": 2, "level": 2})
 
     def __init__(self, solid: Solid, motions: Any, inputs: Mapping[str, Any], gravity: float) -> None:
         super().__init__(motions, inputs)
@@ -81,18 +80,22 @@ class SampledInSpace(SampledBodies):
         if solid.equilibria().settling((0.0, 0.0, -1.0)).down[2] > _UPRIGHT:
             solid = solid.settled()
         self._gravity, self.solid, equilibria = gravity, solid, solid.equilibria()
-        self.pose, self._mass, self._flat = equilibria.settling((0.0, 0.0, -1.0)), equilibria.mass, equilibria.flatness
+        self.pose, self._mass = equilibria.settling((0.0, 0.0, -1.0)), equilibria.mass
         rotation = self.pose.rotation
-        self.corners, self._surface = (points @ rotation.T for points in (equilibria.hull.vertices, equilibria.surface))
         self.inertia = rotation @ solid.local_moments.inertia @ rotation.T
-        self._shapes: dict[tuple[float, float], _Shape] = {}
-        radius, height = float(np.linalg.norm(self.pose.support, axis=1).mean()), self.pose.height
+        self.shapes = Shapes(solid, self.pose, self.inertia)
+        width = 2.0 * float(np.linalg.norm(self.pose.support, axis=1).mean())
+        half_sizes = 0.5 * np.ptp(self.shapes.corners[:, :2], axis=0)
+        offset = OFFSET * float(half_sizes.mean())
+        height, farthest = self.pose.height, float(half_sizes.max())
         full_turn = 2.0 * math.pi
         self.assumed |= dict.fromkeys(solid.assumed, "")
         self._set_inputs({
             "friction": FRICTION,
-            "base": ((-INSIDE * radius, min(ABOVE * height, THICK)), -0.5 * radius, 0.5 * height, "m"),
+            "base": ((-INSIDE * width, 0.0), -0.25 * width, 0.5 * height, "m"),
             "centre": CENTRE,
+            "offset": ((-offset, offset), -farthest, farthest, "m"),
+            "level": self._level(width),
             "azimuth": ((0.0, full_turn), -full_turn, full_turn, "rad"),
         })  # fmt: skip
         self._set_restitution(inputs.get("restitution"))
@@ -157,15 +160,23 @@ class SampledInSpace(SampledBodies):
 
     def run(self, draws: FloatArray, motion: int, factor: FloatArray, threads: int | None) -> BodyOutcomes:
         """Return the outcomes of bodies under a motion times a factor."""
-        sampled = {name: values[:, 0] for name, values in self.values(draws).items()}
-        shapes = [self._shape(*pair) for pair in zip(sampled["base"].tolist(), sampled["centre"].tolist(), strict=True)]
+        values = self.values(draws)
+        sampled = {name: column[:, 0] for name, column in values.items()}
+        offset, slope = values["offset"], values["level"]
+        factor_of_shift = self.shapes.standing(sampled["base"], offset + self.pose.height * np.tan(slope))[:, None]
+        offset, slope = factor_of_shift * offset, factor_of_shift * slope
+        placed = zip(sampled["base"].tolist(), sampled["centre"].tolist(), map(tuple, offset.tolist()), strict=True)
+        shapes = [self.shapes.of(*numbers) for numbers in placed]
         unique_shapes = list(dict.fromkeys(shapes))
         index_of_shape = {shape: k for k, shape in enumerate(unique_shapes)}
         body_index = np.array([index_of_shape[shape] for shape in shapes])
         ground = ground_of(*ground_components(self.motions[motion]))
         turned = zip(shapes, sampled["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
-        numbers = numbers_of_rows(sampled["restitution"], factor, sampled["friction"], state, self._gravity)
+        numbers = numbers_of_rows(
+            sampled["restitution"], factor, sampled["friction"], state, self._gravity,
+            sloping(_rotated(slope, sampled["azimuth"])),
+        )  # fmt: skip
         initial_facet = np.array([shape.facet for shape in shapes])
         choices = np.column_stack(
             [body_index, np.zeros_like(body_index), np.full_like(body_index, self._law), initial_facet]
@@ -174,47 +185,29 @@ class SampledInSpace(SampledBodies):
         rows = HullRows(bodies, [ground], _SETTINGS, histories.chosen("auto"), {self._law})
         results = rows.run(numbers, choices, thread_count(threads))
         valid = results["status"] == Status.GOOD.code
-        pairs = zip(shapes, results["pose"].tolist(), strict=True)
-        overturned = np.array([shape.is_other_pose(pose) for shape, pose in pairs], dtype=np.float64)
+        overturned = np.asarray(results["pose"] == 1, dtype=np.float64)
         columns = (np.isfinite(results["first_uplift"]), results["sliding_distance"], overturned, results["peak_tilt"],
                    results["direction"])  # fmt: skip
         return BodyOutcomes(*(np.where(valid, column, np.nan) for column in columns))
 
-    def _shape(self, base: float, centre: float) -> "_Shape":
-        """Return the body with a base and a centre, in its initial pose."""
-        key = (base, centre)
-        if key not in self._shapes:
-            points, height = self.corners.copy(), self.pose.height
-            if base > 0.0:
-                near = self._surface[self._surface[:, 2] + height <= max(base, self._flat)]
-                points = np.concatenate([points, near])
-                points[points[:, 2] + height <= max(base, self._flat), 2] = -height
-            else:
-                corners = points[:, 2] + height <= self._flat
-                far = np.linalg.norm(points[corners, :2], axis=1, keepdims=True)
-                points[corners, :2] *= 1.0 + np.maximum(base / far, -0.9)
-            middle = np.array([0.0, 0.0, (centre - 1.0) * height])
-            self._shapes[key] = _Shape(HullBody(points, self._mass, middle, self.inertia, self.solid))
-        return self._shapes[key]
+    def values(self, draws: FloatArray) -> dict[str, FloatArray]:
+        """Return the values of samples from the unit cube, by input; the base has few values, to share hulls."""
+        levels = self.probabilities(draws)
+        levels["base"] = (np.floor(levels["base"] * STEPS) + 0.5) / STEPS
+        return {name: uncertain.quantile(levels[name]) for name, uncertain in self.inputs.items()}
 
 
-class _Shape:
-    """A body in its initial pose, and the test for other poses."""
+def _rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return horizontal vectors rotated by angles about the vertical, from axes of the body to those of the ground."""
+    c, s, (x, y) = np.cos(angle), np.sin(angle), vectors.T
+    return np.column_stack([c * x - s * y, s * x + c * y])
 
-    def __init__(self, body: HullBody) -> None:
-        self.body = body
-        facet = int(body.hull.rolls[body.under((0.0, 0.0, 1.0))])
-        self.start, self.facet = standing(body, facet=facet), facet
 
-    def state(self, azimuth: float) -> list[float]:
-        """Return initial attitude, position and velocities."""
-        attitude = product(turn([0.0, 0.0, 1.0], azimuth), np.array(self.start.attitude))
-        return [*attitude.tolist(), *self.start.position, *self.start.velocity, *self.start.spin]
-
-    def is_other_pose(self, pose: int) -> bool:
-        """Return True if a pose, by index, differs from the initial pose."""
-        if pose < 0:
-            return False
-        hull, numbers = self.body.hull, np.array(self.body.poses)
-        facet = int(np.flatnonzero(hull.stable & (numbers == pose))[0])
-        return float(hull.normals[facet] @ hull.normals[self.facet]) < ANOTHER
+def sloping(slope: FloatArray) -> FloatArray:
+    """Return infinite planes that descend by angles towards x and y, as for `numbers_of_rows`; shape (n, 11)."""
+    steepest = np.hypot(*slope.T)
+    x, y = (slope / np.maximum(steepest, 1e-300)[:, None]).T
+    c, s = np.cos(steepest), np.sin(steepest)
+    axes = (1.0 + x * x * (c - 1.0), x * y * (c - 1.0), -x * s, x * y * (c - 1.0), 1.0 + y * y * (c - 1.0), -y * s,
+            x * s, y * s, c)  # fmt: skip
+    return np.column_stack([*axes, *np.full((2, len(slope)), math.inf)])

@@ -1,5 +1,6 @@
 """Rigid body on the vertices of its convex hull: vertices, mass, centre of mass and inertia."""
 
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -40,12 +41,7 @@ class HullBody:
         object.__setattr__(self, "centre", checks.finite("centre", self.centre, "m", (3,)))
         object.__setattr__(self, "inertia", checked_inertia(self.inertia))
         object.__setattr__(self, "hull", polytope(self.vertices, self.centre))
-        if not self.hull.heights.min() > 0.0:
-            raise GeometryError(
-                "the centre of mass {centre} m must be inside the hull of the vertices, got {outside:.3g} m outside",
-                parameter="centre", centre=self.centre.tolist(), outside=float(-self.hull.heights.min()),
-                hint="check axes and units",
-            )  # fmt: skip
+        _check_inside(self.centre, self.hull)
 
     @classmethod
     def of(cls, solid: Any) -> "HullBody":
@@ -65,10 +61,28 @@ class HullBody:
         mass_distribution = solid if solid.known is None else None  # stated moments have no distribution of mass
         return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
 
+    def moved(self, shift: FloatArray) -> "HullBody":
+        """Return the body with its centre of mass moved, and the same vertices and inertia about the centre [m]."""
+        hull = self.hull.moved(shift)
+        _check_inside(self.centre + shift, hull)
+        body: HullBody = object.__new__(HullBody)
+        for name in ("vertices", "mass", "inertia", "solid", "footprint"):
+            object.__setattr__(body, name, getattr(self, name))
+        object.__setattr__(body, "centre", self.centre + shift)
+        object.__setattr__(body, "hull", hull)
+        return body
+
+    def with_poses_near(self, facet: int, cosine: float) -> "HullBody":
+        """Return the body with two poses: 0 for facets whose normals are near that of a facet, 1 for all others."""
+        body = copy(self)
+        near = (self.hull.normals * self.hull.normals[facet]).sum(axis=1) >= cosine
+        body.__dict__["poses"] = np.where(near, 0, 1).tolist()
+        return body
+
     @cached_property
     def points(self) -> list[Vector]:
         """Vertices relative to the centre of mass [m]."""
-        return [(float(x), float(y), float(z)) for x, y, z in self.hull.vertices]
+        return list(map(tuple, self.hull.vertices.tolist()))
 
     @cached_property
     def compliance(self) -> Frame:
@@ -88,7 +102,7 @@ class HullBody:
     @cached_property
     def facets(self) -> list[Vector]:
         """Facets as points of the dual hull: outward unit normals over distances from the centre [1/m]."""
-        return [(float(x), float(y), float(z)) for x, y, z in self.hull.normals / self.hull.heights[:, None]]
+        return list(map(tuple, (self.hull.normals / self.hull.heights[:, None]).tolist()))
 
     @cached_property
     def poses(self) -> list[int]:
@@ -107,6 +121,15 @@ class HullBody:
         """Return the index of the facet under the centre of mass."""
         # up: vertical in body axes [-]
         return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
+
+
+def _check_inside(centre: FloatArray, hull: Polytope) -> None:
+    if not hull.heights.min() > 0.0:
+        raise GeometryError(
+            "the centre of mass {centre} m must be inside the hull of the vertices, got {outside:.3g} m outside",
+            parameter="centre", centre=centre.tolist(), outside=float(-hull.heights.min()),
+            hint="check axes and units",
+        )  # fmt: skip
 
 
 def _rows(matrix: FloatArray) -> Frame:

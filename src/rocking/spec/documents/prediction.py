@@ -17,6 +17,8 @@ class PredictTable(JobTable):
     friction: Any = key("coefficient of friction, default [0.3, 0.8] [-]")
     base: Any = key("distance of the feet from the edges of the base, default 0 to 2 % of the base width [m]")
     centre: Any = key("scale factor of the height of the centre of mass, default [0.97, 1.03] [-]")
+    offset: Any = key("horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]")
+    level: Any = key('slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"')
     polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
     azimuth: Any = key("azimuth of the plane of the body for motions with two components, default uniform [rad]")
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
