@@ -1,6 +1,5 @@
 """The convex hull of a body about its centre of mass: facets (coplanar ones merged), edges and vertices."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -186,8 +185,8 @@ class Polytope:
             rate = (chords * lever[owner]).sum(axis=1)
             fall = np.maximum(-(chords * down[owner]).sum(axis=1), 0.0)
             gap = np.where(rate > 0.0, fall / np.where(rate > 0.0, rate, 1.0), np.inf)
-            least = np.minimum.reduceat(gap, np.flatnonzero(np.diff(owner, prepend=-1)))
-            hits = np.flatnonzero(gap == least[owner])
+            smallest = np.minimum.reduceat(gap, np.flatnonzero(np.diff(owner, prepend=-1)))
+            hits = np.flatnonzero(gap == smallest[owner])
             earliest = hits[np.flatnonzero(np.diff(owner[hits], prepend=-1))]  # Eq. 245
             edges, vertices, gap = edges[earliest], others[earliest], gap[earliest]
             summit = ~np.isfinite(gap)  # local maximum of the height: any direction leads down
@@ -197,7 +196,9 @@ class Polytope:
             valley = ~summit & (self.beyond[edges, 0] < 0.0) & (self.beyond[edges, 1] > 0.0)
             flat = self.feet[edges] - down * (down * self.feet[edges]).sum(axis=1, keepdims=True)
             ahead = (self.normals[self.sides[edges]] * flat[:, None]).sum(axis=2)
-            following = np.where(summit, self.sides[edges, 0], self.sides[edges, (ahead[:, 1] < ahead[:, 0]).astype(int)])
+            following = np.where(
+                summit, self.sides[edges, 0], self.sides[edges, (ahead[:, 1] < ahead[:, 0]).astype(int)]
+            )
             done = summit | valley
             facets[active[done]] = following[done]
             active, vertices, down = active[~done], vertices[~done], down[~done]

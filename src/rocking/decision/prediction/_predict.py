@@ -16,7 +16,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.pulse import Motion
 from rocking.motions.summary import summaries_of
 from rocking.statistics.counts import MIN_CLUSTERS, share_interval
-from rocking.statistics.shares import REPETITIONS, SaltelliDesign
+from rocking.statistics.shares import REPETITIONS, SaltelliDesign, VarianceShare
 
 COUNT = 128
 SLIDING_BEYOND = 0.01
@@ -80,7 +80,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     centre : input, optional
         Factor on the height of the centre of mass; default: uniform, 0.97 to 1.03 [-].
     offset : input, optional
-        Horizontal offset of the centre of mass; solids: in x and y, independent. Default: uniform, up to 3 % of the
+        Horizontal offset of the centre of mass. Solids: in x and y, independent. Default: uniform, up to 3 % of the
         half size of the body. It is smaller where the body would not remain in its pose [m].
     level : input or {"floor", "shelf", "pedestal", "road"}, optional
         Slope of the support, positive if the support descends towards x of the body; solids: towards x and y,
@@ -98,7 +98,8 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     count : int
         Number of sampled bodies, a power of two.
     contributions : bool
-        If True, compute the contribution of each input to the variance. This adds ``count / 2`` bodies per input.
+        If True, compute the contribution of each input to the variance. This adds ``count / 4`` bodies per input
+        if the outcomes differ.
     seed : int
         Random seed; results do not depend on the number of threads.
     normal_restitution, normal_restitution_law
@@ -139,13 +140,18 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     motions = motion_sequence(motions, pga)
     mechanics = _mechanics(body, motions, inputs, gravity, normal_restitution, normal_restitution_law)
     design = SaltelliDesign(half_count, mechanics.widths, checks.whole("seed", seed))
-    points = design.points if contributions else design.points[: 2 * half_count]
+    points = design.points[: 2 * half_count]
     results = _counted(mechanics, points, min_sliding, threads, progress)
     sampled = {name: values[: 2 * half_count] for name, values in results.items() if name != "peak"}
-    failed = int(np.isnan(results["overturning"]).sum())
+    overturned = sampled["overturning"]
     if np.isnan(results["overturning"]).all():
         raise InvalidValueError("no history has a result; check the scale of the motion and its unit (m/s2)")
-    overturned = results["overturning"][: len(points)]
+    shares, others = (
+        _shares(mechanics, design, overturned, min_sliding, threads, progress)
+        if contributions
+        else ({}, overturned[:0])
+    )
+    histories = np.concatenate([results["overturning"], others])
     beside: dict[str, Chance] = {}
     if restitution is None or (isinstance(restitution, str) and restitution in MEASURED):
         for name in conventions.COMPARED_RESTITUTIONS:
@@ -156,8 +162,9 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
             except RockingError:
                 continue  # the model does not apply to this body
             other_results = _counted(
-                other_mechanics, points[:half_count, mechanics.widths["restitution"] :], min_sliding, threads, None, 0
-            )
+                other_mechanics, points[: half_count // 2, mechanics.widths["restitution"] :], min_sliding, threads,
+                None, 0,
+            )  # fmt: skip
             if not np.isnan(other_results["overturning"]).all():
                 beside[name] = _chance(other_results["overturning"], design.seed)
     return Prediction(
@@ -168,16 +175,17 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         fixed=mechanics.not_sampled,
         sliding_beyond=min_sliding,
         chances={name: _chance(values, design.seed) for name, values in sampled.items()},
-        contributions=design.shares(overturned) if contributions and not np.isnan(overturned).all() else {},
-        ends=_ends(mechanics, points[: 2 * half_count], overturned[: 2 * half_count]),
+        contributions=shares,
+        ends=_ends(mechanics, points, overturned),
         growth=_growth(results, len(points), mechanics.names),
-        outcomes=np.unique(results["overturning"][~np.isnan(results["overturning"])]).size,
+        outcomes=np.unique(histories[~np.isnan(histories)]).size,
         count=2 * half_count,
-        histories=results["overturning"].size,
-        failed=failed,
+        histories=histories.size,
+        failed=int(np.isnan(histories).sum()),
         seed=design.seed,
         gravity=float(gravity),
         beside=beside,
+        directions=_directions(mechanics, points, overturned) if "azimuth" in mechanics.assumed else (),
     )
 
 
@@ -203,6 +211,22 @@ def _mechanics(
     from rocking.decision.prediction.plane import SampledInPlane, contact_settings
 
     return SampledInPlane(body, motions, inputs, contact_settings(gravity, normal_restitution, normal_restitution_law))
+
+
+def _shares(
+    mechanics: SampledBodies, design: SaltelliDesign, overturned: FloatArray, min_sliding: float,
+    threads: int | None, progress: Callable[[int], None] | None,
+) -> tuple[dict[str, VarianceShare], FloatArray]:  # fmt: skip
+    """Return the contributions by the first half of both samples, and the outcomes of further bodies."""
+    smaller = SaltelliDesign(max(design.count // 2, 2), design.inputs, design.seed)
+    both = np.concatenate([overturned[: smaller.count], overturned[design.count :][: smaller.count]])
+    mixed = smaller.points[2 * smaller.count :]
+    if np.isnan(both).all():
+        return {}, both[:0]
+    if np.nanmin(both) == np.nanmax(both):  # without variance all contributions are zero
+        return dict.fromkeys([*design.inputs, *["case"] * (both.shape[1] > 1)], VarianceShare(*[0.0] * 6)), both[:0]
+    others = _counted(mechanics, mixed, min_sliding, threads, progress, 0)["overturning"]
+    return smaller.shares(np.concatenate([both, others])), others
 
 
 def _counted(
@@ -272,6 +296,12 @@ def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) 
         ends = [(float(values[name][end].mean()), _mean(overturned[end])) for end in (low, high)]
         by_input[name] = EndsOfRange(*ends[0], *ends[1])
     return by_input
+
+
+def _directions(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) -> tuple[float, ...]:
+    """Return the probability of overturning in each quarter of the sampled azimuths."""
+    quarter = np.floor(4.0 * mechanics.probabilities(points)["azimuth"][:, 0])
+    return tuple(_mean(overturned[quarter == number]) for number in range(4) if (quarter == number).any())
 
 
 def _mean(occurred: FloatArray) -> float:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _LIKELY = {
     "uplift": "Rocking is {likelihood} {condition}: {probability}.",
     "sliding": "Sliding by {distance:g} mm or more is {likelihood} {condition}: {probability}.",
-    "overturning": "Overturning is {likelihood} {condition}: {probability}.",
+    "overturning": "Overturning is {likelihood} {condition}, for the sampled inputs: {probability}.",
 }
 _PREDICTABLE = (
     "Each response can be predicted. Of {rocking} pairs of histories with a difference of one part in a million in "
@@ -42,6 +42,13 @@ _COMPARED = (
 _AT_ENDS = (
     "The probability of overturning is {low} with {input} near {lower:.3g} and {high} with {input} near {higher:.3g}."
 )
+
+
+_DIRECTIONS = (
+    "The azimuth was sampled, because no azimuth was given: between the quarters of the directions the probability of "
+    "overturning ranges from {low} to {high}. State the azimuth if the direction of the body is known."
+)
+_NOT_SAMPLED = "The probability does not include the uncertainty of inputs that were not sampled: {inputs}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +133,10 @@ class Prediction(Exported):
     gravity : float
         Acceleration of gravity [m/s2].
     beside : dict of str to Chance
-        Probability of overturning with KED and with Housner's model, for half of the samples of the other inputs; with
-        the default restitution only.
+        Probability of overturning with KED and with Housner's model, for a quarter of the samples of the other inputs;
+        with the default restitution only.
+    directions : tuple of float
+        Probability of overturning in each quarter of the azimuths, if the azimuth was sampled by default [-].
     """
 
     body: "Body | Solid"
@@ -147,6 +156,7 @@ class Prediction(Exported):
     seed: int
     gravity: float
     beside: Mapping[str, Chance] = field(default_factory=dict)
+    directions: tuple[float, ...] = ()
 
     @property
     def ranked_contributions(self) -> AnswerRows:
@@ -210,6 +220,14 @@ class Prediction(Exported):
             sentences.append(
                 Message("For other motions like these the interval is {interval}.", {"interval": interval})
             )
+        if self.directions:
+            ends = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
+            sentences.append(Message(_DIRECTIONS, ends))
+        if names := [Message(name) for name in self.fixed]:
+            listed = names[0]
+            for name in names[1:]:
+                listed = Message("{first}, {second}", {"first": listed, "second": name})
+            sentences.append(Message(_NOT_SAMPLED, {"inputs": listed}))
         sentences += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
             others = [
@@ -219,7 +237,7 @@ class Prediction(Exported):
             first = others[0]
             for other in others[1:]:
                 first = Message("{first} and {second}", {"first": first, "second": other})
-            facts = {"count": self.count // 2, "total": self.count, "probabilities": first}
+            facts = {"count": self.count // 4, "total": self.count, "probabilities": first}
             sentences.append(Message(_COMPARED, facts))
         ranked = sorted(self.ends.items(), key=lambda pair: -abs(pair[1].probability_high - pair[1].probability_low))
         for name, item in ranked[:2]:

@@ -10,13 +10,13 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
+from rocking.decision.prediction.placement import STEEPEST, level_default
 from rocking.errors import InvalidValueError
 from rocking.messages import Amount, Message, Range
 from rocking.motions.components import Components, components_of
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.summary import GROUND, support_of
-from rocking.decision.prediction.placement import STEEPEST, level_default
 
 _WAYS = ({"low", "high"}, {"mean", "deviation"}, {"median", "dispersion"}, {"values"})
 _Ends = tuple[float, float]

@@ -139,9 +139,7 @@ class SampledInPlane(SampledBodies):
         levels, values = self.probabilities(draws), self.values(draws)
         segments, motion_index, mirrored = self._ground(motion, values)
         height = self._height * values["centre"][:, 0]
-        levers = _moved(
-            self._levers - values["base"], values["offset"][:, 0] + height * np.tan(values["level"][:, 0])
-        )  # fmt: skip
+        levers = _moved(self._levers - values["base"], values["offset"][:, 0], height, values["level"][:, 0])
         coefficients = self._coefficients(levels["restitution"][:, 0], levers, height)
         levers, coefficients = _turned(levers, mirrored), _turned(coefficients, mirrored)
         rows: dict[str, FloatArray] = {
@@ -200,11 +198,17 @@ class SampledInPlane(SampledBodies):
         return ImpactGeometry(height, old, new, half, half)
 
 
-def _moved(levers: FloatArray, shift: FloatArray) -> FloatArray:
-    """Return the levers of both feet with the plumb line moved to the right, within 90 % of the nearer lever [m]."""
+def _moved(levers: FloatArray, offset: FloatArray, height: FloatArray, slope: FloatArray) -> FloatArray:
+    """Return the levers of both feet [m] with the centre moved to the right [m] on a support that descends there [rad].
+
+    The slenderness angles against the vertical are exact; the distance of both feet is exact to first order. The plumb
+    line stays within 90 % of the nearer lever.
+    """
     limit = FARTHEST * levers.min(axis=1)
-    within = np.clip(shift, -limit, limit)
-    return levers + np.column_stack([within, -within])
+    sign = np.array([1.0, -1.0])
+    moved = levers + sign * np.clip(offset, -limit, limit)[:, None]
+    sloped = height[:, None] * np.tan(np.arctan2(moved, height[:, None]) + sign * slope[:, None])
+    return np.maximum(sloped, (1.0 - FARTHEST) * levers)
 
 
 def _turned(pairs: FloatArray, mirrored: BoolArray) -> FloatArray:

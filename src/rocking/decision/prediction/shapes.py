@@ -5,16 +5,16 @@ import numpy as np
 from rocking.bodies import Solid
 from rocking.bodies.equilibria import StablePose
 from rocking.conventions import FloatArray
+from rocking.decision.prediction.placement import FARTHEST
 from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.motion import standing
 from rocking.dynamics.rolling.attitude import product, turn
-from rocking.decision.prediction.placement import FARTHEST
 
 ANOTHER = np.cos(np.radians(10.0))
 """Cosine of the smallest angle between two different stable poses; rough bodies have many similar poses."""
 
 
-class Shape:
+class StandingShape:
     """A body in its initial pose; its other poses have the index 1."""
 
     def __init__(self, body: HullBody) -> None:
@@ -28,7 +28,7 @@ class Shape:
         return [*attitude.tolist(), *self.start.position, *self.start.velocity, *self.start.spin]
 
 
-class Shapes:
+class SampledShapes:
     """Shapes of a body. The hull is computed once for each base; a moved centre changes no vertex of the hull."""
 
     def __init__(self, solid: Solid, pose: StablePose, inertia: FloatArray) -> None:
@@ -37,17 +37,19 @@ class Shapes:
         self._solid, self._mass, self._inertia, self._flat = solid, equilibria.mass, inertia, equilibria.flatness
         self._support, self._height = pose.support, pose.height
         self._hulls: dict[float, HullBody] = {}
-        self._shapes: dict[tuple[float, ...], Shape] = {}
+        self._shapes: dict[tuple[float, ...], StandingShape] = {}
 
-    def of(self, base: float, centre: float, offset: tuple[float, ...] = (0.0, 0.0)) -> Shape:
-        """Return the shape with a base [m], a factor on the height of the centre, and an offset of the centre [m]."""
+    def of(self, base: float, centre: float, offset: tuple[float, ...] = (0.0, 0.0)) -> StandingShape:
+        """Return the shape with a base [m], a factor on the height of the centre, and its offset [m]."""
         key = (base, centre, *offset)
         if key not in self._shapes:
             if base not in self._hulls:
                 self._hulls[base] = HullBody(
                     self.points(base), self._mass, np.zeros(3), self._inertia, self._solid
                 )  # fmt: skip
-            self._shapes[key] = Shape(self._hulls[base].moved(np.array([*offset, (centre - 1.0) * self._height])))
+            self._shapes[key] = StandingShape(
+                self._hulls[base].moved(np.array([*offset, (centre - 1.0) * self._height]))
+            )
         return self._shapes[key]
 
     def points(self, base: float) -> FloatArray:
@@ -63,7 +65,7 @@ class Shapes:
         return points
 
     def standing(self, base: FloatArray, shift: FloatArray) -> FloatArray:
-        """Return the factor on shifts of the plumb line with which bodies stand, at most 1; shape (n,).
+        """Return the factor, at most 1, on shifts of the plumb line for stable bodies; shape (n,).
 
         base: insets of the contact points, shape (n,); shift: of the plumb line in the base, shape (n, 2) [m].
         """

@@ -27,7 +27,7 @@ from rocking.decision.prediction.mechanics import (
     with_reason,
 )
 from rocking.decision.prediction.placement import OFFSET, OFFSET_REASON
-from rocking.decision.prediction.shapes import Shapes
+from rocking.decision.prediction.shapes import SampledShapes
 from rocking.dynamics.frictional import histories
 from rocking.dynamics.frictional.histories import HullRows, numbers_of_rows
 from rocking.dynamics.frictional.restitution import FixedPosition
@@ -83,7 +83,7 @@ class SampledInSpace(SampledBodies):
         self.pose, self._mass = equilibria.settling((0.0, 0.0, -1.0)), equilibria.mass
         rotation = self.pose.rotation
         self.inertia = rotation @ solid.local_moments.inertia @ rotation.T
-        self.shapes = Shapes(solid, self.pose, self.inertia)
+        self.shapes = SampledShapes(solid, self.pose, self.inertia)
         width = 2.0 * float(np.linalg.norm(self.pose.support, axis=1).mean())
         half_sizes = 0.5 * np.ptp(self.shapes.corners[:, :2], axis=0)
         offset = OFFSET * float(half_sizes.mean())
@@ -191,7 +191,7 @@ class SampledInSpace(SampledBodies):
         return BodyOutcomes(*(np.where(valid, column, np.nan) for column in columns))
 
     def values(self, draws: FloatArray) -> dict[str, FloatArray]:
-        """Return the values of samples from the unit cube, by input; the base has few values, to share hulls."""
+        """Return the values of samples from the unit cube, by input; the base has 32 values."""
         levels = self.probabilities(draws)
         levels["base"] = (np.floor(levels["base"] * STEPS) + 0.5) / STEPS
         return {name: uncertain.quantile(levels[name]) for name, uncertain in self.inputs.items()}

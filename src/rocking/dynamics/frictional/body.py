@@ -11,7 +11,7 @@ from rocking import checks
 from rocking.bodies.equilibria.polytope import Polytope, polytope
 from rocking.bodies.solid import Base, Solid
 from rocking.conventions import FloatArray
-from rocking.dynamics.frictional.ground import Frame, Vector, dot, length
+from rocking.dynamics.frictional.ground import Frame, Vector, length
 from rocking.dynamics.rolling.body import SpatialBody, checked_inertia
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.portable import inverse
@@ -120,7 +120,8 @@ class HullBody:
     def under(self, up: Vector) -> int:
         """Return the index of the facet under the centre of mass."""
         # up: vertical in body axes [-]
-        return min(range(len(self.facets)), key=lambda k: dot(self.facets[k], up))  # Eq. 258
+        x, y, z = (self.hull.normals / self.hull.heights[:, None]).T
+        return int(np.argmin(x * up[0] + y * up[1] + z * up[2]))  # Eq. 258
 
 
 def _check_inside(centre: FloatArray, hull: Polytope) -> None:

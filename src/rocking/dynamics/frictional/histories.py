@@ -137,10 +137,12 @@ def _groups(lists: IntArray) -> list[tuple[int, ...]]:
 
 
 def _tables(body: HullBody) -> dict[str, Any]:
-    corners, beyond, first = body.hull.borders
+    hull = body.hull
+    corners, beyond, first = hull.borders
     return {
-        "vertices": np.array(body.points), "facets": np.array(body.facets), "poses": np.array(body.poses, np.int64),
-        "first": first, "beside": beyond, "first_corner": first, "corners": corners,
+        "vertices": hull.vertices, "facets": hull.normals / hull.heights[:, None],
+        "poses": np.array(body.poses, np.int64), "first": first, "beside": beyond,
+        "first_corner": first, "corners": corners,
     }  # fmt: skip
 
 

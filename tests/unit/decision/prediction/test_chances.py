@@ -81,7 +81,7 @@ def test_no_restitution_creates_energy():
     body = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
     about_centre = body.moment_of_inertia
     left, right = (about_centre + 650.0 * (lever**2 + 0.9**2) for lever in (0.52, 0.28))
-    known = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
+    known = {"friction": 0.6, "base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "polarity": 1.0}
     settings = contact_settings(rk.conventions.g, 0.0, "newton")
     what = SampledInPlane(body, rk.pulses.sine(4.2, 0.8), {**known, "restitution": 1.0}, settings)
     found = what._coefficients(np.array([0.5]), np.array([[0.52, 0.28]]), np.array([0.9]))
@@ -140,7 +140,7 @@ def test_pairs_that_rock_are_counted_and_compared():
     assert math.isnan(grown("at rest", "both overturning").median)
 
 
-KNOWN = {"friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
+KNOWN = {"friction": 0.6, "base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "polarity": 1.0}
 
 
 def mechanics(body, **given):
@@ -220,7 +220,7 @@ def test_none_of_sixteen_is_not_almost_certain():
     chance = found.chances["overturning"]
     assert (chance.low, chance.high) == pytest.approx((0.0, 1.0 - 0.025 ** (1.0 / 16.0)), abs=1e-12)
     assert found.verdict == (
-        "Overturning is unlikely given this motion (PGA 0.102 g; PGV 0.191 m/s): probability 0 % "
+        "Overturning is unlikely given this motion (PGA 0.102 g; PGV 0.191 m/s), for the sampled inputs: probability 0 % "
         "(95 % interval 0 % to 20.6 %)."
     )
     # negative control: with enough histories the strong word is earned

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.verifies(room="studies")
 BODY = section(4)
 PULSE = rk.pulses.sine(amplitude=4.2, period=0.8)
 BLOCK = rk.Block(width=0.5, height=2.0)
-KNOWN = {"restitution": 0.9, "friction": 0.6, "base": 0.0, "centre": 1.0, "polarity": 1.0}
+KNOWN = {"restitution": 0.9, "friction": 0.6, "base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "polarity": 1.0}
 
 
 def mechanics(body, motions, **given):
@@ -231,7 +231,14 @@ def test_ked_and_housner_stand_beside_what_was_measured():
         assert chance.low <= alone.chances["overturning"].value <= chance.high
         assert f") with {name}" in found.sentences[3]
     assert predict(BLOCK, motions[0], restitution=0.9, count=16, contributions=False).beside == {}
-    known = {"friction": 5.0, "base": 0.0, "centre": 1.0, "polarity": 1.0}  # nothing is left to draw
+    known = {
+        "friction": 5.0,
+        "base": 0.0,
+        "centre": 1.0,
+        "offset": 0.0,
+        "level": 0.0,
+        "polarity": 1.0,
+    }  # nothing is left to draw
     fixed = predict(BLOCK, motions, **known, count=16, contributions=False)
     for name, chance in fixed.beside.items():
         alone = predict(BLOCK, motions, restitution=name, **known, count=16, contributions=False).chances["overturning"]

@@ -8,16 +8,27 @@ from scipy.spatial import ConvexHull
 
 import rocking as rk
 from rocking.bodies.solid import Part, Polyhedron, Solid, box
-from rocking.decision.prediction.space import SampledInSpace
+from rocking.decision.prediction import space
+from rocking.decision.prediction.mechanics import Uncertain
+from rocking.decision.prediction.space import SampledInSpace, sloping
 from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.ground import HullGround
 from rocking.dynamics.frictional.histories import hull_histories
 from rocking.dynamics.frictional.restitution import FixedPosition
+from rocking.dynamics.frictional.settings import HullSettings
 from rocking.dynamics.rolling import SpatialStart
 from rocking.errors import RockingError
 
 pytestmark = pytest.mark.verifies(room="studies")
-KNOWN = {"restitution": "housner-3d", "friction": 0.6, "base": 0.0, "centre": 1.0, "azimuth": 0.0}
+KNOWN = {
+    "restitution": "housner-3d",
+    "friction": 0.6,
+    "base": 0.0,
+    "centre": 1.0,
+    "offset": 0.0,
+    "level": 0.0,
+    "azimuth": 0.0,
+}
 
 
 def stone(lift=0.0):
@@ -50,23 +61,23 @@ def alone(body, law, friction, azimuth, scale=1.5):
 
 
 @pytest.mark.verifies("computed anew", "hulls made and followed one by one", within="1e-3")
-def test_drawn_rows_are_the_bodies_that_they_mean():
-    """Friction, the height of the centre, and corners of the base that lie inside of the drawn ones."""
+def test_drawn_rows_are_the_bodies_that_they_mean(monkeypatch):
+    """Friction, the position of the centre, and points that lie inside of the drawn ones."""
+    monkeypatch.setattr(space, "_SETTINGS", HullSettings())
     solid = stone()
-    what = mechanics(solid, friction=(0.1, 0.8), base=(-0.02, -0.001), centre=(0.9, 1.1))
-    draws = np.random.default_rng(2).random((5, 3))
+    what = mechanics(solid, friction=(0.1, 0.8), base=(-0.02, -0.001), centre=(0.9, 1.1), offset=(-0.02, 0.02))
+    draws = np.random.default_rng(2).random((5, 5))
     drawn, found = what.values(draws), what.run(draws, 0, np.ones(5), 1)
     moments = solid.local_moments
     for k in range(5):
         points = np.array(HullBody.of(solid).vertices) - moments.centre
-        low = points[:, 2] < -moments.centre[2] + 1e-9
-        reach = np.hypot(*points[low, :2].T)
-        points[low, 0] *= (reach + drawn["base"][k]) / reach
-        points[low, 1] *= (reach + drawn["base"][k]) / reach
+        reach = np.hypot(*points[:, :2].T)
+        points[:, :2] *= ((reach + drawn["base"][k]) / reach)[:, None]
+        points[:, :2] -= drawn["offset"][k]
         points[:, 2] -= (drawn["centre"][k] - 1.0) * moments.centre[2]
         body = HullBody(points, moments.mass, np.zeros(3), moments.inertia)
         one = alone(body, "housner-3d", float(drawn["friction"][k, 0]), 0.0)
-        # other steps and another tolerance: 500 impacts make 2.4e-3 of it
+        # other steps: 500 impacts make 2.4e-3 of it
         assert found.peak[k] == pytest.approx(one["peak_tilt"].item(), rel=5e-3)
         assert found.overturning[k] == one.overturned.item()
     assert np.ptp(found.peak) > 0.01
@@ -75,9 +86,8 @@ def test_drawn_rows_are_the_bodies_that_they_mean():
 @pytest.mark.verifies("closed form", "which corners touch")
 def test_points_close_to_the_ground_touch_it():
     """A corner 2 mm above the ground stands on it where the base is uneven by 3 mm, not where by 1 mm."""
-    what = mechanics(stone(lift=0.002), base=(0.0005, 0.0035))
-    corners = [len(what._shape(base, 1.0).body.hull.corners(what._shape(base, 1.0).facet)) for base in (0.001, 0.003)]
-    assert corners == [4, 5]
+    shapes = [mechanics(stone(lift=0.002)).shapes.of(base, 1.0) for base in (0.001, 0.003)]
+    assert [len(shape.body.hull.corners(shape.facet)) for shape in shapes] == [4, 5]
 
 
 @pytest.mark.verifies("invariant", "a motion turned with the body")
@@ -140,7 +150,7 @@ def test_a_prediction_of_a_solid():
     assert one.chances["overturning"].per_motion.tolist() == two.chances["overturning"].per_motion.tolist()
     assert np.all(np.diff(one.chances["overturning"].per_motion) >= 0.0)
     assert one.chances["overturning"].per_motion[-1] > 0.5
-    assert set(one.inputs) == {"restitution", "friction", "base", "centre", "azimuth"}
+    assert set(one.inputs) == {"restitution", "friction", "base", "centre", "offset", "level", "azimuth"}
     assert any("base:" in each for each in one.assumed)
 
 
@@ -208,13 +218,84 @@ def test_a_body_wider_than_its_base_is_measured_as_its_section():
     assert found.inputs["restitution"].text.startswith(f"{r[25]:.3f} to {r[-26]:.3f} over the edge")
 
 
-@pytest.mark.verifies("closed form", "corners moved towards the middle by a length", within="1e-12")
-def test_a_smaller_base_is_smaller_in_both_directions():
-    """Each corner of the base lies 10 mm nearer to the plumb line, in its own direction."""
-    what = mechanics(stone())
-    (plain, small) = (np.array(what._shape(base, 1.0).body.vertices) for base in (0.0, -0.01))
-    moved = np.abs(plain - small).max(axis=1) > 1e-6
-    assert moved.sum() == 5
-    far = np.linalg.norm(plain[moved, :2], axis=1)
-    np.testing.assert_allclose(small[moved, :2], plain[moved, :2] * (1.0 - 0.01 / far)[:, None], rtol=1e-12)
-    np.testing.assert_allclose(small[moved, 2], plain[moved, 2], rtol=1e-12)
+@pytest.mark.verifies("closed form", "points moved towards the middle by a length", within="1e-12")
+def test_an_inset_body_is_smaller_in_both_directions():
+    """Each point lies 10 mm nearer to the plumb line, in its own direction, at its height."""
+    shapes = mechanics(stone()).shapes
+    plain, small = shapes.points(0.0), shapes.points(-0.01)
+    far = np.linalg.norm(plain[:, :2], axis=1)
+    np.testing.assert_allclose(small[:, :2], plain[:, :2] * (1.0 - 0.01 / far)[:, None], rtol=1e-12)
+    np.testing.assert_array_equal(small[:, 2], plain[:, 2])
+
+
+@pytest.mark.verifies("computed anew", "the hull of the points about the moved centre", within="1e-12")
+def test_a_moved_centre_has_the_hull_of_the_points():
+    """Heights, poses and the facet under the centre are those of a hull that is computed anew."""
+    shapes = mechanics(stone()).shapes
+    shift = np.array([0.03, -0.05, 0.02 * 0.55])
+    fast, slow = shapes.of(-0.01, 1.0).body.moved(shift), HullBody(shapes.points(-0.01), 1.0, shift, np.eye(3))
+    assert fast.hull.rolls.tolist() == slow.hull.rolls.tolist()
+    np.testing.assert_allclose(fast.hull.heights, slow.hull.heights, rtol=1e-12)
+    np.testing.assert_allclose(fast.points, slow.points, rtol=0.0, atol=1e-12)
+    # negative control: another centre
+    other = HullBody(shapes.points(-0.01), 1.0, 1.2 * shift, np.eye(3))
+    assert np.abs(fast.hull.heights - other.hull.heights).max() > 1e-3
+    with pytest.raises(RockingError, match="must be inside the hull"):
+        fast.moved(np.array([1.0, 0.0, 0.0]))
+
+
+@pytest.mark.verifies("second engine", "the ground of the reference engine", within="1e-15")
+def test_axes_of_a_slope():
+    """The slope descends towards its azimuth."""
+    slopes = np.array([[0.02, -0.01], [0.0, 0.0], [-0.3, 0.1]])
+    for row, (x, y) in zip(sloping(slopes), slopes.tolist(), strict=True):
+        ground = HullGround(slope=math.hypot(x, y), azimuth=math.atan2(y, x))
+        np.testing.assert_allclose(row[:9], np.ravel(ground.level), rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.verifies("closed form", "uplift on a slope: g tan(alpha -+ slope)", within="0.5 %")
+@pytest.mark.parametrize("azimuth", [0.0, 0.7])
+def test_uplift_on_a_slope(azimuth):
+    """A body on a slope lifts sooner over its lower edge, and later over its upper edge, in any direction."""
+    solid, slope, alpha, ramp = Solid(box(0.5, 2.0, 2.0)), 0.03, math.atan(0.25), np.linspace(0.0, 1.0, 200)
+    shapes = {"level": slope, "azimuth": azimuth, "friction": 5.0, "restitution": 0.9}
+    for sign in (1.0, -1.0):
+        threshold = rk.conventions.g * math.tan(alpha - sign * slope)
+        for factor, lifts in ((0.995, 0.0), (1.005, 1.0)):
+            peak = -sign * factor * threshold * ramp
+            x, y = (rk.GroundMotion(c * peak, 0.05) for c in (math.cos(azimuth), math.sin(azimuth)))
+            what = SampledInSpace(solid, {"x": x, "y": y}, {**KNOWN, **shapes}, rk.conventions.g)
+            what.inputs["level"] = Uncertain(
+                "towards x", lambda u: slope * (np.arange(u.shape[1]) == 0) + 0.0 * u, fixed=True
+            )
+            assert what.run(np.empty((1, 0)), 0, np.ones(1), 1).uplift[0] == lifts, (sign, factor)
+            # negative control: level ground
+            flat = SampledInSpace(solid, {"x": x, "y": y}, {**KNOWN, **shapes, "level": 0.0}, rk.conventions.g)
+            assert flat.run(np.empty((1, 0)), 0, np.ones(1), 1).uplift[0] == float(sign < 0.0)
+
+
+@pytest.mark.verifies("invariant", "no body stands with its plumb line beyond the edge of its base")
+def test_bodies_remain_in_their_pose():
+    """Offsets and slopes that would tip the body are smaller; those that do not, are not."""
+    shapes = SampledInSpace(Solid(box(0.2, 0.4, 2.0)), shaking(), KNOWN, rk.conventions.g).shapes
+    base, shift = np.array([0.0, -0.02, 0.0, 0.0]), np.array([[0.2, 0.0], [0.2, 0.0], [0.05, 0.1], [0.0, -0.4]])
+    assert shapes.standing(base, shift) == pytest.approx([0.45, 0.45 * (1.0 - 0.02 / math.hypot(0.1, 0.2)), 1.0, 0.45])
+
+
+@pytest.mark.verifies("second engine", "finer steps and a later rest", control="a motion stronger by 30 %")
+def test_coarse_settings_give_the_same_probability(monkeypatch):
+    """Settings of a prediction change as many verdicts as a millionth of the motion does, and none in the mean."""
+    given = {"restitution": None, "friction": (0.3, 0.8), "base": (-0.01, 0.0), "azimuth": (0.0, 6.0)}
+    what, draws = mechanics(stone(), **given), np.random.default_rng(5).random((48, 4))
+
+    def verdicts(settings, factor=0.85):
+        monkeypatch.setattr(space, "_SETTINGS", settings)
+        return what.run(draws, 0, np.full(48, factor), 1).overturning
+
+    coarse, fine = space._SETTINGS, HullSettings(tolerance=1e-8)
+    found, exact, nearby = verdicts(coarse), verdicts(fine), verdicts(fine, 0.85 * (1.0 + 1e-6))
+    assert 10 < exact.sum() < 40
+    differ, chaos = (int(np.abs(each - exact).sum()) for each in (found, nearby))
+    assert differ <= chaos + 3.0 * math.sqrt(chaos + 1.0)
+    assert abs(float((found - exact).sum())) <= 2.0 * math.sqrt(differ + 1.0)
+    assert abs(float((verdicts(coarse, 1.1) - exact).sum())) > 2.0 * math.sqrt(differ + 1.0)
