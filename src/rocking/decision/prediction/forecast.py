@@ -224,7 +224,7 @@ class Prediction(Exported):
             ends = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
             sentences.append(Message(_DIRECTIONS, ends))
         if names := [Message(name) for name in self.fixed]:
-            listed = names[0]
+            listed: str = names[0]
             for name in names[1:]:
                 listed = Message("{first}, {second}", {"first": listed, "second": name})
             sentences.append(Message(_NOT_SAMPLED, {"inputs": listed}))

@@ -220,8 +220,8 @@ def test_none_of_sixteen_is_not_almost_certain():
     chance = found.chances["overturning"]
     assert (chance.low, chance.high) == pytest.approx((0.0, 1.0 - 0.025 ** (1.0 / 16.0)), abs=1e-12)
     assert found.verdict == (
-        "Overturning is unlikely given this motion (PGA 0.102 g; PGV 0.191 m/s), for the sampled inputs: probability 0 % "
-        "(95 % interval 0 % to 20.6 %)."
+        "Overturning is unlikely given this motion (PGA 0.102 g; PGV 0.191 m/s), for the sampled inputs: "
+        "probability 0 % (95 % interval 0 % to 20.6 %)."
     )
     # negative control: with enough histories the strong word is earned
     assert likelihood(*share_interval(0, 16)) != "exceptionally unlikely"
