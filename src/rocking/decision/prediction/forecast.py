@@ -221,12 +221,12 @@ class Prediction(Exported):
                 Message("For other motions like these the interval is {interval}.", {"interval": interval})
             )
         if self.directions:
-            ends = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
-            sentences.append(Message(_DIRECTIONS, ends))
-        if names := [Message(name) for name in self.fixed]:
-            listed: str = names[0]
-            for name in names[1:]:
-                listed = Message("{first}, {second}", {"first": listed, "second": name})
+            range_of_quarters = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
+            sentences.append(Message(_DIRECTIONS, range_of_quarters))
+        if self.fixed:
+            listed, *others = map(Message, self.fixed)
+            for other in others:
+                listed = Message("{first}, {second}", {"first": listed, "second": other})
             sentences.append(Message(_NOT_SAMPLED, {"inputs": listed}))
         sentences += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
