@@ -299,6 +299,7 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
     assert response.outcome is Outcome.FLEW
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine",
     "the reference engine of pure rocking",
@@ -318,6 +319,7 @@ def test_much_friction_is_the_pure_rocking_engine(restitution, agreement):
     assert planar.peak_rotation == pytest.approx(pure.peak_rotation, rel=1e-9, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "0.9 of the coefficient")
 def test_another_coefficient_is_told_apart_from_the_pure_rocking_engine():
     """Negative control: with r = 0.9 times Housner's the same comparison fails by more than 1e-6 rad."""
@@ -336,6 +338,7 @@ def _strong():
     return rk.GroundMotion(2.2 * motion.acceleration, 0.02, vertical=motion.vertical)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-10", control="within")
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_energy_adds_up(width, mu, bounce, agreement):
@@ -349,6 +352,7 @@ def test_energy_adds_up(width, mu, bounce, agreement):
     assert np.max(np.abs(response.energy.gap + 1e-6 * kinetic)) > 1e-8 * kinetic.max()  # the check sees 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the mirrored body under the mirrored motion", within="every bit")
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_mirror_is_exact(width, mu, bounce):
@@ -364,6 +368,7 @@ def test_mirror_is_exact(width, mu, bounce):
     assert one.regimes["regime"].tolist() == other.regimes["regime"].tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant", "forces that press, Coulomb's law, no foot in the ground", within="1e-9 of the weight; 1e-12 m"
 )
@@ -435,6 +440,7 @@ def _peer(width, height, mu, push, duration, total):
     return float(data.qpos[0]), float(data.qpos[2])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "other program", "MuJoCo, steps of 0.1 ms", within="2e-5 of the way slid; 2e-3 where it rocks too", control="within"
 )

@@ -61,6 +61,7 @@ def test_the_generator_is_splitmix() -> None:
             assert uniform(seed, key, impact) == (word // 2**11) / 2.0**53
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "test of Kolmogorov and Smirnov",
@@ -92,6 +93,7 @@ def test_a_wrong_distribution_is_caught() -> None:
     assert stats.kstest(sample ** (1.0 / 1.13), "uniform").pvalue < ALARM
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "chi-square in 8 x 8 cells, and correlation",
@@ -125,6 +127,7 @@ def test_dependence_is_caught() -> None:
     assert stats.chi2_contingency(table).pvalue < ALARM
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling", "the truncated normal distribution of SciPy", within="1e-6 of false alarms", control="within"
 )
@@ -172,6 +175,7 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "draws made in Python", within="3e-16 of a straight line written anew")
 @every_engine
 def test_engines_draw_alike(name: str) -> None:

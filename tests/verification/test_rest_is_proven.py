@@ -37,6 +37,7 @@ def lifts(trajectory):
     return np.array([e.time for e in trajectory.events if e.kind is EventKind.UPLIFT])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant",
     "every impact resolved instead of summed up",
@@ -57,6 +58,7 @@ def test_the_same_later_history(name):
     assert saved > 10 * COUNT, "the comparison is about impacts that were summed up"
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "every slow body put to rest")
 def test_rest_without_proof_is_wrong(monkeypatch):
     """Putting every slow body to rest, as is often done, changes later uplifts."""

@@ -95,6 +95,7 @@ def test_each_history_overturns_if_its_draw_exceeds_the_critical_coefficient():
     assert ((outcome == OVER) == (shifted > 0.9)).mean() < 0.6
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "1, 7 and 1000 pieces")
 def test_pieces_do_not_change_the_draws():
     """In 1, 7 or 1000 pieces the same histories overturn."""
@@ -171,6 +172,7 @@ def mcnemar(first, second):
     return stats.binomtest(flips.only_second, flips.count, 0.5, "greater").pvalue
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "order of dissipation; McNemar's test",

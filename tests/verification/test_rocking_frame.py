@@ -150,6 +150,7 @@ def frame_of(columns: int, gamma: float, size: float, alpha: float, mass: float)
     return Frame(columns, size * math.sin(alpha), size * math.cos(alpha), mass, gamma * columns * mass)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "a frame of columns and a beam, integrated from its masses by SciPy (Makris and Vassiliou 2013)",
@@ -174,6 +175,7 @@ def test_a_frame_is_a_block(
     assert apart(frame.impacts(ratio * alpha), block) < WITHIN
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "p or r of a column alone")
 @every_engine
 @pytest.mark.parametrize("gamma", [0.1, 1.0, 10.0])

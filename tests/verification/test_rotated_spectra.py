@@ -41,6 +41,7 @@ def _percentiles(path, period):
     return np.percentile(peaks, [0.0, 50.0, 100.0]) * (2.0 * math.pi / period) ** 2
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "an integration of high order", within="5e-4", control="test_paths_at_samples_only_are_rejected"
 )

@@ -19,7 +19,7 @@ from rocking.dynamics.frictional.settings import HullSettings
 from rocking.dynamics.rolling import SpatialBody
 from rocking.dynamics.rolling.batch import batch_in_space
 
-pytestmark = pytest.mark.verifies(room="rocking in space")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="rocking in space")]
 needs_engine = pytest.mark.skipif(not histories.available(), reason="the compiled engine was not built")
 
 B, HEIGHT, G = 0.25, 2.0, rk.conventions.g

@@ -41,6 +41,7 @@ def over_the_base(solid):
     return impact_in_space(solid, -start.direction, pivot=start, onto=foot, model="ked-3d")
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "order",
     "the exact integral over the solid",

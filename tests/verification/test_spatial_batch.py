@@ -20,6 +20,7 @@ from rocking.dynamics.rolling.fast_engine import steps_of
 from rocking.dynamics.rolling.ground import ground_of
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.verifies(room="rocking in space"),
     pytest.mark.skipif(not fast_engine.available(), reason="the batch engine was not built"),
 ]

@@ -72,6 +72,7 @@ def test_energy_stays_while_it_rolls():
     assert np.ptp(energy) < 1e-11 * energy.max()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine in space", within="1e-7")
 @pytest.mark.parametrize("spin", [(0.0, 0.0, 0.4), (0.3, -0.2, 0.5)])
 def test_free_rolling_is_that_of_the_reference_engine(spin):
@@ -84,6 +85,7 @@ def test_free_rolling_is_that_of_the_reference_engine(spin):
     assert attitude.tilt(slow.quaternion).max() > 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine", "the reference engine in space", within="1e-12 s of the uplift, 1e-3 rad of the direction"
 )
@@ -105,6 +107,7 @@ def test_ked_by_points_on_a_rim_is_refused_in_words():
         batch_in_space(CYLINDER, restitution="ked-3d-point", start=SpatialStart(0.1))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the coefficient of the cylinder over its diameter, 15 digits", within="1e-7")
 def test_ked_on_a_rim_is_that_of_the_plane():
     """A cylinder let go over its rim falls flat on the far side: REF to 1e-7 at three impacts, both engines."""
@@ -117,6 +120,7 @@ def test_ked_on_a_rim_is_that_of_the_plane():
         np.testing.assert_allclose(np.sqrt(ratio[:3]), 0.9501165798529068, rtol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine in space", within="as many impacts")
 @pytest.mark.parametrize("share", [0.3, 0.75])
 def test_a_round_base_that_is_pushed_comes_to_rest(share):

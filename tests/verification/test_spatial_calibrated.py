@@ -33,6 +33,7 @@ def tower(width, depth, height, offset):
     return Solid(box(width, depth, height), mass=mass, centre=(offset * width, 0.0, 0.5 * height), inertia=inertia)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the plane model, onto either foot", within="1e-9", control="within")
 @given(
     st.floats(0.2, 3.0),
@@ -96,6 +97,7 @@ def test_no_landing_gains_energy(seed):
     assert result.energy_after <= result.energy_before * (1.0 + 1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine without friction", within="1e-6", control="within")
 @pytest.mark.parametrize(
     ("body", "scale"),
@@ -118,6 +120,7 @@ def test_both_engines_agree(body, scale):
     assert 0.0 < calibrated < 0.9 * housner
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "each model has its own table in a batch", within="bits")
 def test_models_of_one_batch_are_those_of_batches_of_their_own():
     """Two bodies under KED and the calibrated model, with and without friction: no row takes the table of another."""
@@ -134,6 +137,7 @@ def test_models_of_one_batch_are_those_of_batches_of_their_own():
         assert len(set(alone)) == 4
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine with friction", within="1e-6")
 def test_both_engines_with_friction_agree():
     """A prism of known moments with friction 0.6, on its hull."""
@@ -160,6 +164,7 @@ def test_the_base_of_a_hull_is_that_of_its_solid():
         position_on_base(leaning)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the response of the solid", within="1e-9")
 def test_a_body_of_known_moments_needs_no_distribution_of_mass():
     """Where KED is refused the calibrated model gives a response, also of a body described by its base alone."""

@@ -37,6 +37,7 @@ ANGLE = st.floats(-math.pi, math.pi)
 SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant",
     "gaps, energy, and energy over impacts",
@@ -78,6 +79,7 @@ def test_an_impact_without_complementarity_is_rejected():
     assert leaves > 0.0 > np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "g b / h of the edge or rim", within="between 0.999 and 1.001 of it")
 @pytest.mark.parametrize("direction", [0.0, 0.3, 0.25 * math.pi, 1.2])
 def test_rest_ends_where_the_pressure_leaves_the_base(direction):
@@ -106,6 +108,7 @@ def test_a_ground_that_falls_faster_than_the_body_is_said_so():
     assert rk.simulate(SQUARE, {"z": drop.scaled(0.45)}, "housner").outcome is Outcome.NO_UPLIFT
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the opposite direction", within="1e-6 rad")
 @pytest.mark.parametrize("direction", [0.0, 1.0, 2.5, -2.0])
 def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
@@ -118,6 +121,7 @@ def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
     assert run.overturned_over == "its rim"
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "the centre of pressure, by differences", within="2e-3 of the edge", control="within"
 )

@@ -51,6 +51,7 @@ def left_of_points(body, pivot, landing, velocity, up):
 # ---- the plane -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine of the plane", within="1e-9")
 @pytest.mark.parametrize("amplitude", [4.6, -5.2])
 def test_ked_under_a_pulse_in_a_plane_is_that_of_the_plane(amplitude, agreement):
@@ -71,6 +72,7 @@ def test_ked_under_a_pulse_in_a_plane_is_that_of_the_plane(amplitude, agreement)
 # ---- corners and rims ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the impact of the upright body onto the far point", within="1e-7")
 @pytest.mark.parametrize("model", LAWS)
 def test_a_round_base_that_falls_flat_has_the_impact_of_its_far_side(model):
@@ -111,6 +113,7 @@ def test_an_impact_on_a_leaning_body_asks_the_true_vertical():
 # ---- what a body must know -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the same column a kilometre off", within="1e-9")
 def test_a_solid_far_from_the_origin_is_the_same_body():
     """A column described on ground at 30 m, a kilometre off, rocks by KED as the one at the origin, to 1e-9.

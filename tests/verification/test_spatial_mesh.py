@@ -63,6 +63,7 @@ def orders(values):
     return np.log2(values[:-1] / values[1:])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "order", "the rolling rim", within="0.2 of an order of 0.95", control="test_the_law_by_points_does_not_converge"
 )
@@ -99,6 +100,7 @@ def test_two_hundred_corners_are_nearly_the_rim(rim):
         assert "still rocking at the end of the computation, 1.2 s" in run.summary
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("order", "the coefficient of the drum", within="0.1 of the order")
 def test_the_coefficient_converges_to_that_of_the_drum():
     """Over a diameter, edge to opposite edge: r tends to that of the drum with the square of n.
@@ -120,6 +122,7 @@ def test_the_coefficient_converges_to_that_of_the_drum():
     np.testing.assert_allclose(order, 2.0, rtol=0.0, atol=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_what_comes_to_rest_is_not_still_rocking():
     """A box rests in the end; the same history cut short is still rocking, in words and in its files."""
@@ -134,6 +137,7 @@ def test_what_comes_to_rest_is_not_still_rocking():
     assert cut.exported().provenance["still_rocking"]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 @built
 def test_a_spin_nearly_flat_ends_after_so_many_steps(monkeypatch):

@@ -51,6 +51,7 @@ def prism_points(count):
     return points, np.full(len(points), PRISM.mass / len(points))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "a million mass points, extrapolated",
@@ -81,6 +82,7 @@ def test_a_vertical_frozen_to_the_body_is_rejected(place):
     assert abs(energy_left(leaning(PRISM, onto, velocity, UP)) / brute - 1.0) > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "mass points, extrapolated", within="1e-5", control="within")
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("tilt", [0.3, -0.2])
@@ -178,6 +180,7 @@ def test_edge_axes_are_right_handed():
     assert frame[2] == pytest.approx(UP, abs=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant", "energy before the impact", within="1e-12", control="test_energy_by_another_closure_would_be_created"
 )
@@ -203,6 +206,7 @@ def test_energy_by_another_closure_would_be_created():
     assert 0.5 * fast @ impact.inertia @ fast > impact.energy
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "turned and mirrored bodies", within="1e-10")
 @settings(max_examples=10)
 @given(ANGLE, st.tuples(UNIT, UNIT))

@@ -34,6 +34,7 @@ def _reference(seed, law):
     return rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-9", control="within")
 def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
     """The history ends and its energy closes to 1e-9; impacts that may pile up for ever stop it."""
@@ -44,6 +45,7 @@ def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
     assert _reference(96, "housner-3d").status is Status.TOO_MANY_EVENTS
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-9", control="within")
 def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
     """An impact at 83 degrees: it falls, energy to 1e-9; were less energy than at rest called rest, it would stand."""
@@ -57,6 +59,7 @@ def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
     assert wrong.energy.closure > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 @built
 def test_no_history_on_polygons_ends_in_piled_impacts():

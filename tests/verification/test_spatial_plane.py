@@ -39,6 +39,7 @@ def _signed(states, axis):
     return np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine of the plane", within="1e-10", control="within")
 @pytest.mark.parametrize(("model", "plane"), PLANE.items())
 @pytest.mark.parametrize("axis", [0, 1])
@@ -56,6 +57,7 @@ def test_free_rocking_in_a_plane_is_that_of_the_plane(axis, model, plane):
     assert np.abs(other.impacts["time"][1:5] - space.impacts["time"][1:5]).max() > 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine of the plane", within="1e-10")
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize("amplitude", [3.4, 4.0, -4.2])
@@ -76,6 +78,7 @@ def test_a_sine_pulse_in_a_plane_is_the_plane_solution(axis, amplitude):
         )
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine of the plane", within="1e-9")
 def test_a_record_with_a_vertical_part_is_the_plane_solution():
     """Two components of a record, straight lines between samples, through twelve impacts: 1e-9."""

@@ -210,6 +210,7 @@ def in_slices(points, along, offset):
     return sum(integrate.quad(across, low, high, epsabs=1e-14, epsrel=1e-12)[0] for low, high in ends)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "polygons across the line, summed along it", within="1e-11", control="within")
 @pytest.mark.parametrize("seed", range(6))
 def test_flat_faces_exactly(seed, agreement, monkeypatch):
@@ -237,6 +238,7 @@ def test_flat_faces_exactly(seed, agreement, monkeypatch):
         assert abs(exact_moment(part, line, along) / true - 1.0) > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form", "the plane coefficient, with the square of the depth", within="0.05 of the square of the depth"
 )
@@ -276,6 +278,7 @@ def outcome(solid, case, model):
     return impact_in_space(solid, case["velocity"], pivot=case["pivot"], onto=case["onto"], model=model).raw_velocity
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "another size and density, turned and mirrored", within="1e-11")
 @pytest.mark.parametrize("model", MODELS)
 def test_size_density_turn_and_mirror(model):
@@ -305,6 +308,7 @@ def test_additivity_of_parts():
         assert kept_moments(other, corner).fourth == pytest.approx(expected, rel=1e-12, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "energy, and the bound of Cauchy and Schwarz", within="1e-12")
 @settings(max_examples=30 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 12, deadline=None)
 @given(

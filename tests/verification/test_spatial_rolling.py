@@ -27,6 +27,7 @@ def _still(gravity=G):
     return np.array([[0.0], [0.0], [-gravity]])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "both steady wobbles of a cylinder", within="1e-9 rad", control="within")
 @pytest.mark.parametrize(
     ("tilt", "first", "second"),
@@ -66,6 +67,7 @@ def test_a_cylinder_keeps_its_steady_wobbles(tilt, first, second):
     assert np.ptp(run.tilt) > 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form", "pi sqrt(1 + m b^2 / (I1 + m h^2)) (Srinivasan and Ruina 2008)", within="3e-3 rad at a tilt of 5e-4"
 )
@@ -100,6 +102,7 @@ def test_a_near_flat_passage_sweeps_the_reference_angle(ratio, sweep):
     assert abs(turned[after] - turned[0]) == pytest.approx(sweep, abs=3e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "SciPy's DOP853 on the equations in Euler angles", within="1e-9 rad")
 def test_rolling_agrees_with_the_equations_in_euler_angles(agreement):
     """The three equations for a cylinder, integrated by DOP853, give the same tilt to 1e-9 over 3 s."""

@@ -63,6 +63,7 @@ def _reference(seed, **options):
     return rk.simulate(body, motion, "housner", scale=scale, duration=LENGTH, **options)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 @built
 @pytest.mark.parametrize("components", COUNTS)
@@ -112,6 +113,7 @@ def test_a_fall_is_a_fall_and_rounding_must_have_a_floor(monkeypatch):
     assert _lifted(-4e-13, 0.0) == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_a_history_lifted_from_rest_has_a_result():
     """The record under which a floor that was missing made a body drop and lift a hundred times at one instant."""
@@ -128,6 +130,7 @@ def test_the_lift_from_rest_is_no_passage():
     assert lifted.near_flat_passages == 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-9", control="within")
 def test_a_rim_nearly_flat_is_held_down(monkeypatch):
     """Passages that would pull: a result, an account of them in words, energy to 1e-9; otherwise contact is lost."""
@@ -196,6 +199,7 @@ def test_a_rim_is_held_down_up_to_a_hundredth_of_the_slenderness_angle(tilt, rat
     assert attitude.tilt(end)[0] > 2.5e-3 * (1.0 - 1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy", within="1e-9")
 @pytest.mark.parametrize("seed", [15, 104])
 def test_energy_closes_under_records(seed, agreement):
@@ -233,6 +237,7 @@ def test_rolling_with_hardly_any_energy_comes_to_rest():
     assert rolls.impacts.size == 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine in space", within="1e-6 in peaks")
 @built
 def test_both_engines_find_the_same_outcome():

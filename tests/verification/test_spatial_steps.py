@@ -18,7 +18,7 @@ from rocking.restitution.space import (
 )
 from rocking.restitution.space.impulse_position import impulse_position
 
-pytestmark = pytest.mark.verifies(room="restitution in space")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="restitution in space")]
 
 # random steps of each body
 STEPS = 4000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1000

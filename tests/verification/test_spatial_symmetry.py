@@ -35,6 +35,7 @@ def _records(seed):
     return [2.4 * np.sin(rng.uniform(3.0, 7.0) * time + rng.uniform(0.0, 6.0)) for _ in range(3)]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "body and motion turned about the vertical", within="1e-9")
 @settings(max_examples=4 * TIMES)
 @given(ANGLE, st.integers(0, 50), LAW)
@@ -56,6 +57,7 @@ def test_turning_body_and_motion_turns_the_response(angle, seed, law):
     assert first.energy.closure < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the mirror image", within="1e-9")
 @settings(max_examples=4 * TIMES)
 @given(ANGLE, SPIN, LAW)
@@ -72,6 +74,7 @@ def test_a_mirrored_start_gives_the_mirrored_response(azimuth, spin, law):
     np.testing.assert_allclose(other.centre[:keep], first.centre[:keep] * [1.0, -1.0, 1.0], rtol=0.0, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the diagonal", within="1e-11")
 def test_equal_components_move_a_square_body_along_its_diagonal():
     """The same pulse along x and y: the centre stays on the diagonal to 1e-11, over vertices only."""
@@ -82,6 +85,7 @@ def test_equal_components_move_a_square_body_along_its_diagonal():
     assert {contact for _, _, contact, _ in run.intervals} == {ContactMode.REST, ContactMode.VERTEX}
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "bodies 256 times as large and as small", within="1e-9")
 @pytest.mark.parametrize("size", [1.0 / 256.0, 256.0])
 @pytest.mark.parametrize("azimuth", [0.0, 0.4])

@@ -53,6 +53,7 @@ def _drift(flow, body, pivot, q, w, steps=300, length=0.05, order=24):
     return worst
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "invariant",
     "energy and vertical angular momentum of a heavy top",
@@ -70,6 +71,7 @@ def test_energy_and_vertical_momentum_about_a_vertex_stay(azimuth, tilt, spin, o
     assert _drift(PivotFlow(body, pivot), body, pivot, q, np.array(spin)).max() < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "the gyroscopic term with the wrong sign")
 def test_a_wrong_gyroscopic_sign_is_rejected():
     """Negative control: with w x I w of the wrong sign the same check is off by more than 1e-3."""
@@ -112,6 +114,7 @@ def test_the_order_of_the_steps_is_the_declared_one(order):
     assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.35)  # the slope itself converges as 1 / count
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "59/71 and 64/71, coefficients by KED to 13 digits", within="1e-9")
 @pytest.mark.parametrize(
     ("law", "ratio"),

@@ -35,6 +35,7 @@ BASE_ALONE = SpatialBody(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the reference engine, one history at a time", within="1e-6")
 def test_a_cell_is_its_history():
     """Every cell of a batch is the history of `simulate`, of a body without symmetry under two components."""
@@ -123,6 +124,7 @@ def test_a_response_is_its_states():
     assert ends == sorted(ends)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_threads_and_order_do_not_matter():
     """Other threads, another order of the rows, another order of the bodies: the same bits."""
@@ -134,6 +136,7 @@ def test_threads_and_order_do_not_matter():
         assert np.array_equal(one[name].values, other[name].values[::-1, :, ::-1], equal_nan=True)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("damage")
 @pytest.mark.parametrize("engine", ["fast", "reference"])
 def test_a_bad_row_touches_no_other(engine):
@@ -184,6 +187,7 @@ def test_a_body_of_known_moments_has_no_ked():
     assert rk.simulate(known, PULSE, "housner", friction=0.2).outcome is Outcome.SLID
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_commands(tmp_path, answered):
     """The option of the command gives what Python gives; a picture and a table are written."""
@@ -255,6 +259,7 @@ def test_azimuth_is_an_axis():
         overturning_map(PLANE, PULSE, ("azimuth", angles), ("scale", turns))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the engine of flat bases, without friction", within="1e-6")
 def test_without_friction_nothing_slides():
     """A study that is told no friction has the peaks and falls of `simulate` without friction while contact holds."""
@@ -267,6 +272,7 @@ def test_without_friction_nothing_slides():
     assert overturning_map(*ask, friction=0.3).peak_rotation.values.ravel() != pytest.approx(peaks, rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "histories on both sides of the minimum", within="1e-3")
 def test_the_minimum_is_where_the_verdict_changes():
     """Just below the least acceleration `simulate` stands, just above it falls; little friction needs no less."""
@@ -281,6 +287,7 @@ def test_the_minimum_is_where_the_verdict_changes():
     assert smooth.failed == 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "`simulate_many` over the same motions", within="exact")
 def test_fragilities():
     """Stripes, cloud and incremental analysis count the verdicts of `simulate_many`, of motions of two components."""
@@ -357,6 +364,7 @@ def test_refusals_of_studies(ask, says):
         ask()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_commands_of_studies(tmp_path, answered):
     """A map and a minimum of the command line, and of a job file, are those of Python; pictures are drawn."""
@@ -392,6 +400,7 @@ def records(tmp_path):
     return tmp_path, motions
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_components_of_studies_in_files_and_commands(records, answered):
     """x, y and z of [[motions]], and of the option --motion, are the components that Python takes."""
@@ -416,6 +425,7 @@ def test_components_of_studies_in_files_and_commands(records, answered):
     assert answered("map", folder / "job.toml")["peak_ratio"] != told["peak_ratio"]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_fragilities_of_components_in_files_and_commands(records, answered):
     """An axis that is named again begins the next motion; a campaign of the job file has the numbers of Python."""
@@ -472,6 +482,7 @@ negative,20,30,90,,-1,,
 """
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("second engine", "the plane engine, and `simulate_many` of the body itself", within="exact")
 def test_an_inventory_of_solids(records, answered):
     """A box on rough ground falls as often as its rectangle, a smooth one slides; bad rows are told and touch none."""

@@ -18,7 +18,7 @@ from rocking.studies.fragility import fragility_analysis
 from rocking.studies.histories import results_of
 from rocking.studies.sensitivity import SampledRestitution
 
-pytestmark = pytest.mark.verifies(room="sliding, hopping and flight")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="sliding, hopping and flight")]
 BODY = section(4)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)
 BLOCK = rk.Block(width=0.5, height=1.2)

@@ -15,7 +15,7 @@ from rocking.dynamics.plane.tangent import tangent_of
 from rocking.motions.pulse import Sinusoids
 from rocking.motions.segments import Segments
 
-pytestmark = pytest.mark.verifies(room="rocking in the plane")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="rocking in the plane")]
 ENGINES = ("fast", "reference")
 BLOCK = rk.Block(width=1.0, height=4.0)
 LEANING = rk.MassPoints([[-0.4, 0.0], [0.6, 0.0], [0.25, 2.2], [0.1, 3.0]], [1.0, 1.0, 2.0, 1.0], feet=(-0.4, 0.6))

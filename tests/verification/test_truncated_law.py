@@ -69,6 +69,7 @@ CASES = list(zip(BODIES, (0.9, 0.97, 0.9), (0.05, 0.03, 0.05), strict=True))  # 
 # ---- the distribution -----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "the truncated normal distribution of SciPy",
@@ -122,6 +123,7 @@ def one_point(eta: float, k: float, s: float) -> Calibration:
     return Calibration(np.array([[eta, k, s, 0.0]]), known.marginals, known.joint, known.summary)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "closed form",
     "the truncated normal distribution",
@@ -155,6 +157,7 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
                 assert stats.kstest(clipped, exact.cdf).pvalue < ALARM
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_doubted_and_refused() -> None:
     """Nothing is said below 5 %, a warning above it; where next to nothing is left, or cannot be cut, it is refused."""
@@ -222,6 +225,7 @@ bodies = st.builds(leaning, st.floats(1.05, 6.0), st.floats(0.3, 1.0), st.floats
 tables = st.lists(st.floats(0.4, 1.0), min_size=2, max_size=6).map(sorted)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "r^2 I_new <= I_old, by Steiner's theorem", within="2e-9")
 @quietly
 @settings(max_examples=60, deadline=None)
@@ -241,6 +245,7 @@ def test_no_draw_is_beyond_the_bound(body: Any, left: Any, right: Any, seed: int
         assert most <= bound(body, foot) * (1.0 + 2e-9)  # the rounding that r and I are granted
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "kinetic energy over an impact", within="1e-9")
 @quietly
 @every_engine
@@ -287,6 +292,7 @@ def results(law: Any, name: str, values: dict[str, Any]) -> Any:
 TWO = {"left": [0.6, 0.7, 1.0], "right": [0.8, 0.9, 0.95]}
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "second engine", "the reference engine", within="1e-8 rad in peaks; counts equal", control="within"
 )
@@ -321,6 +327,7 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
         assert r == parameters.coefficient(side, 1.0, 4, n)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("same bits", "two equal tables kept as two")
 @every_engine
 def test_equal_sides_are_one_table(name: str) -> None:
@@ -333,6 +340,7 @@ def test_equal_sides_are_one_table(name: str) -> None:
     assert all(first[key].tobytes() == second[key].tobytes() for key in fast_engine.RESULTS)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "body, motion and tables mirrored", within="1e-9 rad", control="within")
 @quietly
 @every_engine
@@ -356,6 +364,7 @@ def test_a_mirrored_body_gives_the_mirrored_response(name: str, law: Any) -> Non
 # ---- who draws ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "single responses of the same numbers", within="1e-8 rad")
 @quietly
 @LAWS

@@ -53,6 +53,7 @@ def test_coefficients_of_a_group_have_a_range_per_foot(run, file, words, first):
     assert re.search(r" 0\.\d+ / 0\.\d+ ", next(line for line in lines if line.startswith(first)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "total"),
     [

@@ -31,6 +31,7 @@ def test_a_box_in_closed_form(answered, file):
     assert [row["nearest_edge"] for row in answer["base_tolerances"]] == pytest.approx([0.5] * 5, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_the_page_says_it_in_words(printed, file):
     """Of a box, and of a drum that rolls; lengths in the unit of the question."""
     page = printed(file(PRISM))
@@ -41,6 +42,7 @@ def test_the_page_says_it_in_words(printed, file):
     assert "! round faces are polygons with 360 corners" in page
 
 
+@pytest.mark.slow
 def test_files(run, file, tmp_path):
     """A picture, and a table of the poses."""
     picture, table = tmp_path / "poses.png", tmp_path / "poses.csv"
@@ -57,6 +59,7 @@ def test_a_block_is_extruded(answered, file):
     assert [pose["centre_height"] for pose in told["stable"]] == pytest.approx([0.5, 0.5, 1.0, 1.0, 2.0, 2.0])
 
 
+@pytest.mark.slow
 def test_a_file_that_asks_for_a_response(answered, run, file, tmp_path):
     """Its table [body] is what stands, as the body alone does; --set changes it."""
     body = file(PRISM)

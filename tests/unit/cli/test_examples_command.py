@@ -14,6 +14,7 @@ ALL = rk.examples.catalogue()
 COMMAND = "examples"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_every_example_runs_in_an_empty_folder(name, printed, tmp_path, monkeypatch):
     """All its commands are shown and succeed; its files and what it promises are there, and nothing else."""
@@ -50,6 +51,7 @@ def test_one_is_only_listed(printed, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("there", ["far-field.png", "far-field.csv"])
 def test_nothing_of_the_user_is_written_over(run, refuses, tmp_path, monkeypatch, there):
     """A file of the name of one that it would write is named and left; --force writes over it."""

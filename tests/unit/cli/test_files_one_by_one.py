@@ -46,6 +46,7 @@ def _files(records):
     return [[None if part is None else part.metadata["file"] for part in record.parts] for record in records]
 
 
+@pytest.mark.slow
 def test_named_files_are_one_record_in_python(triplet):
     """A list of paths in any order, or of a file and a pattern, gives what the folder gives, with the same numbers."""
     (whole,) = read_records(triplet)
@@ -59,6 +60,7 @@ def test_named_files_are_one_record_in_python(triplet):
     assert sum(part is not None for part in alone.parts) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [

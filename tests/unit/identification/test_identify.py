@@ -96,6 +96,7 @@ def test_models_impulse_and_designs_stand_beside_it(found):
     assert "0.9" in again["verdict"]
 
 
+@pytest.mark.slow
 def test_a_body_that_nobody_knows_has_its_frequency_fitted(found):
     _, path, _ = _path(15, scatter=0.005)
     answer = identify(ImpactTimes(path.times[0], sigma=1e-4), tilt=0.0)
@@ -136,6 +137,7 @@ def drifting():
     ]
 
 
+@pytest.mark.slow
 def test_small_impacts_are_found_in_spite_of_a_drift(drifting, monkeypatch):
     """To the last but three; about a level that does not follow it a third of them is lost (negative control)."""
     measured, times = drifting
@@ -170,6 +172,7 @@ def test_slopes_of_a_series_are_those_of_its_differences(drifting, kind):
         np.testing.assert_allclose(slopes[..., d], (below - above) / 2e-5, rtol=0, atol=1e-6 * np.abs(slopes).max())
 
 
+@pytest.mark.slow
 def test_noise_is_no_rocking():
     """Negative control: a series that crosses its middle for no reason."""
     time = np.arange(0.0, 5.0, 0.01)
@@ -198,6 +201,7 @@ def test_there_is_no_law_of_what_was_refused():
         identify(ImpactTimes(np.arange(12.0)), BLOCK).law()
 
 
+@pytest.mark.slow
 def test_free_rocking_needs_no_compiled_engine():
     """A machine without the compiled modules identifies what was let go."""
     program = (

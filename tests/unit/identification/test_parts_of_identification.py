@@ -154,6 +154,7 @@ def dense(problem, terms):
 
 
 # of feet that slide, slopes leave out what half cycles before the last one do
+@pytest.mark.slow
 @pytest.mark.parametrize(("friction", "within"), [(None, 2e-3), (0.3, 0.1)])
 def test_slopes_of_a_shaken_body_are_its_differences(shaken, friction, within):
     """By every unknown, of samples, times and ln r: feet that hold, and feet that slide, which the one before moves."""

@@ -97,6 +97,7 @@ def test_vertices_lie_on_the_closed_form():
     assert (np.diff(line.points[:, 0]) > 0.0).all() or (np.diff(line.points[:, 0]) < 0.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the roots of the boundary of half sines", within="1e-9")
 @pytest.mark.parametrize("levels", [1, 3])
 def test_refinement_adds_vertices_on_the_curve(levels):
@@ -117,6 +118,7 @@ def test_tolerance_is_kept():
     assert sum(told) < 0.5 * sum(exact)
 
 
+@pytest.mark.slow
 def test_outlines_of_modes_enclose_what_the_verdict_does():
     """Every vertex of the verdict's outline is on that of a mode, which also sees gaps between modes within a cell."""
     pulse = rk.pulses.sine(1.0, 0.5)
@@ -226,6 +228,7 @@ def test_extent_of_an_island():
     assert (found.area, found.x, found.y) == (30.0, (10.0, 20.0), (2.0, 3.0))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "SciPy's label", within="every map")
 def test_regions_are_those_of_scipy():
     """Random maps are numbered as `scipy.ndimage.label` numbers them, neighbours also diagonally."""

@@ -13,6 +13,8 @@ from rocking.statistics import fit_lognormal
 from rocking.studies import SyntheticSet, fragility_analysis, fragility_sensitivity
 from rocking.studies.fragility import model_of
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("xarray")
 
 BLOCK = rk.Block(width=0.4, height=1.6)

@@ -112,6 +112,7 @@ def test_product_order():
     assert np.array_equal(rows.stream, np.arange(120))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1, 7, 50])
 @pytest.mark.parametrize(
     "law",
@@ -259,6 +260,7 @@ class Many(MotionSet):
         return {"kind": "many"}
 
 
+@pytest.mark.slow
 def test_few_motions_are_held_at_once(monkeypatch):
     """Of 500 motions in any order no more than 128 are laid out at a time, and the bits are those of all at hand."""
     random = np.random.default_rng(1)

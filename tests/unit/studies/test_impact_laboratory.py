@@ -220,6 +220,7 @@ def test_points_are_what_the_coordinate_says():
     assert found.coefficient.values[1] == alone.coefficient.values[0] != found.coefficient.values[0]
 
 
+@pytest.mark.slow
 @needs_engine
 def test_files_hold_the_same_numbers(tmp_path):
     """netCDF read back gives the bits of the dataset, with units and the laboratory in attributes."""

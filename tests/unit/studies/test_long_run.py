@@ -86,6 +86,7 @@ def test_sections_after_impacts_and_exponents():
     assert not (rested["exponent"] > 0.0).any()
 
 
+@pytest.mark.slow
 def test_branches_of_orbits():
     """Fold, pitchfork and doublings as of two independent programs, stability between them."""
     found = rk.periodic_orbits(BLOCK, motion(1.2), limits=(0.05, 3.2), restitution="housner", points=60)
@@ -97,6 +98,7 @@ def test_branches_of_orbits():
     assert found["amplitude_ratio"].values[0][stable & (marked[0] == 0)].max() < 2.3874
 
 
+@pytest.mark.slow
 def test_basins_paths_and_erosion():
     """Counts of the reference, cell for cell; a path is a row of the basin; larger amplitudes leave fewer states."""
     slender = rk.Block(width=1.0, height=4.0)
@@ -145,6 +147,7 @@ def test_what_cannot_be_computed_is_refused():
             call()
 
 
+@pytest.mark.slow
 def test_pictures():
     """One panel or curve per model, at most four side by side; all calls have a picture."""
     given, models = motion(1.2), ["housner", "ked", "calibrated", 0.5, 0.7]
@@ -181,6 +184,7 @@ impacts = {impacts}
 """
 
 
+@pytest.mark.slow
 def test_a_campaign_resumes_after_a_kill(tmp_path):
     """A basin whose process is killed goes on where it stood, and ends with the same results."""
     (tmp_path / "job.toml").write_text(JOB.format(phases=60, impacts=300), encoding="utf-8")
@@ -215,6 +219,7 @@ def as_toml(tables):
     return "\n".join(lines)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "table"),
     [

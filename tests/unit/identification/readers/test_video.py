@@ -57,6 +57,7 @@ def with_frame_times(content, steps):
     return bytes(new)
 
 
+@pytest.mark.slow
 def test_a_video_tells_the_rotation(trial):
     """Within a milliradian, a 45th of a pixel at the top of the body, with the perspective told."""
     series = read_measurement(trial)
@@ -92,6 +93,7 @@ def test_a_frame_rate_may_be_stated(trial):
     assert not identify(read_measurement(trial), CASE["body"]).refused
 
 
+@pytest.mark.slow
 def test_a_camera_that_sways_is_told(tmp_path):
     """How it turns is taken away where a wall behind the body tells it."""
     path = made(tmp_path / "a.mp4", lambda f, t: moved(f, 1.5 * np.sin(9.0 * t), 0.01 * np.sin(7.0 * t)))
@@ -100,6 +102,7 @@ def test_a_camera_that_sways_is_told(tmp_path):
     assert error_of(series) < 0.5 * 0.01 / np.sqrt(2.0)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_followed_is_refused_or_told(tmp_path):
     """A camera that shakes, a cut, a body that somebody takes away, and one that does not move."""
     other = np.random.default_rng(1).uniform(50.0, 200.0, (120, 160))

@@ -71,6 +71,7 @@ def test_damaged_files_are_read_or_refused():
     assert refused > 1500
 
 
+@pytest.mark.slow
 def test_flac_or_what_it_needs(tmp_path):
     """A rocking body in FLAC, or the name of the extra that reads it."""
     try:

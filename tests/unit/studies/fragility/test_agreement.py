@@ -63,6 +63,7 @@ def read(made, path, end):
     return lambda name: float(found[name].values[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [".csv", ".xlsx", ".mat", ".nc"])
 def test_goodness_of_fit_in_every_format(tmp_path, end):
     """Statistics in files are those of the textbook; a right curve has large p-values, a wrong one small ones."""
@@ -103,6 +104,7 @@ def test_bootstrap_is_as_wide_as_theory():
     assert math.log(wide[1] / wide[0]) > 1.8 * math.log(found.median_95[1] / found.median_95[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", [".csv", ".mat", ".nc"])
 def test_bootstrap_in_files(tmp_path, end):
     """Bootstrap intervals stand in the files only where they were asked for, with kind, number and seed."""

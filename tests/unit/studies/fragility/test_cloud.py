@@ -124,6 +124,7 @@ def test_barely_lifted_histories_reach_no_state():
             fragility_analysis(BLOCK, MOTIONS[:2], least=bad, analysis="cloud", restitution="ked")
 
 
+@pytest.mark.slow
 def test_the_same_motion_twice_is_one_observation():
     """Six copies of each motion: intervals come from whole motions, not from six times as many outcomes."""
     once, often = (

@@ -163,6 +163,7 @@ def test_states_can_be_left_out():
             limit_states_of(bad)
 
 
+@pytest.mark.slow
 def test_a_cloud_without_a_state_knows_its_parts():
     """The parts of a cloud do not depend on the states that are shown."""
     pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]

@@ -225,6 +225,7 @@ def test_moments_against_integrals():
     )
 
 
+@pytest.mark.slow
 def test_models_of_analyses():
     """An analysis becomes curves with its counts; states without a curve are named; none at all is refused."""
     pulses = [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 0.8, 20)]
@@ -403,6 +404,7 @@ def test_three_files_give_the_same_curves(tmp_path):
     assert fema_p58_table(model(im="p pgv/(g tan alpha)", unit="-")).rows[0][7] == "dimensionless"
 
 
+@pytest.mark.slow
 def test_texts_of_files_name_the_unit(tmp_path):
     """Levels in the texts of NRML and FEMA P-58 are in g, as the curves are, and each has its unit."""
     made = fragility_analysis(

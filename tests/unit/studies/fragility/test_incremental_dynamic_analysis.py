@@ -98,6 +98,7 @@ def test_survivals_by_their_width(found):
         found.resurrected(-1.0)
 
 
+@pytest.mark.slow
 def test_both_definitions_are_printed(found):
     """The summary names both definitions, with a curve for each, and the resurrections."""
     told = json.loads(json.dumps(found.summary()))

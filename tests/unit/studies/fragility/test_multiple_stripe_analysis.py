@@ -115,6 +115,7 @@ def test_progress_and_threads_change_nothing(stripes):
     np.testing.assert_array_equal(found.responses.outcome, stripes.responses.outcome)
 
 
+@pytest.mark.slow
 def test_dataset_and_summary(stripes):
     """All outcomes with units, and a summary of plain values that names its definition."""
     data = stripes.dataset

@@ -133,6 +133,7 @@ def peak_of(kind, count):
 
 
 # at 10^7 histories these are 0.3 and 1.5 GB, beside 9 bytes of results each; tables of all took 1.6 and 5.1 GB
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "most"), [("stripes", 30.0), ("cloud", 150.0)])
 def test_memory_of_an_analysis(monkeypatch, kind, most):
     """What a history more costs in memory is bounded, so that ten million fit into 2 GiB."""

@@ -52,6 +52,7 @@ def coverage(by_motion, repetitions=400):
     return inside / repetitions
 
 
+@pytest.mark.slow
 def test_intervals_by_motion_cover():
     """Intervals by motion hold the truth in 93 % or more of 400 studies; those by history in less than 80 %."""
     assert coverage(by_motion=True) >= 0.93
@@ -145,6 +146,7 @@ def test_equal_medians_are_farthest_apart_at_the_closed_form():
     assert distance == pytest.approx(stats.norm.cdf(u / s) - stats.norm.cdf(u / t), rel=1e-12, abs=0.0)
 
 
+@pytest.mark.slow
 def test_no_place_is_farther_apart():
     """On 300 random pairs, nearly equal dispersions among them, a numerical search finds the same largest distance."""
     rng = np.random.default_rng(3)
@@ -182,6 +184,7 @@ def fitted(hits):
     return best.x[0], np.exp(best.x[1])
 
 
+@pytest.mark.slow
 def test_curves_are_the_likeliest():
     """Curves of sets of motions agree with a direct maximisation of the likelihood to 1e-6."""
     rng = np.random.default_rng(5)
@@ -198,6 +201,7 @@ def capacities(rng, motions):
     return 1.2 * np.exp(common + own[0]), 1.32 * np.exp(common + own[1])
 
 
+@pytest.mark.slow
 def test_intervals_of_the_ratio_cover():
     """Of 200 studies with 60 motions, about 95 % of the intervals hold the true ratio of medians, 1.1."""
     rng, inside = np.random.default_rng(11), 0

@@ -177,6 +177,7 @@ def test_fragility_with_a_distribution_runs_on_the_fast_engine():
     assert found.results["drawn"].histories.law is law
 
 
+@pytest.mark.slow
 def test_every_study_draws_on_the_fast_engine():
     """A map with a draw for every history runs on the fast engine and ends as on the reference engine, cell by cell."""
     law = SampledRestitution.normal(0.9, 0.03, seed=8)

@@ -51,6 +51,7 @@ def test_vectorised_draws_are_those_of_the_law():
     assert LAW.draws(np.arange(3000)).tolist() == [LAW.factor(0.1 * k, k, k % 5) for k in range(3000)]
 
 
+@pytest.mark.slow
 def test_the_fast_engine_gets_what_the_reference_draws():
     """Histories with drawn columns on the fast engine end as the law itself does on the reference engine."""
     base = histories(count=12, law=LAW)
