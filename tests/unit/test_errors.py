@@ -152,6 +152,7 @@ MAP = "map --width 1 --height 4 sine:amplitude=3,period=0.8 --x pga=0.1g:1g:3 --
 BLOCKED = "import sys; sys.modules[sys.argv[1]] = None; from rocking.cli import main; main(sys.argv[2:])"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("missing", "command", "wanted"),
     [
@@ -169,6 +170,7 @@ def test_the_missing_package_is_named(missing, command, wanted, tmp_path):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_a_map_prints_without_the_packages_of_files(tmp_path):
     """Labelled arrays are made only when they are written or returned."""
     words = [sys.executable, "-c", BLOCKED, "xarray", *MAP.split()]

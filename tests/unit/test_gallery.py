@@ -71,6 +71,7 @@ _FEW = {"own_model", "one_cabinet_three_models"}
 _RUN = SCRIPTS if os.environ.get("ROCKING_CAMPAIGN") else [path for path in SCRIPTS if path.stem in _FEW]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", _RUN, ids=lambda path: path.stem)
 def test_a_notebook_runs_in_an_empty_folder(path, tmp_path, gallery):
     """The notebook of a script runs by itself and shows the pictures that it writes; ROCKING_CAMPAIGN=1 runs all."""

@@ -29,6 +29,7 @@ def offered(line, shell="bash"):
     return done.stdout.split()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "some", "other"),
     [
@@ -54,16 +55,19 @@ def test_names_are_completed(line, some, other):
     assert other not in words
 
 
+@pytest.mark.slow
 def test_every_model_is_offered():
     """All models of the plane are offered where nothing is typed yet."""
     assert offered("rocking simulate --restitution ") == list(rk.restitution.models())
 
 
+@pytest.mark.slow
 def test_files_are_left_to_the_shell():
     """Where a record is meant nothing is offered, upon which shells offer files."""
     assert offered("rocking simulate body.toml ") == []
 
 
+@pytest.mark.slow
 def test_zsh_is_answered_too():
     """The same in the words of zsh."""
     assert "housner" in " ".join(offered("rocking simulate --restitution h", "zsh"))

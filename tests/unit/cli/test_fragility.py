@@ -12,6 +12,8 @@ import rocking as rk
 from rocking.studies import SyntheticSet
 from rocking.studies.fragility import fragility_analysis
 
+pytestmark = pytest.mark.slow
+
 COMMAND = "fragility"
 
 G = 9.80665

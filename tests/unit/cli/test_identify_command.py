@@ -17,6 +17,8 @@ from rocking.identification import identify, read_measurement
 from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
 from rocking.spec import identification
 
+pytestmark = pytest.mark.slow
+
 COMMAND = "identify"
 SIZE = ("--width", 10, "--height", 40, "--units", "cm")
 BLOCK = rk.Block(width=0.1, height=0.4)

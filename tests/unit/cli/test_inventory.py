@@ -9,6 +9,8 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.restitution.headline import headline
 
+pytestmark = pytest.mark.slow
+
 LIST = "name;width_cm;depth_cm;height_cm\ntall vase;12,5;12,5;95\nchest;120;60;50\nmirror;?;20;160\n"
 # a triangle of 1 m/s2
 RECORD = "0.0 0.0\n0.5 1.0\n1.0 0.0\n"

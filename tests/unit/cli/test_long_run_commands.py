@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-pytestmark = pytest.mark.verifies("behaviour", room="doors")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies("behaviour", room="doors")]
 BLOCK = ("--width", 1, "--height", 2)
 WORDS = {
     "bifurcation": ("--values", "0.9,1.2", "--starts", 2, "--settled", 20, "--kept", 4, "--sweeps", "up,down"),

@@ -43,6 +43,7 @@ def test_json_is_the_python_call(answered):
     assert (told["refined_points"], told["sensitivity"]) == (None, None)
 
 
+@pytest.mark.slow
 def test_islands_are_those_of_the_picture(run, answered):
     """Cells without overturning that overturning surrounds are counted, drawn and defined, with what is not decided."""
     words = ("--width", 0.6, "--height", 2, "--motion", "sine:amplitude=1,period=0.5")
@@ -89,6 +90,7 @@ def test_nothing_overturns(run):
     assert [(one["mode"], one["share"]) for one in told["modes"]] == [(-2, 1.0)]
 
 
+@pytest.mark.slow
 def test_several_restitutions(run, printed, tmp_path):
     """Flips between every two are those of `map_sensitivity`; files hold every map."""
     models = ("--restitution", "ked", "--restitution", "housner", "--restitution", "0.8")
@@ -115,6 +117,7 @@ def test_several_restitutions(run, printed, tmp_path):
         assert (kept["mode"].sel(restitution="0.8") == found.datasets["0.8"]["mode"]).all()
 
 
+@pytest.mark.slow
 def test_files(printed, tmp_path):
     """Picture, table and netCDF are written and named; the table holds all digits."""
     files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]

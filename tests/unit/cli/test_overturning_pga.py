@@ -37,6 +37,7 @@ def test_json_is_the_python_call(answered):
     assert told["uplift_acceleration"] == pytest.approx(0.25 * G, rel=1e-14, abs=0.0)
 
 
+@pytest.mark.slow
 def test_page_and_files(printed, tmp_path):
     """The sentence, a line for each crossing with the modes on both sides, and files with all digits."""
     files = ("--output", tmp_path / "a.png", "--output", tmp_path / "a.csv")

@@ -10,6 +10,8 @@ import rocking as rk
 from rocking.answers import plain
 from rocking.cli import main
 
+pytestmark = pytest.mark.slow
+
 trimesh = pytest.importorskip("trimesh")
 
 COMMAND = "predict"

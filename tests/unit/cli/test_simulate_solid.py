@@ -10,6 +10,8 @@ import rocking as rk
 from rocking.dynamics.rolling import SpatialResponse
 from rocking.outcome import Status
 
+pytestmark = pytest.mark.slow
+
 COMMAND = "simulate"
 
 PRISM = 'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'

@@ -53,6 +53,7 @@ def test_the_floor_is_in_the_answer(run, record, tmp_path, command):
     assert all(each in text for each in (*SAID, sha))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["predict", "assess", "inventory"])
 def test_the_floor_is_in_the_report(run, record, tmp_path, command):
     """Reports contain the floor and all steps; the report of the ground motion does not contain the floor."""

@@ -9,7 +9,7 @@ from outcome_folders import BODY, FEW, outcome_folder
 import rocking as rk
 
 COMMAND = "validate-predictions"
-pytestmark = pytest.mark.verifies(room="studies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="studies")]
 
 
 @pytest.fixture(scope="module")
