@@ -43,7 +43,7 @@ INSIDE, STEPS = 0.02, 32
 """Default of the largest inset of the contact points over the width of the base, and number of sampled bases."""
 
 _UPRIGHT = -1.0 + 1e-12
-_SETTINGS = HullSettings(tolerance=1e-6, rest_speed=1e-3)
+_SETTINGS = HullSettings(tolerance=1e-6, rest_speed=3e-4)
 """Coarser than those of single histories: outcomes differ like those of histories whose motions differ by 1e-6."""
 
 NOT_SAMPLED = {
