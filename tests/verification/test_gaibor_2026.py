@@ -102,7 +102,8 @@ def test_statements_and_files(run, tmp_path, monkeypatch):
     assert first["pitchfork"] == pytest.approx(2.500336996, abs=1e-9)
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
     assert len(list((tmp_path / "figures").glob("*.png"))) == 6
-    assert {path.name for path in (tmp_path / "tables").iterdir()} == {"claims.csv", "cases.csv", "basins.csv"}
+    names = {"claims.csv", "bifurcations.csv", "attractors.csv", "basins.csv"}
+    assert {path.name for path in (tmp_path / "tables").iterdir()} == names
 
 
 @pytest.mark.verifies("damage")

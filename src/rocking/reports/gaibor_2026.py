@@ -18,6 +18,7 @@ from rocking.reports.document import (
     table,
 )
 
+CASE = ("slenderness_ratio", "model", "frequency_ratio")
 MARK = {HOLDS: "good", IN_PART: "fair", FAILS: "bad"}
 
 
@@ -38,7 +39,9 @@ def gaibor_document(result: GaiborReproduction) -> Document:
     answer, claims = result.answer(), result.claims()
     rows = [(c.section, c.quote, c.test, Cell(c.verdict, MARK.get(c.verdict, "plain")), c.evidence) for c in claims]
     header = ["", "statement", "sense", "verdict", "numbers"]
-    display = Display(own=QUANTITIES_OF_CASES)
+    display, numbers = Display(own=QUANTITIES_OF_CASES), list(result.cases[0].numbers)
+    first = numbers.index("first_overturning")
+    exact, counted = [*numbers[:first], *numbers[-4:]], numbers[first:-4]
     pictures = [
         Picture(name, CAPTIONS[name.partition("_")[0]].format(value=name.partition("_")[2]))
         for name in gaibor_figures(result)
@@ -47,7 +50,8 @@ def gaibor_document(result: GaiborReproduction) -> Document:
         "Parameters": [Paragraph(parameters(result))],
         "Statements of the abstract": [table("Statements and their senses", header, rows, "", "claims")],
         "Numbers": [
-            answer_table("Bifurcations and attractors", answer["cases"], (), "", "cases", display=display),
+            answer_table("Bifurcations", answer["cases"], (*CASE, *exact), "", "bifurcations", display=display),
+            answer_table("Attractors", answer["cases"], (*CASE, *counted), "", "attractors", display=display),
             answer_table("Basins", answer["basins"], (), "", "basins", display=display),
         ],
         "Figures": pictures,
