@@ -27,6 +27,7 @@ DOCS = {
     "manual: development": ("architecture", "extending", "contributing", "releasing", "governance"),
 }
 """Pages of the manual by their part, below docs/."""
+CODE = [ROOT / "src", ROOT / "workbench/src"]
 FEWEST_WORDS = 4  # of a sentence that is drawn
 
 
@@ -59,12 +60,12 @@ def sources() -> dict[str, list[tuple[str, int, str]]]:
     for section, patterns in DOCS.items():
         add(section, [path for pattern in patterns for path in sorted((ROOT / "docs").glob(f"{pattern}.md"))])
     add("changes", [ROOT / "CHANGELOG.md", *sorted((ROOT / "docs/changes").glob("*.md"))])
-    python = [path for path in PROSE["files"]([ROOT / "src"]) if path.suffix == ".py"]
+    python = [path for path in PROSE["files"](CODE) if path.suffix == ".py"]
     add("docstrings: public", python, "docstrings", r"\n +Parameters\n")
     add("docstrings: other", python, "docstrings", r"\A(?!.*\n +Parameters\n)")
     add("comments: Python", python, "comments")
     compiled = [*sorted((ROOT / "engine").rglob("*.hpp")), *sorted((ROOT / "engine").rglob("*.cpp"))]
-    add("comments: C++ and scripts", [*compiled, *(p for p in PROSE["files"]([ROOT / "src"]) if p.suffix == ".js")])
+    add("comments: C++ and scripts", [*compiled, *(p for p in PROSE["files"](CODE) if p.suffix == ".js")])
     places = {
         "errors": lambda name, _: name.endswith("Error") or name in {"Refused", "NotFound", "Busy", "TooLarge"},
         "help of commands": lambda _, keyword: keyword == "help",
@@ -75,7 +76,7 @@ def sources() -> dict[str, list[tuple[str, int, str]]]:
     for source, is_wanted in places.items():
         if is_wanted is not None:
             by_source[source] = [row for path in python for row in _literals(path, is_wanted)]
-    pages = [path for path in PROSE["files"]([ROOT / "src"]) if path.suffix == ".js"]
+    pages = [path for path in PROSE["files"](CODE) if path.suffix == ".js"]
     quoted = re.compile(r'"((?:[^"\\\n]|\\.){12,})"|>([^<>{}`$\n]{12,})<')
     by_source["labels and texts of the page"] = [
         (path.relative_to(ROOT).as_posix(), text.count("\n", 0, hit.start()) + 1, " ".join((hit[1] or hit[2]).split()))

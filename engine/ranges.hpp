@@ -1,4 +1,4 @@
-// How strongly the ground shakes in each block of stretches, and from each block on.
+// Largest ground accelerations in each block of stretches, and from each block to the end.
 #pragma once
 #include <algorithm>
 

@@ -149,7 +149,9 @@ def files(paths: Iterable[Path]) -> list[Path]:
 
 def everything() -> list[Path]:
     """Return all files of the project that are checked."""
-    return files([ROOT / "src", ROOT / "engine", ROOT / "docs", ROOT / "README.md", ROOT / MESSAGES])
+    return files(
+        [ROOT / "src", ROOT / "workbench/src", ROOT / "engine", ROOT / "docs", ROOT / "README.md", ROOT / MESSAGES]
+    )
 
 
 def counts(paths: Iterable[Path]) -> dict[str, int]:

@@ -258,7 +258,7 @@ def _records() -> str:
 def _errata() -> str:
     from rocking.evidence import errata
 
-    return str(sum(erratum.found for erratum in errata()))
+    return str(sum(erratum.is_confirmed for erratum in errata()))
 
 
 def _verdicts() -> str:

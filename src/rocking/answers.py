@@ -182,8 +182,8 @@ class Display:
             return entry.spelled.get(value, value.replace("_", " ") if entry.codes else value)
         if isinstance(value, (list, tuple)):
             return ("-" if entry.is_text else ", ").join(self.cell(name, item) for item in value)
-        if entry.words is not None:
-            return entry.words(value)
+        if entry.text_of is not None:
+            return entry.text_of(value)
         if math.isinf(value):
             return "infinite"
         size = UNITS.get(entry.unit, {}).get(self.unit(entry), 1.0)
@@ -251,7 +251,7 @@ class Display:
         if pairs := rows.columns.get(f"{name}_95"):
             lows, highs = zip(*(value or (None, None) for value in pairs), strict=True)
         entry, cells = self.entry(name), [self.cell(name, value) for value in values or ()]
-        yield ShownColumn(self.heading(name), cells, entry.is_text or entry.words is not None, name)
+        yield ShownColumn(self.heading(name), cells, entry.is_text or entry.text_of is not None, name)
         if self._is_beside_g(name):
             yield ShownColumn(f"{entry.heading} [g]", [self._in_g(name).cell(name, value) for value in values or ()])
         if lows is not None and highs is not None:

@@ -380,12 +380,12 @@ class SlowEngineWarning(UserWarning):
     """The fast engine is not built; the reference engine is used."""
 
 
-def how_to_install(what: str, module: str, error: ImportError) -> str:
+def how_to_install(feature: str, module: str, error: ImportError) -> str:
     """Return the sentence about a missing package and its installation, for a `MissingExtraError`.
 
     Parameters
     ----------
-    what, module : str
+    feature, module : str
         Feature, and its optional dependency.
     error : ImportError
         Error of the import; another package may be missing.
@@ -406,15 +406,15 @@ def how_to_install(what: str, module: str, error: ImportError) -> str:
     missing = (error.name or package).partition(".")[0]
     # double quotes for all shells; in some shells brackets are a pattern
     package_name = f'"rocking[{_EXTRAS[package]}]"' if package in _EXTRAS else missing
-    return f"{what} needs {missing}: pip install {package_name}"
+    return f"{feature} needs {missing}: pip install {package_name}"
 
 
-def extra(module: str, what: str) -> ModuleType:
+def extra(module: str, feature: str) -> ModuleType:
     """Return an optional dependency.
 
     Parameters
     ----------
-    module, what : str
+    module, feature : str
         Dependency and feature; a missing dependency raises `MissingExtraError`.
 
     Returns
@@ -425,7 +425,7 @@ def extra(module: str, what: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as error:
-        raise MissingExtraError(how_to_install(what, module, error)) from error
+        raise MissingExtraError(how_to_install(feature, module, error)) from error
 
 
 def warn(sentence: str, category: type[Warning]) -> None:

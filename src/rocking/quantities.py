@@ -24,7 +24,7 @@ class Quantity:
     label: str = ""  # heading for readers; the name, if empty
     digits: str = ".4g"  # number format for readers; % in percent with about three digits
     spelled: dict[str, str] = field(default_factory=dict)  # texts for readers in place of short words
-    words: Callable[[int], str] | None = None  # function from numbers to texts for readers
+    text_of: Callable[[int], str] | None = None  # function from numbers to texts for readers
 
     @property
     def heading(self) -> str:
@@ -104,7 +104,7 @@ _HISTORY = (
     Quantity("overturned", "1", "1 overturned, 0 not overturned, NaN without a result"),
     Quantity(
         "mode", "1", "-3 failed, -2 no uplift, -1 rocked without overturning, n >= 0 overturned after n impacts, "
-        f"{UNCOUNTED} overturned in 3D without a count of impacts", label="outcome", words=mode_words,
+        f"{UNCOUNTED} overturned in 3D without a count of impacts", label="outcome", text_of=mode_words,
     ),
     Quantity("side", "1", "side of overturning: 1 right, -1 left, 0 not overturned"),
     Quantity("peak_rotation", "rad", "rotation of largest magnitude; pi/2 if overturned"),
@@ -291,8 +291,8 @@ _IMPACT_MODELS = (
 _STUDIES = (
     Quantity("uplift_ratio", "1", "PGA over that of uplift", label="/ uplift", digits=".6f"),
     Quantity("bracket_width", "m/s2", "width of the bracket of a crossing"),
-    Quantity("mode_below", "1", "mode below a crossing", label="below", words=mode_words),
-    Quantity("mode_above", "1", "mode above a crossing", label="above", words=mode_words),
+    Quantity("mode_below", "1", "mode below a crossing", label="below", text_of=mode_words),
+    Quantity("mode_above", "1", "mode above a crossing", label="above", text_of=mode_words),
     Quantity("minimum_acceleration", "m/s2", "smallest PGA with overturning"),
     Quantity("certain_acceleration", "m/s2", "PGA above which every history overturns"),
     Quantity("overturning_intervals", "m/s2", "intervals of PGA with overturning"),
@@ -561,8 +561,8 @@ _CAMPAIGN = (
 )
 
 
-def _coded(*words: str) -> dict[int, str]:
-    return dict(enumerate(words))
+def _coded(*names: str) -> dict[int, str]:
+    return dict(enumerate(names))
 
 
 _ATTRACTORS = _coded("rest", "sticking", "periodic", "irregular", "overturned", "failed")

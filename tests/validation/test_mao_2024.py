@@ -96,7 +96,7 @@ def test_rows_won():
 @pytest.mark.verifies("published", "the printed tables, Mao et al. 2024", control="test_errata_need_the_errors")
 def test_every_erratum_is_found():
     """All errata are found by computation on the printed tables."""
-    assert [each.name for each in errata() if not each.found] == []
+    assert [each.name for each in errata() if not each.is_confirmed] == []
     evidence = {each.name: each.evidence for each in errata()}
     assert "0.943398" in evidence["Table 2, a wrong r_H"]
     assert "0.924046" in evidence["Table 2, a wrong r_H"]
@@ -118,7 +118,7 @@ def test_errata_need_the_errors(table, column, value, lost):
     printed = {key: values.copy() for key, values in tables[table].printed.items()}
     printed[column][4] = value if value != 0.5 else 0.51234
     tables[table] = dataclasses.replace(tables[table], printed=printed)
-    assert not next(each for each in errata(tables) if each.name == lost).found
+    assert not next(each for each in errata(tables) if each.name == lost).is_confirmed
 
 
 @pytest.mark.verifies("negative control", "other measurements")
@@ -128,7 +128,7 @@ def test_errata_need_the_measurements():
     def found_with(table, name, coefficient):
         tables = dict(datasets())
         tables[table] = dataclasses.replace(tables[table], coefficient=coefficient)
-        return next(each for each in errata(tables) if each.name == name).found
+        return next(each for each in errata(tables) if each.name == name).is_confirmed
 
     first = datasets()["table1"]
     for digits, still in ((2, True), (3, False)):

@@ -199,7 +199,7 @@ class Executor(ABC):
 
     @abstractmethod
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
-        """Compute chunks, taking no more of them than are being computed or about to be.
+        """Compute chunks; the number of pending chunks is limited.
 
         Parameters
         ----------

@@ -109,7 +109,7 @@ def _show(result: "Reproduction", *, details: bool) -> None:
     page.line(f"Mao et al. (2024): {tally(result.claims)}", "bold")
     for title, rows in result.tables.items():
         page.line(f"  {title}: {agreement(rows)}")
-    page.line(f"  Errata found: {sum(erratum.found for erratum in result.errata)} of {len(result.errata)}")
+    page.line(f"  Errata found: {sum(erratum.is_confirmed for erratum in result.errata)} of {len(result.errata)}")
     if details:
         page.line("\nClaims", "bold")
         page.rich(_claims(result.claims))

@@ -18,7 +18,7 @@ class Erratum:
     name: str
     statement: str  # result of recomputing
     evidence: str  # the numbers
-    found: bool  # True if the data confirm the erratum
+    is_confirmed: bool  # True if the data confirm the erratum
 
 
 def errata(data: dict[str, DataSet] | None = None) -> tuple[Erratum, ...]:
@@ -36,7 +36,7 @@ def errata(data: dict[str, DataSet] | None = None) -> tuple[Erratum, ...]:
 
     Examples
     --------
-    >>> all(erratum.found for erratum in errata())
+    >>> all(erratum.is_confirmed for erratum in errata())
     True
     """
     tables = datasets() if data is None else data

@@ -113,8 +113,8 @@ class GaiborReproduction:
     basins: dict[tuple[int, str], Any]  # final states by slenderness and model, shape (phases, speeds)
 
     def case(self, slenderness: int, model: str, frequency: float) -> HarmonicCase:
-        wanted = (slenderness, model, frequency)
-        return next(case for case in self.cases if (case.slenderness, case.model, case.frequency) == wanted)
+        requested = (slenderness, model, frequency)
+        return next(case for case in self.cases if (case.slenderness, case.model, case.frequency) == requested)
 
     def pairs(self, frequencies: Iterable[float] = ()) -> "list[tuple[HarmonicCase, HarmonicCase]]":
         """Return the cases of Housner and KED with equal slenderness and frequency."""
@@ -182,14 +182,14 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
     """Return one case."""
     system = _system(slenderness, model, frequency)
     at_rest, amplitudes = effort.amplitudes(effort.step_at_rest), effort.amplitudes(effort.step)
-    rest, rest_kind, _ = _attractors(system, at_rest, [[math.nan, math.nan]], (300, 200))
-    is_small = rest["peak_ratio"][:, 0] < SMALLEST_PEAK
+    at_rest_results, rest_kind, _ = _attractors(system, at_rest, [[math.nan, math.nan]], (300, 200))
+    is_small = at_rest_results["peak_ratio"][:, 0] < SMALLEST_PEAK
     overturning = at_rest[rest_kind[:, 0] == LOST]
     centres = (np.arange(effort.starts) + 0.5) / effort.starts
     states = np.stack(np.meshgrid(centres * 2.0 * math.pi, centres * TOP_SPEED, indexing="ij"), axis=2).reshape(-1, 2)
     r = float(system.sides[2])
     cycles = (max(150, math.ceil(11.0 / abs(math.log(r)))), 130)
-    found, kind, period = _attractors(system, amplitudes, states, cycles)
+    diagram, kind, period = _attractors(system, amplitudes, states, cycles)
     shares = {
         "overturned": kind == LOST, "one_period": (kind == PERIODIC) & (period == 1),
         "multi_period": (kind == PERIODIC) & (period > 1), "chaotic": kind == IRREGULAR,
@@ -208,8 +208,8 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
     return HarmonicCase(
         slenderness, model, frequency, numbers,
         {name: float((rest_kind == number).mean()) for number, name in enumerate(KINDS)},
-        is_complex, is_chaotic, _points(amplitudes, found["rotation_ratio"], is_kept),
-        np.column_stack([at_rest, np.where(is_small, np.nan, rest["exponent"][:, 0] / system.p)]), cascade,
+        is_complex, is_chaotic, _points(amplitudes, diagram["rotation_ratio"], is_kept),
+        np.column_stack([at_rest, np.where(is_small, np.nan, at_rest_results["exponent"][:, 0] / system.p)]), cascade,
     )  # fmt: skip
 
 
@@ -224,8 +224,8 @@ def _diagram(
 
 def _attractors(system: HarmonicRocking, amplitudes: FloatArray, states: Any, cycles: tuple[int, int]) -> Any:
     """Return diagram, kinds and periods, shape (amplitudes, starts); irregular is chaos, after 2,000 more periods."""
-    found = _diagram(system, amplitudes, states, cycles)
-    kind, period = found["attractor"].copy(), found["periods"].copy()
+    diagram = _diagram(system, amplitudes, states, cycles)
+    kind, period = diagram["attractor"].copy(), diagram["periods"].copy()
     doubtful = np.flatnonzero((kind == IRREGULAR).any(axis=1))
     if len(doubtful):
         longer = _diagram(system, amplitudes[doubtful], states, (cycles[0] + 2000, 512))
@@ -233,7 +233,7 @@ def _attractors(system: HarmonicRocking, amplitudes: FloatArray, states: Any, cy
         new[(new == IRREGULAR) & ~(longer["exponent"] > 0.0)] = PERIODIC
         kind[doubtful] = np.where(rows, new, kind[doubtful])
         period[doubtful] = np.where(rows, longer["periods"], period[doubtful])
-    return found, kind, period
+    return diagram, kind, period
 
 
 def _points(amplitudes: FloatArray, rotation: FloatArray, is_kept: Any) -> FloatArray:
@@ -264,17 +264,17 @@ def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[s
     first, second = branch[2:]
     values = second.value + np.linspace(0.0, second.value - first.value, number + 1)[1:]
     orbit = second.orbit
-    found = _diagram(orbit.system, values, [[orbit.phase, orbit.speed]], (200, 200), "up")
-    kind, exponent = found["attractor"][:, 0], found["exponent"][:, 0]
+    diagram = _diagram(orbit.system, values, [[orbit.phase, orbit.speed]], (200, 200), "up")
+    kind, exponent = diagram["attractor"][:, 0], diagram["exponent"][:, 0]
     end = int(np.argmax(np.append(kind == LOST, True)))
     is_chaotic = (kind == IRREGULAR) & (exponent > 0.0) & (np.arange(number) < end)
-    rotation = found["rotation_ratio"][:end, 0, -64:]
+    rotation = diagram["rotation_ratio"][:end, 0, -64:]
     p = orbit.system.p
     points = np.column_stack([np.repeat(column[:end], 64) for column in (values, exponent / p)])
     cascade = np.insert(points, 1, rotation.ravel(), axis=1)
     step, exponents = float(values[1] - values[0]), (math.nan, math.nan)
     for at in np.argsort(np.where(is_chaotic, -exponent, np.inf))[: min(8, is_chaotic.sum())]:
-        last = [found[name][at, 0, -1] * orbit.system.alpha for name in ("rotation_ratio", "velocity_ratio")]
+        last = [diagram[name][at, 0, -1] * orbit.system.alpha for name in ("rotation_ratio", "velocity_ratio")]
         time = start_states(orbit.system, [[orbit.phase, 0.0]])[0, 0]
         rows = np.tile([time, last[0], last[1] * p], (16, 1))
         rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # chaos makes these orbits independent
@@ -309,10 +309,10 @@ def _onset(result: GaiborReproduction) -> list[Claim]:
     claims.append(_earlier(pairs, "first overturning from rest", overturning, effort.step_at_rest))
     amplitudes = effort.amplitudes(effort.step)
     for frequency in effort.frequencies:
-        some = result.pairs([frequency])
-        first = [[min(amplitudes[case.is_complex], default=math.nan) for case in pair] for pair in some]
+        pairs = result.pairs([frequency])
+        first = [[min(amplitudes[case.is_complex], default=math.nan) for case in pair] for pair in pairs]
         title = f"first attractor of several periods or chaos, frequency {frequency:g}"
-        claims.append(_earlier(some, title, np.array(first).T, effort.step))
+        claims.append(_earlier(pairs, title, np.array(first).T, effort.step))
     return claims
 
 

@@ -176,7 +176,7 @@ def _concerns(restitution: RestitutionModel, body: Body) -> tuple[str, ...]:
         )
         if not check.holds:
             where = "" if body.is_symmetric else f" on the {foot} foot"
-            differences.append(f"{check.found:.3f} instead of {check.expected:.3f}{where}")
+            differences.append(f"{check.computed:.3f} instead of {check.expected:.3f}{where}")
     text = "two point masses with equal total mass, centre, inertia and base would have r ="
     return (
         (f"{text} {', '.join(differences)}; rigid bodies with equal motion should have equal r",) if differences else ()

@@ -130,8 +130,8 @@ class Example:
     @property
     def outputs(self) -> tuple[str, ...]:
         """Files and folders written by the commands."""
-        words = [word for command in self.commands for word in shlex.split(command)]
-        return tuple(after for word, after in pairwise(words) if word == "--output")
+        arguments = [word for command in self.commands for word in shlex.split(command)]
+        return tuple(after for word, after in pairwise(arguments) if word == "--output")
 
 
 def _body(

@@ -167,7 +167,9 @@ def _columns() -> dict[str, tuple[str, str]]:
     """Return unit and meaning of each measure by its column name."""
     listed = [measure for measure in MEASURES.values() if measure.is_listed and not measure.needs_body]
     columns = {
-        f"{measure.name}_{axis}": (measure.unit, f"{measure.words}, {axis}") for measure in listed for axis in "xyz"
+        f"{measure.name}_{axis}": (measure.unit, f"{measure.description}, {axis}")
+        for measure in listed
+        for axis in "xyz"
     }
     for percent, meaning in ((50, "median over all directions"), (100, "largest over all directions")):
         columns[f"pga_rotd{percent}"] = ("m/s2", f"peak ground acceleration, {meaning}")

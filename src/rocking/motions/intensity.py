@@ -201,7 +201,7 @@ def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
     Measure(name='peak ground acceleration', value=1.0, unit='m/s2')
     """
     listed = [item for item in MEASURES.values() if item.is_listed and not item.needs_body]
-    return {item.name: Measure(item.words, item.of(motion), item.unit) for item in listed}
+    return {item.name: Measure(item.description, item.of(motion), item.unit) for item in listed}
 
 
 def key_with_unit(name: str, unit: str) -> str:
@@ -275,7 +275,7 @@ class IntensityMeasure:
     """
 
     name: str
-    words: str
+    description: str
     unit: str
     power: int
     of_motion: Callable[[GroundMotion, RockingScale], float]
@@ -412,9 +412,9 @@ def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
     period = checks.positive("period", period, "s")
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     name = f"sa({period!r})" if damping == 0.05 else f"sa({period!r},{damping!r})"
-    words = f"pseudo-spectral acceleration at {period:g} s with {100.0 * damping:g} % damping"
+    description = f"pseudo-spectral acceleration at {period:g} s with {100.0 * damping:g} % damping"
     return IntensityMeasure(
-        name, words, "m/s2", 1, lambda m, _: spectral_acceleration(m, period, damping),
+        name, description, "m/s2", 1, lambda m, _: spectral_acceleration(m, period, damping),
         symbol=f"PSA({period:g} s, {damping:g})",
         openquake=(f"SA({period!r})", "g", 1.0 / g) if damping == 0.05 else None,
     )  # fmt: skip
@@ -453,7 +453,7 @@ def measure(name: Any, parameter: str = "im") -> IntensityMeasure:
 
     Examples
     --------
-    >>> measure("sa(1.0)").words
+    >>> measure("sa(1.0)").description
     'pseudo-spectral acceleration at 1 s with 5 % damping'
     """
     if isinstance(name, IntensityMeasure):

@@ -296,12 +296,12 @@ def catalogue() -> dict[str, Callable[..., Pulse]]:
     return {function.__name__.replace("_", "-"): function for function in _ALL}
 
 
-def pulse(words: str) -> Pulse:
+def pulse(text: str) -> Pulse:
     """Return a pulse from a text, as on the command line.
 
     Parameters
     ----------
-    words : str
+    text : str
         Text ``name:parameter=value,parameter=value``. Values may have units: m/s2, cm/s2, mm/s2, gal or g for an
         amplitude, s or ms for a time, m/s, cm/s or mm/s for a velocity, rad or deg for a phase.
 
@@ -315,7 +315,7 @@ def pulse(words: str) -> Pulse:
     UnknownModelError
         If the pulse or a parameter is unknown, or a parameter is missing.
     InvalidValueError
-        If `words` is no string, or a value is not a number in its range.
+        If `text` is not a string, or a value is not a number in its range.
 
     Examples
     --------
@@ -324,14 +324,14 @@ def pulse(words: str) -> Pulse:
     >>> pulse("sine:amplitude=0.3g,period=800ms").peak
     2.941995
     """
-    text: object = words
+    value: object = text
     if not isinstance(text, str):
         raise InvalidValueError(
             "{parameter} must be a text such as sine:amplitude=3,period=0.8, got {value}",
-            parameter="words",
-            value=words,
+            parameter="text",
+            value=text,
         )
-    name, _, tail = words.partition(":")
+    name, _, tail = text.partition(":")
     functions = catalogue()
     name = checks.spelling(name, functions)
     if name not in functions:
@@ -344,8 +344,8 @@ def pulse(words: str) -> Pulse:
         key, equals, value = (text.strip() for text in item.partition("="))
         if not equals or key in values:
             raise UnknownModelError(
-                "write a pulse as sine:amplitude=3,period=0.8, got {pulse!r}", pulse=words,
-                hint=checks.number_hint(words),
+                "write a pulse as sine:amplitude=3,period=0.8, got {pulse!r}", pulse=text,
+                hint=checks.number_hint(text),
             )  # fmt: skip
         values[key] = whole_or_number(key, value)
     try:

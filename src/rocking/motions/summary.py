@@ -71,13 +71,13 @@ def peak_names(supports: Iterable[str]) -> tuple[str, str]:
     return acceleration, velocity
 
 
-def words_on(support: str, words: str) -> str:
+def words_on(support: str, description: str) -> str:
     """Return the name of a measure for motions on a support.
 
     >>> words_on("floor 3 of 5", "peak ground acceleration")
     'peak floor acceleration, floor 3 of 5'
     """
-    return words if support == GROUND else f"{words.replace('peak ground', 'peak floor')}, {support}"
+    return description if support == GROUND else f"{description.replace('peak ground', 'peak floor')}, {support}"
 
 
 @dataclass(frozen=True)

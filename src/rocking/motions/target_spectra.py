@@ -141,12 +141,12 @@ def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
     return TargetSpectrum(path.name, damping, float(t[-1]), float(t[0]), spectrum)
 
 
-def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
+def target_spectrum(text: Any, folder: Path | None = None) -> TargetSpectrum:
     """Return a target spectrum from a text, as on the command line and in input files.
 
     Parameters
     ----------
-    words : str or TargetSpectrum
+    text : str or TargetSpectrum
         ``eurocode8:ag=0.25g,ground=C,type=1``, ``asce7:sds=1.0g,sd1=0.6g,tl=8``, or a CSV file with a heading
         such as ``T [s], Sa [g]``. Accelerations require a unit.
     folder : Path, optional
@@ -167,15 +167,15 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
     >>> float(target_spectrum("eurocode8:ag=0.2g,ground=A")([0.2])[0].round(4))
     4.9033
     """
-    if isinstance(words, TargetSpectrum):
-        return words
-    checks.of_kind("target", words, str, "text")
-    name, colon, tail = words.partition(":")
+    if isinstance(text, TargetSpectrum):
+        return text
+    checks.of_kind("target", text, str, "text")
+    name, colon, tail = text.partition(":")
     if name not in CODES or not colon:
-        if (folder or Path()).joinpath(words).is_file():
-            return in_file((folder or Path()) / words)
+        if (folder or Path()).joinpath(text).is_file():
+            return in_file((folder or Path()) / text)
         raise InvalidValueError(
-            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=words
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=text
         )
     values: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
@@ -185,7 +185,7 @@ def target_spectrum(words: Any, folder: Path | None = None) -> TargetSpectrum:
         return CODES[name](**values)
     except TypeError as error:
         raise InvalidValueError(
-            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=words
+            "{parameter} must be {allowed}; got {value}", parameter="target", allowed=_ALLOWED, value=text
         ) from error
 
 

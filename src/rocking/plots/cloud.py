@@ -62,7 +62,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
         raise InvalidValueError("the analysis has no curve of overturning: {reason}", reason=fit.verdict)
     figure, (upper, lower) = new_figure(SINGLE, 4.0, rows=2, sharex=True, height_ratios=[1.5, 1.0])
     levels = analysis.motion_levels
-    acted = (analysis.responses.overturned == 1.0) | clearly_lifted(analysis.responses, analysis.least)
+    acted = (analysis.responses.overturned == 1.0) | clearly_lifted(analysis.responses, analysis.min_rotation)
     upper.set_xlim(levels[acted].min() / 1.5, levels.max() * 1.08)
     _points(upper, analysis)
     _parts(lower, analysis)
@@ -79,7 +79,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
 
 def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
     levels, responses, line = analysis.motion_levels, analysis.responses, analysis.regression
-    rocked = clearly_lifted(responses, analysis.least)
+    rocked = clearly_lifted(responses, analysis.min_rotation)
     fine = np.geomspace(*axes.get_xlim(), 60)
     middle, spread = np.exp(line.at(np.log(fine))), math.exp(line.scatter)
     axes.fill_between(fine, middle / spread, middle * spread, color=_BAND, linewidth=0, zorder=0)
@@ -88,7 +88,7 @@ def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
     label = f"rocks, does not overturn: {int(rocked.sum())}"
     axes.plot(levels[rocked], peaks, "o", color=_ROCKS, markersize=2.6, markeredgewidth=0, label=label)
     axes.set_yscale("log")
-    axes.set_ylim(0.7 * min(float(peaks.min()), analysis.least), 2.2 * max(1.0, float(peaks.max())))
+    axes.set_ylim(0.7 * min(float(peaks.min()), analysis.min_rotation), 2.2 * max(1.0, float(peaks.max())))
     plain_log(axes, "y")
     axes.axhline(1.0, color=GREY, linewidth=0.7, linestyle=DASHED, zorder=0)
     overturned = responses.overturned == 1.0
@@ -106,7 +106,7 @@ def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
 
 def _parts(axes: "Axes", analysis: CloudAnalysis) -> None:
     """Draw the contributions to the total probability, at the first limit state."""
-    rotations = [state.level for state in analysis.limit_states if analysis.least < state.level < math.inf]
+    rotations = [state.level for state in analysis.limit_states if analysis.min_rotation < state.level < math.inf]
     rotation = rotations[0] if rotations else 0.5
     fine = np.geomspace(*axes.get_xlim(), 200)
     parts = analysis.parts(fine, rotation)

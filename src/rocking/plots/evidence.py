@@ -148,7 +148,7 @@ def bed_dependence_figure() -> "Figure":
 
 @in_journal_style
 def explanations_figure(explanation: Explanation) -> "Figure":
-    """Draw BIC minus the best, and the left-out score minus that of one bed, with two standard errors."""
+    """Draw the BIC relative to the best model, and the left-out score relative to one bed, with two standard errors."""
     ranked = explanation.ranked
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.2 * len(ranked), columns=2, sharey=True)
     rows_y = np.arange(len(ranked))[::-1]

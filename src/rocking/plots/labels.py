@@ -54,7 +54,7 @@ def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
     if name not in SYMBOLS:
         unit = unit if measure is None else measure.unit
         # a ratio is clearer by its symbol
-        label = label if measure is None or "/" in label else measure.words
+        label = label if measure is None or "/" in label else measure.description
         label = f"{label} [{_UNITS.get(unit, unit)}]"
     return label.replace(r"\tan\,\alpha", r"\alpha") if linear else label
 
@@ -110,7 +110,7 @@ def plain_numbers(axis: "Axis") -> None:
 
 
 def note(axes: "Axes", text: str, width: int = 62) -> None:
-    """Write a small line or two above a panel."""
+    """Write one or two small lines above a panel."""
     axes.set_title(wrapped(text, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)
 
 

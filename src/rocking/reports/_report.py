@@ -32,12 +32,12 @@ _CONTENTS: dict[type, Callable[..., Content]] = {
 """Function that returns document and pictures, by class of the answer."""
 
 
-def report(found: Any, path: str | Path, *, name: str = "", date: str | None = None, **options: Any) -> Path:
+def report(result: Any, path: str | Path, *, name: str = "", date: str | None = None, **options: Any) -> Path:
     """Write the report of a result: verdict, pictures, tables, assumptions and method.
 
     Parameters
     ----------
-    found : Response, BodyAssessment, Prediction, FolderValidation, Identification or IdentifiedTrials
+    result : Response, BodyAssessment, Prediction, FolderValidation, Identification or IdentifiedTrials
         Result of `rocking.simulate` or `rocking.free_rocking` without friction, of `rocking.assess`,
         `rocking.predict` or `rocking.identify`, or of the commands for folders of trials.
     path : str or Path
@@ -73,10 +73,10 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     ...     page.name, "Column 4" in page.read_text(encoding="utf-8")
     ('response.html', True)
     """
-    make_content = next((content for kind, content in _CONTENTS.items() if isinstance(found, kind)), None)
+    make_content = next((content for kind, content in _CONTENTS.items() if isinstance(result, kind)), None)
     if make_content is None:
         kinds = ", ".join(kind.__name__ for kind in _CONTENTS)
-        raise InvalidValueError(parameter="found", allowed=f"one of {kinds}", value=found)
+        raise InvalidValueError(parameter="result", allowed=f"one of {kinds}", value=result)
     target = target_of(path)
     keywords = [
         parameter
@@ -85,12 +85,12 @@ def report(found: Any, path: str | Path, *, name: str = "", date: str | None = N
     ]
     names = [parameter.name for parameter in keywords]
     if unknown := next((parameter for parameter in options if parameter not in names), None):
-        subject = type(found).__name__
+        subject = type(result).__name__
         raise InvalidValueError(
             "unknown option {option!r} of a report of {subject}; allowed: {names}", subject=subject, option=unknown,
             names=", ".join(names), hint=checks.nearest(unknown, names),
         )  # fmt: skip
     day = f"{datetime.now(UTC):%d %B %Y}" if date is None else date
-    document, pictures = make_content(found, name=name, date=day, **options)
+    document, pictures = make_content(result, name=name, date=day, **options)
     write_report(document, pictures, target)
     return target

@@ -157,7 +157,7 @@ def paper_document(result: Reproduction) -> Document:
 
 def look_at(result: Reproduction) -> list[tuple[str, str]]:
     """Return the main points: a short name and a sentence per point."""
-    found_count = sum(erratum.found for erratum in result.errata)
+    found_count = sum(erratum.is_confirmed for erratum in result.errata)
     best = result.league[0]
     return [
         (
@@ -184,7 +184,9 @@ def _claims(claims: Sequence[Claim]) -> list[Block]:
 
 def _errata(errata: Sequence[Erratum]) -> list[Block]:
     verdicts = {True: Cell("found"), False: Cell("not found", "bad")}
-    rows = [(erratum.name, erratum.statement, erratum.evidence, verdicts[bool(erratum.found)]) for erratum in errata]
+    rows = [
+        (erratum.name, erratum.statement, erratum.evidence, verdicts[bool(erratum.is_confirmed)]) for erratum in errata
+    ]
     return [
         Paragraph("Each erratum follows from computation on the printed tables. The data are not corrected."),
         report_table("Errata", ["location", "erratum", "numbers", ""], rows, stem="errata"),

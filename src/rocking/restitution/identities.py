@@ -37,7 +37,7 @@ class IdentityCheck:
         The identity as a sentence.
     expected : float
         Value required by the identity [-].
-    found : float
+    computed : float
         Value of the model with the largest difference [-].
     holds : bool
         True if the identity holds.
@@ -46,7 +46,7 @@ class IdentityCheck:
     name: str
     statement: str
     expected: float
-    found: float
+    computed: float
     holds: bool
 
     @property
@@ -54,7 +54,7 @@ class IdentityCheck:
         """Result of the check as a sentence."""
         if self.holds:
             return f"{self.name}: holds"
-        numbers = f"expected {self.expected:.6g}, got {self.found:.6g}"
+        numbers = f"expected {self.expected:.6g}, got {self.computed:.6g}"
         return f"{self.name}: violated for this body ({self.statement}; {numbers})"
 
 

@@ -227,7 +227,7 @@ def _of_quarters(body: Body, foot: Foot) -> float:
     rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
     areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
     integrals = [abs(ring_integral(ring - pivot)) for ring in rings]
-    spread = sum(m / area * each for m, area, each in zip(inside, areas, integrals, strict=True))
+    spread = sum(m / area * integral for m, area, integral in zip(inside, areas, integrals, strict=True))
     return float(spread) + _of_points(corners - pivot, outside)
 
 

@@ -129,7 +129,7 @@ def steps() -> dict[str, dict[str, Any]]:
             if has_level and measure.power and measure.is_listed and not measure.needs_body
         ]
         measures = {
-            measure.name: _facts_of_key(f"{measure.words} [{measure.unit}]", None, float) for measure in scalable
+            measure.name: _facts_of_key(f"{measure.description} [{measure.unit}]", None, float) for measure in scalable
         }
         facts[name] = {
             "description": _summary(step),
@@ -211,7 +211,7 @@ def _names() -> Iterator[str]:
     from rocking.motions.synthetic import families
     from rocking.studies.axis import axes
 
-    measures = [(name, f"{measure.words} [{measure.unit}]") for name, measure in MEASURES.items()]
+    measures = [(name, f"{measure.description} [{measure.unit}]") for name, measure in MEASURES.items()]
     pulses = [
         (
             f"{name}:{','.join(f'{key}=' for key in signature(make).parameters)}",

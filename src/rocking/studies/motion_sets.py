@@ -85,9 +85,9 @@ class MotionList(MotionSet):
     @classmethod
     def empty(cls) -> "MotionList":
         """Return a set without motions, for bodies under a harmonic ground motion."""
-        made = cls.__new__(cls)
-        made._motions = []
-        return made
+        motion_set = cls.__new__(cls)
+        motion_set._motions = []
+        return motion_set
 
     def __len__(self) -> int:
         return len(self._motions)

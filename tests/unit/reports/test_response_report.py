@@ -80,7 +80,7 @@ def test_what_needs_a_package_says_so_before_it_computes(monkeypatch):
 
 
 def test_what_has_no_report_is_refused(tmp_path):
-    with pytest.raises(RockingError, match=r"found must be one of Response, .*got 3"):
+    with pytest.raises(RockingError, match=r"result must be one of Response, .*got 3"):
         rk.reports.report(3, tmp_path / "x.html")
 
 

@@ -50,7 +50,7 @@ class BaseTolerance:
 
 
 def base_tolerances(
-    found: Equilibria, pose: StablePose | None = None, tolerances: Sequence[float] = TOLERANCES
+    equilibria: Equilibria, pose: StablePose | None = None, tolerances: Sequence[float] = TOLERANCES
 ) -> tuple[BaseTolerance, ...]:
     """Return the stability of a body if points close to the ground are contact points.
 
@@ -59,7 +59,7 @@ def base_tolerances(
 
     Parameters
     ----------
-    found : Equilibria
+    equilibria : Equilibria
         Equilibria of the body.
     pose : StablePose, optional
         Pose of the body; the default is the pose that it reaches from -z downward.
@@ -86,9 +86,9 @@ def base_tolerances(
     >>> [len(row.support) for row in rows]
     [4, 5]
     """
-    start = found.settling((0.0, 0.0, -1.0)) if pose is None else pose
+    start = equilibria.settling((0.0, 0.0, -1.0)) if pose is None else pose
     heights = np.atleast_1d(checks.real_array("tolerances", tolerances, "m")).tolist()
-    return tuple(_row(found, start, tolerance) for tolerance in heights)
+    return tuple(_row(equilibria, start, tolerance) for tolerance in heights)
 
 
 def _row(equilibria_of_body: Equilibria, pose: StablePose, tolerance: float) -> BaseTolerance:

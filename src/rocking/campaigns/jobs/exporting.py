@@ -95,7 +95,7 @@ _RANKED = {
     "proficiency": "efficiency over the size of the slope",
     "determination": "R squared of that line",
     "overturning_dispersion": "dispersion of the lognormal curve of overturning",
-    "overturning_verdict": "what can be said of that curve",
+    "overturning_verdict": "table can be said of that curve",
     "rocked": "histories that the line rests on",
     "overturned": "histories that overturned",
     "barely_lifted": "histories that rocked too little for the line",
@@ -108,7 +108,7 @@ def exports_of(folder: JobFolder) -> list[str]:
 
 
 def export(
-    folder: JobFolder, path: str | os.PathLike[str], what: str | None = None, *, restitution: str | None = None,
+    folder: JobFolder, path: str | os.PathLike[str], table: str | None = None, *, restitution: str | None = None,
     crossing_curves: Crossing | None = None, bootstrap: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Path:  # fmt: skip
@@ -120,7 +120,7 @@ def export(
         The campaign.
     path : path
         The file; the extension selects the format.
-    what : str, optional
+    table : str, optional
         Table of the export. Default: the first of `exports_of`.
 
         - ``histories``: all histories (.nc, .parquet, .csv, .mat, .xlsx). The .nc of a refined map also contains its
@@ -152,24 +152,24 @@ def export(
     CampaignIncompleteError
         If the campaign is not finished.
     """
-    target, what = checked(folder, path, what, restitution, crossing_curves, bootstrap)
+    target, table = checked(folder, path, table, restitution, crossing_curves, bootstrap)
     refuse_unfinished(folder)
     provenance = provenance_of(folder)
-    if what == "histories" and folder.job.document.axes:
+    if table == "histories" and folder.job.document.axes:
         provenance |= {"safe_islands": _islands(folder)}
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"), written_whole(target) as unfinished:
-        if what in ANALYSES:
-            _write_fragility(folder, unfinished, what, restitution, crossing_curves, bootstrap)
-        elif what == MEASURES:
+        if table in ANALYSES:
+            _write_fragility(folder, unfinished, table, restitution, crossing_curves, bootstrap)
+        elif table == MEASURES:
             ranking = measure_comparison(folder, restitution, progress)
-            provenance |= {"ims_left_out": dict(ranking.left_out), "least_rotation_over_alpha": ranking.least}
+            provenance |= {"ims_left_out": dict(ranking.left_out), "min_rotation_over_alpha": ranking.min_rotation}
             provenance |= {} if restitution is None else {"restitution": restitution}
             _write_tables([measures_table(ranking)], unfinished, attributes_of(folder, provenance))
-        elif what in COMPARED:
-            table = comparison_table(comparison(folder), what)
-            _write_tables([table], unfinished, attributes_of(folder, provenance))
+        elif table in COMPARED:
+            compared = comparison_table(comparison(folder), table)
+            _write_tables([compared], unfinished, attributes_of(folder, provenance))
         else:
-            _write_study(folder, unfinished, what, attributes_of(folder, provenance), progress)
+            _write_study(folder, unfinished, table, attributes_of(folder, provenance), progress)
         if target.suffix.lower() in {".csv", ".xml"}:  # no attributes in these formats
             write_provenance(provenance, target)
     return target
@@ -206,44 +206,44 @@ def attributes_of(folder: JobFolder, provenance: dict[str, Any]) -> dict[str, An
 
 
 def checked(
-    folder: JobFolder, path: str | os.PathLike[str], what: str | None, restitution: str | None,
+    folder: JobFolder, path: str | os.PathLike[str], table: str | None, restitution: str | None,
     crossing_curves: Crossing | None, bootstrap: int | None = None,
 ) -> tuple[Path, str]:  # fmt: skip
     """Return the path and table of an export, or refuse it."""
     target = target_of(path)
-    what = exports_of(folder)[0] if what is None else checks.one_of("what", what, ENDINGS)
+    table = exports_of(folder)[0] if table is None else checks.one_of("table", table, ENDINGS)
     suffix = target.suffix.lower()
-    if suffix not in ENDINGS[what]:
-        hint = ".xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
-        if suffix == ".nc" and what in {"refined", "boundary"}:
+    if suffix not in ENDINGS[table]:
+        hint = ".xml (NRML) is for the fragility" if suffix == ".xml" and table == "histories" else ""
+        if suffix == ".nc" and table in {"refined", "boundary"}:
             hint = "the .nc of the histories (--output histories=FILE.nc) holds points and polylines too"
         raise InvalidValueError(
-            "{content} can be written as {endings}, got {ending!r}", content=what, endings=", ".join(ENDINGS[what]),
+            "{content} can be written as {endings}, got {ending!r}", content=table, endings=", ".join(ENDINGS[table]),
             ending=suffix or "no ending", hint=hint,
         )  # fmt: skip
-    if what not in _OF_ONE and restitution is not None:
+    if table not in _OF_ONE and restitution is not None:
         raise InvalidValueError(
             "restitution applies to fragility, fema-p58 and ims only; each history has a restitution"
         )
-    if what not in ANALYSES and crossing_curves is not None:
+    if table not in ANALYSES and crossing_curves is not None:
         raise InvalidValueError("crossing_curves applies to fragility and fema-p58 only")
-    if what not in exports_of(folder):
+    if table not in exports_of(folder):
         raise InvalidValueError(
             'nothing to export because a campaign of kind "{kind}" has no {content}{reason}',
-            kind=folder.job.document.campaign.kind, content=what, reason=_WHY.get(what, ""),
+            kind=folder.job.document.campaign.kind, content=table, reason=_WHY.get(table, ""),
         )  # fmt: skip
-    if what in ANALYSES:
+    if table in ANALYSES:
         check_crossing("keep-uplift" if crossing_curves is None else crossing_curves)
-    if what in _OF_ONE:
-        label_of(what, restitution, list(folder.job.problem.restitutions))
-    if bootstrap is not None and what not in ANALYSES:
+    if table in _OF_ONE:
+        label_of(table, restitution, list(folder.job.problem.restitutions))
+    if bootstrap is not None and table not in ANALYSES:
         raise InvalidValueError("bootstrap applies to fragility, fragility-points and fema-p58 only")
     repetitions = checks.within(
         "bootstrap", bootstrap or 0, 0, MOST_REPETITIONS, hint="how many times the study is repeated"
     )
     if 0 < repetitions < FEWEST or repetitions != int(repetitions):
         raise InvalidValueError(parameter="bootstrap", allowed=f"0 or a whole number >= {FEWEST}", value=bootstrap)
-    return target, what
+    return target, table
 
 
 def _write_study(

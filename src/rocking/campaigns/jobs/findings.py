@@ -226,7 +226,7 @@ def measure_comparison(
     question: Any = document
     names, columns = question.ims(), question.columns(folder.job.problem.motions)
     if question.export.columns is None:
-        rocked = clearly_lifted(cloud.responses, cloud.least)
+        rocked = clearly_lifted(cloud.responses, cloud.min_rotation)
         columns = {name: values for name, values in columns.items() if np.unique(values[rocked]).size > 1}
     total, count, motions = len(folder.job.problem.motions) * len(names), folder.campaign.plan.count, 0
 

@@ -30,7 +30,7 @@ def fragility(  # noqa: PLR0913 - users set every one of them
     im: Any = "pga",
     limit_states: Sequence[float | str] = (0.5,),
     scale: float | None = None,
-    least: float | None = None,
+    min_rotation: float | None = None,
     tolerance: float | None = None,
     progress: Progress = None,
     **options: Any,
@@ -60,7 +60,7 @@ def fragility(  # noqa: PLR0913 - users set every one of them
         ``"overturning"`` is in the sequence, only the states of the sequence.
     scale : float, optional
         Scale factor of all motions of a cloud; default 1 [-].
-    least : float, optional
+    min_rotation : float, optional
         Smallest rotation over alpha of a history of a cloud that enters the regression; default 0.01 [-].
     tolerance : float, optional
         Relative width at which the search of an incremental analysis ends; 0 for the last bit, default 1e-8 [-].
@@ -103,7 +103,7 @@ def fragility(  # noqa: PLR0913 - users set every one of them
         options["tolerance"] = tolerance
     return _with_curves(fragility_analysis(
         body, motions, levels, restitution, analysis=analysis, im=im, limit_states=limit_states, scale=scale,
-        least=least, progress=progress, **options,
+        min_rotation=min_rotation, progress=progress, **options,
     ))  # fmt: skip
 
 
@@ -117,7 +117,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     im: Any = "pga",
     limit_states: Sequence[float | str] = (0.5,),
     scale: float | None = None,
-    least: float | None = None,
+    min_rotation: float | None = None,
     progress: Progress = None,
     **options: Any,
 ) -> Any:
@@ -125,7 +125,7 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
 
     Parameters
     ----------
-    body, motions, levels, restitution, analysis, im, limit_states, scale, least, progress
+    body, motions, levels, restitution, analysis, im, limit_states, scale, min_rotation, progress
         As for `fragility`; progress does not count the histories of a search.
     **options
         As for `fragility`; ``tolerance`` of stripes and clouds is the tolerance of `Settings`.
@@ -163,7 +163,8 @@ def fragility_analysis(  # noqa: PLR0913 - those of `fragility`
     kind, threads = checks.one_of("analysis", analysis, ANALYSES), options.pop("threads", None)
     search = options.pop("tolerance", None) if kind == "incremental" else None
     question = FragilityQuestion.of(
-        Subject.of(body, motions, restitution, im, options), kind, levels, limit_states, scale=scale, least=least,
+        Subject.of(body, motions, restitution, im, options), kind, levels, limit_states, scale=scale,
+        min_rotation=min_rotation,
         tolerance=search,
     )  # fmt: skip
     return question.computed(threads, progress)

@@ -18,7 +18,7 @@ from rocking.studies.fragility.subject import FragilityAnalysis, Responses
 if TYPE_CHECKING:
     import xarray as xr
 
-LEAST = 0.01  # default of the rotation over alpha below which a history counts as barely lifted [-]
+MIN_ROTATION = 0.01  # default of the rotation over alpha below which a history counts as barely lifted [-]
 
 DEFINITION = (
     "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "
@@ -27,9 +27,9 @@ DEFINITION = (
 )
 
 
-def checked_least(rotation: float) -> float:
+def checked_min_rotation(rotation: float) -> float:
     """Return the checked rotation over alpha [-] below which a history counts as barely lifted."""
-    return checks.within("least", rotation, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
+    return checks.within("min_rotation", rotation, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
 
 
 def clearly_lifted(responses: Responses, min_rotation: float) -> BoolArray:
@@ -42,7 +42,7 @@ class CloudAnalysis(FragilityAnalysis):
     """Result of a cloud analysis; states and rotations have one entry per motion."""
 
     motion_levels: FloatArray  # measure of each scaled motion [its unit]
-    least: float = LEAST  # smallest rotation over alpha in the regression [-]
+    min_rotation: float = MIN_ROTATION  # smallest rotation over alpha in the regression [-]
 
     kind = "cloud"
     definition = DEFINITION
@@ -81,13 +81,13 @@ class CloudAnalysis(FragilityAnalysis):
 
     @property
     def barely_lifted(self) -> int:
-        """Number of histories that rocked by less than `least`; the regression does not include them."""
+        """Number of histories that rocked by less than `min_rotation`; the regression does not include them."""
         return int(np.sum(self.responses.rocked & ~self.clear))
 
     @cached_property
     def clear(self) -> BoolArray:
-        """True for histories that rocked without overturning, by at least `least`."""
-        return clearly_lifted(self.responses, self.least)
+        """True for histories that rocked without overturning, by at least `min_rotation`."""
+        return clearly_lifted(self.responses, self.min_rotation)
 
     def clear_fraction(self, level: FloatArray) -> FloatArray:
         """Return the fraction clearly lifted of the histories that rocked without overturning, at levels [-]."""
@@ -115,7 +115,7 @@ class CloudAnalysis(FragilityAnalysis):
         return np.asarray(self.fit_of("rocking").probability(levels), dtype=np.float64)
 
     def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability that the rotation exceeds a value over alpha, at least `least` [-], at levels."""
+        """Return the probability of a rotation above a value over alpha at levels [-]; value >= `min_rotation`."""
         # P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned)
         terms = self.parts(level, rotation)
         return terms["overturned"] + terms["exceeded"]  # Eq. 221
@@ -124,11 +124,13 @@ class CloudAnalysis(FragilityAnalysis):
         """Return the terms of the total probability, which add up to 1, at levels and for a rotation over alpha [-].
 
         ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not overturn)
-        and ``overturned``. A barely lifted body reaches no rotation above `least`.
+        and ``overturned``. A barely lifted body reaches no rotation above `min_rotation`.
         """
         levels = checks.positive_array("level", level, self.subject.measure.unit)
-        hint = "The regression does not include barely lifted histories. Reduce least."
-        limit = math.log(checks.positive("rotation", checks.within("rotation", rotation, self.least, 1e6, hint=hint)))
+        hint = "The regression does not include barely lifted histories. Reduce min_rotation."
+        limit = math.log(
+            checks.positive("rotation", checks.within("rotation", rotation, self.min_rotation, 1e6, hint=hint))
+        )
         # an overturned body has rocked: if the curves cross, rocking is at least as probable
         rocks = self.probability_of_rocking(levels)
         over = np.minimum(np.asarray(self.fit_of("overturning").probability(levels), dtype=np.float64), rocks)
@@ -154,6 +156,6 @@ class CloudAnalysis(FragilityAnalysis):
         return {
             "outcomes": {outcome.name.lower(): n for outcome, n in self.responses.counts().items()},
             "regression": line,
-            "least": self.least,
+            "min_rotation": self.min_rotation,
             "barely lifted": self.barely_lifted,
         }

@@ -13,7 +13,7 @@ from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError, extra
 from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import regression
-from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
+from rocking.studies.fragility.cloud_analysis import MIN_ROTATION, CloudAnalysis, checked_min_rotation
 from rocking.studies.fragility.curves import curve_of
 from rocking.studies.fragility.subject import NAMED, Progress, fits_of
 
@@ -55,7 +55,7 @@ class MeasureComparison:
     scores: tuple[MeasureScore, ...]  # one per measure
     # measures without a rank, with the reason: they are equal for all motions
     left_out: Mapping[str, str]
-    least: float = LEAST  # rotation over alpha below which a history counts as barely lifted [-]
+    min_rotation: float = MIN_ROTATION  # rotation over alpha below which a history counts as barely lifted [-]
 
     @property
     def best(self) -> str:
@@ -81,7 +81,7 @@ def compare_measures(
     ims: Sequence[Any] = DEFAULT_MEASURES,
     metadata: Mapping[str, Any] | None = None,
     *,
-    least: float | None = None,
+    min_rotation: float | None = None,
     progress: Progress = None,
 ) -> MeasureComparison:
     """Rank measures of intensity by their efficiency for the histories of one cloud analysis.
@@ -98,7 +98,7 @@ def compare_measures(
         The measures.
     metadata : mapping of str to array_like, optional
         Quantities of the motions, such as magnitude, ln of the distance, duration; one number per motion.
-    least : float, optional
+    min_rotation : float, optional
         Smallest rotation over alpha of a history in the regressions: the logarithms of very small rotations would
         dominate them. Default: the value of the analysis [-].
     progress : callable, optional
@@ -129,8 +129,8 @@ def compare_measures(
     if not names or len(set(names)) < len(names):
         raise InvalidValueError("ims must contain at least one measure, each once, got {names}", names=names)
     check_progress(progress)
-    if least is not None:
-        analysis = replace(analysis, least=checked_least(least))
+    if min_rotation is not None:
+        analysis = replace(analysis, min_rotation=checked_min_rotation(min_rotation))
     columns = {name: _column(name, values, analysis) for name, values in (metadata or {}).items()}
     scores, left_out = [], {}
     for im in measures:
@@ -143,7 +143,7 @@ def compare_measures(
             scores.append(_score(candidate, columns))
     if not scores:
         raise InvalidValueError("no measure can be ranked: {reasons}", reasons="; ".join(left_out.values()))
-    return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.least)
+    return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.min_rotation)
 
 
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:

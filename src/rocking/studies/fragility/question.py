@@ -11,7 +11,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.motions.filters import geometric
-from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least
+from rocking.studies.fragility.cloud_analysis import MIN_ROTATION, CloudAnalysis, checked_min_rotation
 from rocking.studies.fragility.incremental_dynamic_analysis import (
     IncrementalDynamicAnalysis,
     check_repeatable,
@@ -37,23 +37,23 @@ class FragilityQuestion:
     limit_states: tuple[LimitState, ...]
     levels: FloatArray  # levels of the stripes; for a cloud the level of each motion [unit of the measure]
     histories: Product
-    least: float  # smallest rotation over alpha of a history in the regression of a cloud [-]
+    min_rotation: float  # smallest rotation over alpha of a history in the regression of a cloud [-]
     tolerance: float  # relative width at which an incremental search ends [-]
 
     @classmethod
     def of(
         cls, subject: Subject, analysis: str = "stripes", levels: Any = None,
-        limit_states: Sequence[float | str] = (0.5,), *, scale: float | None = None, least: float | None = None,
+        limit_states: Sequence[float | str] = (0.5,), *, scale: float | None = None, min_rotation: float | None = None,
         tolerance: float | None = None,
     ) -> Self:  # fmt: skip
         """Return the question with parameters as for `rocking.fragility`; computes intensities only."""
         kind, measure = checks.one_of("analysis", analysis, ANALYSES), subject.measure
-        odd = [name for name, value in (("scale", scale), ("least", least)) if value is not None]
+        odd = [name for name, value in (("scale", scale), ("min_rotation", min_rotation)) if value is not None]
         if odd and kind != "cloud":
             raise InvalidValueError(
                 '{parameter} is for analysis="cloud" only, this is "{kind}"', parameter=odd[0], kind=kind
             )
-        least = checked_least(LEAST if least is None else least)
+        min_rotation = checked_min_rotation(MIN_ROTATION if min_rotation is None else min_rotation)
         tolerance = checks.within("tolerance", 1e-8 if tolerance is None else tolerance, 0.0, 0.1)
         if kind == "cloud":
             if levels is not None:
@@ -67,7 +67,7 @@ class FragilityQuestion:
         histories = subject.product(factors)
         if kind == "incremental":
             check_repeatable(histories.law)
-        return cls(subject, kind, limit_states_of(limit_states), at, histories, least, tolerance)
+        return cls(subject, kind, limit_states_of(limit_states), at, histories, min_rotation, tolerance)
 
     def answer(self, arrays: Arrays, threads: int | None = None) -> MultipleStripeAnalysis | CloudAnalysis:
         """Return the analysis of the results of the histories; an incremental analysis searches its intervals here."""
@@ -75,7 +75,7 @@ class FragilityQuestion:
         responses = Responses.of(arrays, self.subject.parameters, shape)
         common = self.subject, self.limit_states, self.histories, responses, self.levels
         if self.analysis == "cloud":
-            return CloudAnalysis(*common, self.least)
+            return CloudAnalysis(*common, self.min_rotation)
         stripes = MultipleStripeAnalysis(*common)
         if self.analysis == "stripes":
             return stripes

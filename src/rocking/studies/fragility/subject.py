@@ -134,7 +134,7 @@ class Subject:
     @property
     def measure_words(self) -> str:
         """Description of the measure, with the floor of the motions."""
-        return words_on(self.support, self.measure.words)
+        return words_on(self.support, self.measure.description)
 
     @property
     def label(self) -> dict[str, str]:

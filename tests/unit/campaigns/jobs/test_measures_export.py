@@ -79,7 +79,7 @@ def test_the_ranking_of_the_python_call(campaign, wanted):
     """All numbers of the ranking are those of `compare_measures`, bit for bit; fewer motions rank otherwise."""
     found = measure_comparison(campaign)
     assert found.rows() == wanted.rows()
-    assert (dict(found.left_out), found.least) == (dict(wanted.left_out), wanted.least)
+    assert (dict(found.left_out), found.min_rotation) == (dict(wanted.left_out), wanted.min_rotation)
     assert len(found.scores) == len(NAMES)
     fewer = fragility_analysis(
         rk.Block(width=0.4, height=2.0),
@@ -107,7 +107,7 @@ def test_csv_and_excel(campaign, wanted, tmp_path):
     assert not same(of_csv[0]["efficiency"], math.nextafter(right, 1.0))  # the control: one bit is seen
     beside = json.loads((tmp_path / "m.csv.provenance.json").read_text(encoding="utf-8"))
     assert beside["ims_left_out"] == {}
-    assert beside["least_rotation_over_alpha"] == wanted.least
+    assert beside["min_rotation_over_alpha"] == wanted.min_rotation
     assert "provenance" in [row[0] for row in book["provenance"].iter_rows(values_only=True)]
 
 

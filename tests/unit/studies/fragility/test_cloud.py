@@ -67,7 +67,7 @@ def test_the_line_against_scipy(found):
 @pytest.mark.verifies("computed anew", "the definitions, with SciPy's normal distribution", within="1e-12")
 def test_three_parts_of_the_probability(found):
     """No rocking, below, beyond and overturned add up to one, and each is what its definition says."""
-    found = dataclasses.replace(found, least=1e-9)  # no history of these is lifted by less
+    found = dataclasses.replace(found, min_rotation=1e-9)  # no history of these is lifted by less
     assert found.barely_lifted == 0
     levels, threshold = np.array([2.0, 2.6, 4.0, 8.0]), conventions.g * 0.25
     parts = found.parts(levels, 0.3)
@@ -96,9 +96,9 @@ def test_barely_lifted_histories_are_no_points_of_the_line():
     line = stats.linregress(np.log(hurt.motion_levels[kept]), np.log(hurt.responses.rotation[kept]))
     assert hurt.regression.slope == pytest.approx(line.slope, rel=1e-11, abs=0.0)
     told = hurt.summary()
-    assert (told["least"], told["barely lifted"]) == (0.01, hurt.responses.rocked.sum() - kept.sum())
+    assert (told["min_rotation"], told["barely lifted"]) == (0.01, hurt.responses.rocked.sum() - kept.sum())
     assert told["barely lifted"] >= chosen.size
-    everything = dataclasses.replace(hurt, least=0.0)
+    everything = dataclasses.replace(hurt, min_rotation=0.0)
     assert everything.barely_lifted == 0
     assert everything.regression.scatter > 3.0 * hurt.regression.scatter
 
@@ -120,8 +120,8 @@ def test_barely_lifted_histories_reach_no_state():
     with pytest.raises(InvalidValueError, match="barely lifted"):
         hurt.probability(4.0, 0.005)
     for bad in (-0.1, 1.0, math.nan):
-        with pytest.raises(InvalidValueError, match="least"):
-            fragility_analysis(BLOCK, MOTIONS[:2], least=bad, analysis="cloud", restitution="ked")
+        with pytest.raises(InvalidValueError, match="min_rotation"):
+            fragility_analysis(BLOCK, MOTIONS[:2], min_rotation=bad, analysis="cloud", restitution="ked")
 
 
 @pytest.mark.slow
@@ -198,7 +198,7 @@ def test_share_of_what_was_clearly_lifted(found):
 
     def share(outcome, rotation):
         answers = Responses(np.array(outcome), np.asarray(rotation), np.zeros(5, np.int8))
-        some = dataclasses.replace(found, responses=answers, motion_levels=levels, least=0.01)
+        some = dataclasses.replace(found, responses=answers, motion_levels=levels, min_rotation=0.01)
         return some.clear_fraction(np.array([1.0, 4.0])).tolist()
 
     assert share(codes, rotation) == [0.75, 0.75]

@@ -78,14 +78,14 @@ def test_barely_lifted_histories_do_not_rank_measures():
     hurt = question.answer(arrays)
     kept = hurt.responses.rocked & (hurt.responses.rotation >= 0.01)
     found = compare_measures(hurt, ["pga", "pgv"])
-    assert found.least == 0.01
+    assert found.min_rotation == 0.01
     for score in found.scores:
         values = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi}[score.im]
         line = stats.linregress(np.log(values[kept]), np.log(hurt.responses.rotation[kept]))
         assert score.slope == pytest.approx(line.slope, rel=1e-5)  # sampled pulses are right to 1e-6
         assert score.rocked == kept.sum()
         assert score.barely_lifted == hurt.responses.rocked.sum() - kept.sum() >= 20
-    everything = compare_measures(hurt, ["pga", "pgv"], least=0.0)
+    everything = compare_measures(hurt, ["pga", "pgv"], min_rotation=0.0)
     assert everything.scores[0].efficiency > 3.0 * found.scores[0].efficiency
     assert found.rows()[0]["barely_lifted"] >= 20
 

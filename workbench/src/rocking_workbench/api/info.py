@@ -211,7 +211,7 @@ def listed_measures() -> list[dict[str, str]]:
     """Return the measures of intensity that have names."""
     from rocking.motions import measures
 
-    return [_quantity(measure, measure.words) for measure in measures().values()]
+    return [_quantity(measure, measure.description) for measure in measures().values()]
 
 
 def _quantity(quantity: Any, description: str) -> dict[str, str]:

@@ -228,7 +228,7 @@ def fragility_result(study: OpenStudy) -> dict[str, Any]:
     measure = first.subject.measure
     unit = "" if measure.unit == "1" else measure.unit
     return {
-        "im": {"name": measure.name, "unit": measure.unit, "description": measure.words},
+        "im": {"name": measure.name, "unit": measure.unit, "description": measure.description},
         "motions": coordinate(study, "motion"),
         "definition": first.definition,
         "uplift_threshold": first.subject.uplift_threshold,

@@ -26,7 +26,7 @@ export const fixed = (value, digits) => {
   return (value < 0 && Number(text) > 0 ? MINUS : "") + text.replace(".", MARK);
 };
 
-/** Numbers in a row, with a mark between them that is in none of them. @param {(number | string)[]} values */
+/** Numbers in one line, with a separator that none of them contains. @param {(number | string)[]} values */
 export const numbers = (values) => values.map((value) => number(value)).join(MARK === "," ? "; " : ", ");
 
 /** A number and its unit; a pure number has the unit "" or "-".

@@ -13,7 +13,7 @@ const chosen = () => {
     const kept = localStorage.getItem(KEY);
     if (kept && kept in NAMES) return kept;
   } catch {
-    // Nothing is kept: the browser's own languages decide.
+    // No choice is stored: the languages of the browser apply.
   }
   return navigator.languages.map((code) => code.slice(0, 2)).find((code) => code in NAMES) ?? "en";
 };

@@ -1,4 +1,4 @@
-/** The server's refusals in the words of the page, made from their facts: fields, regions counted from one, its units. */
+/** Refusals of the server as texts of the page: names of fields, regions from 1, units of the page. */
 
 import { number, numbers, pretty } from "/app/format.js";
 import { t, messageText } from "/app/words.js";

@@ -85,7 +85,7 @@ const inWords = (child) => (typeof child === "string" ? translatedText(child) : 
 /** @param {any} tag @param {any} attributes */
 const stays = (tag, attributes) => UNTOUCHED.includes(tag) || [false, "no"].includes(attributes?.translate);
 
-// The page as its file has it, before any script draws.
+// Translates the static page, before any script draws.
 /** @param {Element} element */
 const translate = (element) => {
   if (stays(element.localName, { translate: element.getAttribute("translate") })) return;

@@ -1,4 +1,4 @@
-/** Hands the samples of the microphone to the page. */
+/** Sends the samples of the microphone to the page. */
 
 class Recorder extends AudioWorkletProcessor {
   /** @param {Float32Array[][]} inputs */

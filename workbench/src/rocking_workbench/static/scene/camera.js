@@ -20,7 +20,7 @@ export const fit = (camera, box, width, height, ratio) => {
   camera.floor = height - FLOOR + Math.min(box.low, 0) * camera.scale;
 };
 
-/** Returns the horizontal pixel of a place [m], when the camera has gone along by `ridden`.
+/** Returns the horizontal pixel of a position [m], for a camera that moved by `ridden` [m].
  * @param {Camera} camera @param {number} metres @param {number} ridden */
 export const pixelOf = (camera, metres, ridden) =>
   0.5 * camera.width + (metres - camera.middle - ridden) * camera.scale;

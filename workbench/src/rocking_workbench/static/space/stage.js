@@ -188,7 +188,7 @@ export class Stage {
     this.hang();
   }
 
-  /** Let the plumb line hang from the centre. */
+  /** Draw the plumb line from the centre of mass. */
   hang() {
     const { x, y, z } = this.body.position;
     const ends = this.plumb.geometry.attributes.position;

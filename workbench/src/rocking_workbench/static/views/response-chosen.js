@@ -21,7 +21,7 @@ export const chosenOf = (labels) => labels.find((label) => curveKey(label) === c
 /** Looks at a model; null goes back to the main one. @param {string | null} label */
 export const look = (label) => (chosenKey.value = label === null ? null : curveKey(label));
 
-/** Returns the address of a file about the model that is looked at.
+/** Returns the address of a file about the selected model.
  * @param {string} path @param {Server.RestitutionTable} [table] */
 export const pathOfChosen = (path, table) => {
   const labels = labelsOf(table);
