@@ -161,6 +161,7 @@ def test_what_is_refused():
         compare_code_methods(SMALL, rk.GroundMotion([0.0, 0.0, 0.0], 0.1), restitution="ked")
 
 
+@pytest.mark.slow
 def test_a_symmetric_body_with_two_coefficients_has_two_ways_round():
     """A lopsided pulse overturns it less early the one way round than the other: the worse one counts."""
     time = np.arange(0.0, 3.0, 0.01)

@@ -82,6 +82,7 @@ def test_missing_keys() -> None:
 # ---- results --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @every_engine
 def test_all_outcomes_and_types(name: str) -> None:
     """Weak, middling and strong motions end in the three ways; results have the types that they promise."""
@@ -104,6 +105,7 @@ BAD = [(key, value) for key in OF_ROCKING if not key.startswith("q_") for value 
 ]  # fmt: skip
 
 
+@pytest.mark.slow
 @every_engine
 def test_bad_rows_spoil_nothing(name: str) -> None:
     """Rows with a value out of range are refused by their status, all numbers NaN; those between keep their bits."""
@@ -123,6 +125,7 @@ def test_bad_rows_spoil_nothing(name: str) -> None:
     assert same({key: each[good] for key, each in found.items()}, ordinary)
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("number", [-1, 1, 2**40, -(2**62)])
 def test_a_motion_that_is_not_there(name: str, number: int) -> None:
@@ -146,6 +149,7 @@ def test_too_many_impacts(name: str) -> None:
     assert math.isnan(found["peak_rotation"][1])
 
 
+@pytest.mark.slow
 @every_engine
 def test_pieces_and_progress(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows are asked for piece after piece, progress counts them all, and pieces leave no trace."""
@@ -180,6 +184,7 @@ def test_valid_row() -> None:
     assert not any(valid_row({**row, key: value}) for key, value in BAD)
 
 
+@pytest.mark.slow
 @built
 def test_a_record_that_ends_in_mid_motion() -> None:
     """The jump to rest after a last sample that is not zero is the same jump for both engines; two are refused."""
@@ -230,6 +235,7 @@ def test_speed_of_the_first_impact_after_the_motion(name: str) -> None:
     assert found["impacts"][0] == 0
 
 
+@pytest.mark.slow
 @every_engine
 def test_what_still_rocks_when_the_motion_ends(name: str) -> None:
     """A pulse that ends abruptly leaves the body rocking; with a minute of rest after it nothing rocks."""

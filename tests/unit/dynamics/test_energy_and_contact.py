@@ -24,6 +24,7 @@ PSI = ALPHA - START
 WHOLE = MASS * g * RADIUS * (math.cos(PSI) - math.cos(ALPHA))
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "m g R (cos(alpha - theta_0) - cos(alpha)), and r^2n of it", within="1e-11")
 @every_engine
 def test_free_rocking_ledger(name: str) -> None:
@@ -43,6 +44,7 @@ def test_free_rocking_ledger(name: str) -> None:
     assert energy.gap.shape == energy.time.shape == response.time.shape
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_forces_when_let_go(name: str, sign: float) -> None:
@@ -103,6 +105,7 @@ def test_loss_of_contact(drop: float, flies: bool) -> None:
     assert len(said) == int(flies)
 
 
+@pytest.mark.slow
 def test_simulate_warns_where_sliding_would_follow() -> None:
     """`doubts` of a friction too small names what slides; with enough there are none."""
     pulse = rk.pulses.sine(amplitude=4.5, period=0.4)
@@ -197,6 +200,7 @@ def rocked(folder: Path, name: str, engine: str) -> rk.Response:
     return rk.simulate(SLENDER, rk.read_motion(folder / name, **STRONGEST[name]), "ked", engine=engine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", STRONGEST)
 def test_closes(shared_records: Path, name: str, engine: str) -> None:
@@ -206,6 +210,7 @@ def test_closes(shared_records: Path, name: str, engine: str) -> None:
     assert response.energy.closure < CLOSURE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STRONGEST)
 def test_long_intervals_limit_it(shared_records: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut to a fifth, the intervals close to 1e-10: the same history, so the engine is not what was open."""
@@ -213,6 +218,7 @@ def test_long_intervals_limit_it(shared_records: Path, name: str, monkeypatch: p
     assert rocked(shared_records, name, "auto").energy.closure < SHORT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STRONGEST)
 def test_sees_a_wrong_loss(shared_records: Path, name: str) -> None:
     """Negative control: one part in 100 000 more lost at the impacts, or work done, does not close."""

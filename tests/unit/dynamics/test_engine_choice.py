@@ -26,6 +26,7 @@ def _not_built(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rocking.dynamics._engine", None)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_not_built")
 def test_without_the_module_the_reference_runs() -> None:
     """ "auto" warns, at the user's own line, and gives the reference engine's numbers bit for bit."""
@@ -160,6 +161,7 @@ def loaded(more: str = "") -> set[str]:
     return set(done.stdout.split())
 
 
+@pytest.mark.slow
 @built
 def test_the_first_response_loads_what_it_needs() -> None:
     """A response of the fast engine loads no files, tables or other engines; asked for, these are loaded."""

@@ -19,6 +19,8 @@ from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.outcome import ContactMode, Regime
 from rocking.quantities import QUANTITIES
 
+pytestmark = pytest.mark.slow
+
 BLOCK = rk.Block(width=0.5, height=2.0)
 FORMULA = "=cmd|' /C calc'!A0"
 RECORD = rk.GroundMotion(

@@ -18,6 +18,7 @@ PUSH = 200.0
 SLOW = rk.GroundMotion(np.array([0.0, 4.0, -1.0, 0.5, 0.0]), 0.6)
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("share", [1.2, -1.2])
 @pytest.mark.parametrize("linear", [False, True])
@@ -60,6 +61,7 @@ def test_lies_within_the_first_step(name: str) -> None:
         response.at(1.0)
 
 
+@pytest.mark.slow
 @every_engine
 def test_beyond_the_top_and_lying_within_the_first_step(name: str) -> None:
     """Let go beyond the top and lying before the second sample, only the start counts, and nothing is invented."""
@@ -90,6 +92,7 @@ def test_a_fall_inside_a_step_counts(name: str) -> None:
     assert response.energy.closure < 1e-9
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize(("scale", "falls"), [(1.5, True), (1.0, False)])
 def test_long_steps(name: str, scale: float, falls: bool) -> None:
@@ -128,6 +131,7 @@ def test_stopped_before_anything_happened() -> None:
             getattr(response, what)
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_thrown_back_within_a_long_step(name: str, sign: float) -> None:

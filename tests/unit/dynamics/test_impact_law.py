@@ -37,6 +37,7 @@ def test_speed_law() -> None:
     assert ConstantRestitution().factor(3.0, 1, 2) == 1.0 == ConstantRestitution().largest
 
 
+@pytest.mark.slow
 @every_engine
 def test_coefficients_by_side(name: str) -> None:
     """Landing left takes the left coefficient, landing right the right one, in either engine."""
@@ -47,6 +48,7 @@ def test_coefficients_by_side(name: str) -> None:
     np.testing.assert_allclose(found["velocity_after"], expected * found["velocity_before"], rtol=1e-15)
 
 
+@pytest.mark.slow
 @every_engine
 def test_speed_law_in_a_response(name: str) -> None:
     """Each impact has the coefficient of its own speed, times Housner's 1 - 3/2 sin^2(alpha)."""
@@ -110,6 +112,7 @@ class Worn(rk.dynamics.ImpactLaw):
         return 0.99**impact
 
 
+@pytest.mark.slow
 def test_a_law_of_ones_own() -> None:
     """It runs on the reference engine, by itself or asked for, and the fast engine refuses it."""
     block = rk.Block(width=0.5, height=2.0)

@@ -40,6 +40,7 @@ def tables() -> dict[str, Any]:
     return made
 
 
+@pytest.mark.slow
 @every_engine
 def test_labels(name: str, tables: dict[str, Any]) -> None:
     """Dimensions in the order of the question, names of motions, scales, words for the restitutions, units."""
@@ -134,6 +135,7 @@ def test_one_of_each(name: str) -> None:
     assert found["motion"].item() == "sine pulse, 4 m/s2, 0.6 s"
 
 
+@pytest.mark.slow
 @every_engine
 def test_random_restitution(name: str) -> None:
     """The k-th history of the table has the draws of key k: it is `simulate` with that key; the label says so."""
@@ -182,6 +184,7 @@ def test_company_does_not_matter() -> None:
         np.testing.assert_array_equal(alone[name].values, beside[name].values)
 
 
+@pytest.mark.slow
 @built
 def test_a_twin_tells_what_the_integration_leaves_open() -> None:
     """Half a long step changes a peak by the error that it has against steps without error, of order 6 or more.
@@ -209,6 +212,7 @@ def test_a_twin_tells_what_the_integration_leaves_open() -> None:
     assert found["twin_change"].attrs["units"] == "rad"
 
 
+@pytest.mark.slow
 @every_engine
 def test_scales_go_up_to_a_million(name: str) -> None:
     """The ends of the range are in it: a motion of a millionth, scaled by either, is itself or its mirror image."""
@@ -229,6 +233,7 @@ VELOCITIES = [0.0, 0.3, -0.3, 0.0, 0.2, 0.0, -0.6, 0.0, 2.5, 0.0, -0.2]
 COMPARED = ("outcome", "status", "side", "impacts", "uplifts", "peak_rotation", "overturning_time", "least_force")
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("motion", [*MOTIONS, rk.pulses.sine(2.0, 0.8)], ids=lambda motion: motion.name)
 def test_starts_are_those_of_single_histories(name: str, motion: Any) -> None:

@@ -36,6 +36,7 @@ def test_labels(table):
     assert table.attrs["engine"].startswith("fast")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", range(2))
 @pytest.mark.parametrize("mu", range(2))
 def test_each_is_what_simulate_gives(table, body, mu):
@@ -67,6 +68,7 @@ def test_files_say_what_was_computed():
     assert "initial_vertical_velocity" not in found.coords
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["fast", "reference"])
 def test_each_start_is_what_simulate_gives(engine):
     """A row of starts is the last dimension; leaning either way, thrown and dropped."""
@@ -134,6 +136,7 @@ def test_what_is_refused(options, says):
         rk.simulate_many(STATUE, MOTIONS[0], **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["fast", "reference"])
 def test_a_continuation_that_fails_leaves_the_result_before(engine):
     """With 20 events the first 15 sqrt(R / g) after the motion can be computed, and no more: that result is given.

@@ -93,6 +93,7 @@ def time_to_fall(start: float) -> float:
     return math.acosh(1.0 / (1.0 - start))
 
 
+@pytest.mark.slow
 def test_a_fall_that_ends_with_the_record() -> None:
     """Falls of acosh(1 / (1 - x)) / p that take all of it, to the last bits, end in an impact or in the ground."""
     for start in np.linspace(0.05, 0.95, 40):
@@ -158,6 +159,7 @@ BURSTS = rk.GroundMotion(
 )
 
 
+@pytest.mark.slow
 @every_engine
 def test_events_in_order(name: str) -> None:
     """Two bursts with a calm between: each an uplift, impacts and a rest, in order of time, on alternating sides."""
@@ -244,6 +246,7 @@ def test_motions_that_are_not_finite_are_refused(name: str, degree: int, poison:
             )
 
 
+@pytest.mark.slow
 @built
 def test_records_of_all_kinds_in_one_library() -> None:
     """Records with and without a vertical part, cut off in mid-motion and not, of different lengths: each has the peak

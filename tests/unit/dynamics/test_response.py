@@ -29,6 +29,7 @@ def sine(strength: float, name: str = "auto", **more: Any) -> rk.Response:
     return rk.simulate(BLOCK, pulse, R, engine=name, **more)
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("make", [sine, lambda s, name: let_go(name)])
 def test_arrays(name: str, make: Any) -> None:
@@ -55,6 +56,7 @@ def test_ground_acceleration_is_the_scaled_record() -> None:
     assert not found[4:].any()
 
 
+@pytest.mark.slow
 @every_engine
 def test_rotation_between_the_samples(name: str) -> None:
     """Until the first impact theta = alpha - (alpha - theta_0) cosh(p t), at any time, either sign, any shape."""

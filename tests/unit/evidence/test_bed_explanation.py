@@ -22,6 +22,8 @@ from rocking.evidence.likelihood import interval_log_likelihood, scatter
 from rocking.evidence.measurements import GROUPS
 from rocking.restitution import ContactBedModel
 
+pytestmark = pytest.mark.slow
+
 PHYSICS = {each.name: each for each in explanations()}
 
 

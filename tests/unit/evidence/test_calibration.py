@@ -27,6 +27,7 @@ def simulated(eta, k, s, gamma, seed, count=1):
     return dataclasses.replace(data, coefficient=r, low=r - 5e-4, high=r + 5e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("repeated sampling", "parameters that were put in", within="3.0 standard deviations")
 def test_recovers_known_parameters():
     """From 156 simulated rows eta and k come back within 3 posterior standard deviations, and those are small."""
@@ -36,6 +37,7 @@ def test_recovers_known_parameters():
     assert facts["k"]["sd"] < 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling",
     "new rows of the law that made the data",
@@ -59,6 +61,7 @@ def test_intervals_cover():
     assert abs(inside / total - 0.95) < (0.02 if campaign else 0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "intervals half as wide")
 def test_half_the_interval_does_not_cover():
     """Negative control: intervals half as wide cover far less than 93 %."""
@@ -86,6 +89,7 @@ def test_posterior_near_least_squares():
     assert set(facts) == set(NAMES)
 
 
+@pytest.mark.slow
 def test_same_numbers_every_time():
     """Calibration has no random number: two runs agree to the last bit; draws depend on their seed alone."""
     first, second = calibrate_on(all_measurements()), calibrate_on(all_measurements())
@@ -106,6 +110,7 @@ def test_growing_scatter_beats_constant():
     assert best - constant.max() > 8.0
 
 
+@pytest.mark.slow
 def test_prediction_of_a_body_is_that_of_its_slenderness():
     """Block and slenderness give one prediction; it lies within [0, 1] also for flat and for tall blocks."""
     one = calibrate().predict(Block(width=1.0, height=4.0))
@@ -115,6 +120,7 @@ def test_prediction_of_a_body_is_that_of_its_slenderness():
     assert (wide.high <= 1.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the mixture, by SciPy's normal distribution", within="1e-9; 1e-6 of the ends")
 def test_a_prediction_is_the_mixture_over_the_posterior():
     """Mean, spread and interval are those of normals around eta (g - k)/(g + k), cut at 0 where a flat block stops."""
@@ -142,6 +148,7 @@ def test_interval_of_any_model(model):
     assert found.high - found.low <= housner.high - housner.low
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "measured",
     "each measured coefficient of Mao et al. 2024, left out of the calibration",
@@ -170,6 +177,7 @@ def test_table_of_a_body():
     assert outside_evidence(Block(width=1.0, height=4.0)) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "the densities that are stated", within="1e-9", control="within")
 def test_priors_are_the_stated_ones():
     """1 - eta ~ Beta(1.5, 98.5) and k ~ N(0.6, 0.12), up to a constant, flat in the scatter and its power."""
@@ -197,6 +205,7 @@ def log_posterior(eta, k, log_s, gamma):
     return np.log(np.maximum(share, 1e-300)).sum(axis=1) + prior[:, 0]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "400 random-walk chains", within="0.1 of the standard deviation", control="within"
 )
@@ -254,6 +263,7 @@ def test_quantiles_converge_with_the_grid(axis):
     assert coarse[1] > 100.0 * errors[1]
 
 
+@pytest.mark.slow
 @pytest.mark.pinned
 def test_what_is_kept_is_what_would_be_computed():
     """The posterior and the misfits of `make calibration`, computed anew: rounding alone may part them."""
@@ -271,6 +281,7 @@ def test_what_is_kept_is_what_would_be_computed():
         assert found.standard_deviation == pytest.approx(scatter(found.coefficient, floor, slope), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_other_measurements_are_calibrated_anew(monkeypatch):
     """With a row left out nothing that is kept is read: neither the posterior nor the misfit of a model."""
     fewer, block = all_measurements().rows(np.arange(len(all_measurements()) - 1)), Block(width=1.0, height=3.0)

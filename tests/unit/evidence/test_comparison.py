@@ -46,6 +46,7 @@ def test_exchanging_the_models_changes_signs_alone():
     assert all(each.sign == 0 for each in same.by_group.values())
 
 
+@pytest.mark.slow
 def test_coverage_of_the_paired_interval():
     """Models whose errors share their noise: 95 % intervals hold the true difference in 88 to 98 % of 400 studies.
 

@@ -14,7 +14,7 @@ from rocking.evidence.hierarchy import left_out_groups, tree
 from rocking.evidence.measurements import joined
 from rocking.restitution import ShiftedImpulse
 
-pytestmark = pytest.mark.verifies(room="evidence")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="evidence")]
 
 AT = Nodes(*(np.array([value]) for value in (0.98, 0.57, np.log(0.1), 0.7)))
 

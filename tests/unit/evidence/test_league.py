@@ -10,7 +10,7 @@ from rocking.evidence._league import as_it_is, contenders
 from rocking.evidence.likelihood import interval_log_likelihood
 from rocking.restitution import Fixed, Housner, Interface, Ked
 
-pytestmark = pytest.mark.verifies(room="evidence")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="evidence")]
 
 ALL = np.ones(len(all_measurements()), dtype=bool)
 

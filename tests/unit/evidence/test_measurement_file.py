@@ -57,6 +57,7 @@ def leaves(value):
         yield from leaves(part)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the published rows, written and read", within="1e-6")
 def test_published_rows_through_a_file(tmp_path):
     """The 39 rows through a file are the same to the last digit, and give the same league and calibrations."""
@@ -226,6 +227,7 @@ def test_files_that_are_refused(tmp_path, name):
         read_measurements(tmp_path / f"no_{name}")
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_what_was_identified_is_a_measurement(tmp_path):
     """The mean of an identification, with its interval as standard deviation, goes into a file and comes back."""

@@ -17,6 +17,8 @@ from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.evidence import all_measurements, judgement, recommend, restitution_distribution
 from rocking.restitution.space import spatial_model
 
+pytestmark = pytest.mark.slow
+
 FORMULAS = {
     "housner": lambda ratio: 1.0 - 1.5 / (1.0 + ratio**2),
     "horizontal-momentum": lambda ratio: ratio**2 / (1.0 + ratio**2),

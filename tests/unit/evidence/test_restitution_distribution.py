@@ -14,6 +14,8 @@ from rocking.evidence.likelihood import scatter
 from rocking.motions import pulses
 from rocking.restitution import ShiftedImpulse
 
+pytestmark = pytest.mark.slow
+
 # one false alarm in a million: the draws never change, so a failure is no accident
 ALARM = 1e-6
 LEANING = Section([Region([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 3.0)], 2400.0)])

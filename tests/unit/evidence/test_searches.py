@@ -21,6 +21,7 @@ def steps(x, search):
     return np.floor(4.0 * np.abs(rosenbrock(x, search)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", [rosenbrock, steps])
 @pytest.mark.parametrize("evaluations", [7, 31, 40, 1000])
 def test_each_search_takes_the_steps_of_scipy(function, evaluations):
@@ -45,6 +46,7 @@ def waves(x, search):
     return np.where(search < 30, (x - 0.1 * search) ** 4 + np.sin(0.2 * search * x) + 0.3 * np.abs(x - 0.5), -x)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
 def test_each_search_between_bounds_takes_the_steps_of_scipy(tolerance):
     found = minimise_between(waves, (-0.5, 2.0), 31, tolerance=tolerance)

@@ -58,6 +58,7 @@ def test_the_verdict_on_both_sides_of_every_crossing():
     assert found.ratio == pytest.approx(found.acceleration / (9.80665 * math.tan(0.2)), rel=1e-14, abs=0.0)
 
 
+@pytest.mark.slow
 def test_the_peak_of_the_given_motion_does_not_matter():
     """A motion given at another amplitude, or turned round, has the same crossings."""
     found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
@@ -67,6 +68,7 @@ def test_the_peak_of_the_given_motion_does_not_matter():
         np.testing.assert_array_equal(other.modes, found.modes)
 
 
+@pytest.mark.slow
 def test_a_batch_is_its_members():
     """Bodies computed together have what each has alone, to the last bit; their model is evaluated for each."""
     bodies = [rk.Block(width=0.3, height=h) for h in (0.9, 1.8, 2.7)]
@@ -78,6 +80,7 @@ def test_a_batch_is_its_members():
         assert (found.samples, found.min_pga, found.max_pga) == (alone.samples, alone.min_pga, alone.max_pga)
 
 
+@pytest.mark.slow
 def test_what_is_missed_is_narrower_than_the_resolution():
     """Under a record a dense independent sampling contradicts the crossings only in narrower runs.
 
@@ -115,6 +118,7 @@ def test_a_range_of_ones_own():
     assert part.safe_intervals == ((pytest.approx(second), 0.5 * (second + third)),)
 
 
+@pytest.mark.slow
 def test_coarse_samples_find_what_hides_between_them():
     """Twenty samples, 23 % apart, still find the gap of 6 % between the modes: the way of falling changes."""
     fine = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
@@ -151,6 +155,7 @@ def test_more_samples_are_told_and_counted():
     assert found.failed == 0
 
 
+@pytest.mark.slow
 def test_vertical_motion_lowers_the_start():
     """With a vertical part, which can lighten the body, the range begins at a tenth of what lifts it."""
     record = noise()
@@ -175,6 +180,7 @@ def quake(seed, which="point-source"):
     return SyntheticSet(which, 1, seed, pga=3.0)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(6))
 def test_under_records_the_minimum_holds_against_many_more_samples(number):
     """A hundred times as many samples lower the minimum of no record of a set by more than is stated.
@@ -189,6 +195,7 @@ def test_under_records_the_minimum_holds_against_many_more_samples(number):
     assert not falls[scales * motion.peak < found.minimum * (1.0 - found.resolution_below)].any()
 
 
+@pytest.mark.slow
 def test_what_lies_below_the_minimum_is_thinner_than_stated():
     """Under a long chaotic record a dense sampling finds overturning below the minimum in thinner stretches only."""
     block, motion = rk.Block(width=0.8, height=4.0), quake(2, "firm-ground")
@@ -200,6 +207,7 @@ def test_what_lies_below_the_minimum_is_thinner_than_stated():
     assert widest < found.resolution_below
 
 
+@pytest.mark.slow
 def test_only_records_are_searched_again():
     """A pulse is sampled as before; a record has rounds below its minimum, which progress is told of."""
     for motion, rounds in ((SINE, 0), (quake(1), 2)):

@@ -75,6 +75,7 @@ def spatial_batch(outcome):
     return SpatialBatch(codes.shape, values, "none", labels)
 
 
+@pytest.mark.slow
 def test_space_says_so():
     """Lost contact is no stand: one fall of two results is a half, in the batch and in its picture."""
     batch = spatial_batch([FALLS, STANDS, NONE, NONE])
@@ -160,6 +161,7 @@ def test_maps_spectra_and_searches_say_it():
         assert ("becomes tensile" in least.contact) is all_lost
 
 
+@pytest.mark.slow
 def test_fragilities_say_it():
     """Stripes and clouds count the histories, in their datasets and in what is printed."""
     for motions, all_lost in ((HEAVY, True), (LIGHT, False)):
@@ -181,6 +183,7 @@ def test_inventories_say_it():
     assert "pull" not in sentence(light, of_light)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 def test_one_history_tells_both_verdicts():
     """Commands, page and report take the warnings of `Response.answer`: rocking alone, and with flight."""

@@ -171,6 +171,7 @@ def test_refined_map_is_the_same():
     assert one.base[:20].all()
 
 
+@pytest.mark.slow
 def test_the_reference_engine_draws_the_same_map():
     """The other engine gives the same modes, and rotations to 1e-10, and says that it ran."""
     x, y = ("frequency_ratio", [2.0, 3.0, 5.0]), ("amplitude_ratio", [0.9, 1.5, 2.2, 3.0])
@@ -219,6 +220,7 @@ def record(seed):
     return rk.GroundMotion(2.0 * np.random.default_rng(seed).normal(size=300), 0.02, name=f"noise {seed}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motions", [PULSES, [record(1), record(2), record(3)]])
 def test_a_spectrum_is_simulate_many_block_by_block(motions):
     """For pulses and records: the same bits as `simulate_many` of the blocks."""

@@ -25,6 +25,7 @@ def test_motion_does_not_depend_on_the_count(name):
     assert not np.array_equal(small[2].acceleration, SyntheticSet(name, 3, 10)[2].acceleration)
 
 
+@pytest.mark.slow
 def test_no_two_motions_are_alike():
     """Over 2 seeds and 50 numbers every peak is another one."""
     peaks = {
@@ -33,6 +34,7 @@ def test_no_two_motions_are_alike():
     assert len(peaks) == 100
 
 
+@pytest.mark.slow
 def test_scaling_is_exact():
     """Scaled to a PGA or a PGV, every motion has it to rounding, and keeps its shape."""
     for k in range(5):

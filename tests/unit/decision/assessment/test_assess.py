@@ -17,6 +17,8 @@ from rocking.decision.remedies import Landings, Margins, changed, remedies
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet
 
+pytestmark = pytest.mark.slow
+
 CABINET = rk.Block(width=0.8, height=2.2, depth=1.2, mass=650.0, centre=(0.52, 0.9))
 
 

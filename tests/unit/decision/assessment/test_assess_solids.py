@@ -23,6 +23,7 @@ def found():
     return rk.assess(TOWER, PULSE, ["ked", "calibrated"], **QUICK)
 
 
+@pytest.mark.slow
 def test_where_it_is_weakest(found):
     """The plane body stands over the nearest edge, and code methods and remedies are its."""
     standing, centre = found.standing, TOWER.centre
@@ -37,6 +38,7 @@ def test_where_it_is_weakest(found):
     assert static[0] == pytest.approx(found.uplift_factors.min(), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_uplift_under_vertical_motion():
     """Uplift with a vertical component is not that of the horizontal component alone."""
     time = np.arange(0.0, 1.6, 0.01)
@@ -94,6 +96,7 @@ def test_a_report_draws_it_in_space(found, tmp_path):
         assert words in text
 
 
+@pytest.mark.slow
 def test_models_that_know_no_solids_are_refused():
     """A model of the plane alone says nothing of a solid, and why; alone it is an error; so is a polarity."""
     both = rk.assess(TOWER, PULSE, ["ked", "horizontal-momentum"], azimuth=0.0, **QUICK)

@@ -21,7 +21,7 @@ from rocking.motions import GroundMotion
 from rocking.outcome import Outcome
 from rocking.tables import escaped
 
-pytestmark = pytest.mark.verifies(room="studies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="studies")]
 
 G = 9.80665
 # tan alpha = 1/4 along the width, 1/2 along the depth

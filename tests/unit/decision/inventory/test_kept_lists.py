@@ -36,6 +36,7 @@ def outcome(kept, path):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LISTS)
 def test_every_object_of_a_kept_list_is_read(name, tmp_path):
     """Number, name, sizes, count, weight and base of every object as a workbook and as text; every other row is named."""
@@ -46,6 +47,7 @@ def test_every_object_of_a_kept_list_is_read(name, tmp_path):
         outcome(kept, write(kept, tmp_path / f"list.{form}", encoding))
 
 
+@pytest.mark.slow
 def test_the_comparison_notices_a_column_in_another_place(tmp_path):
     """Negative control: depth and height exchanged, and a sum that has become an object, are noticed."""
     kept = LISTS["merged"]
@@ -106,6 +108,7 @@ def rows_of(text, **options):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cells", "expected"),
     [
@@ -132,6 +135,7 @@ def test_three_columns_below_one_title_that_names_their_order():
     assert rows_of("Nr.;Objekt;Maße (B x T x H) in cm;;\n1;Uhr;40 x 30 x 200;;")[1] == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", ["Alle Maße in mm", "Maßangaben in mm, Gewicht in kg", "Breite, Tiefe, Höhe in mm"])
 @pytest.mark.parametrize("place", ["above", "below"])
 def test_a_unit_beside_the_table_is_used_and_named(line, place):
@@ -157,6 +161,7 @@ def test_a_header_is_not_read_without_its_group():
     assert rows_of(above)[1] == [(3, "1", "Uhr", 60, 50, 220)]
 
 
+@pytest.mark.slow
 def test_columns_keep_the_language_of_the_list():
     """What a user says of columns is in our words, and the report in the language of the list; a lower title serves."""
     for own, code in (("Ding;Maß 1;Maß 2;Maß 3", "de"), ("Cosa;Misura A;Misura B;Misura C", "it")):
@@ -197,6 +202,7 @@ def test_rows_that_are_no_objects_have_a_reason():
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_one_bad_row_touches_no_other():
     """Whatever stands in one row below a header of two rows, the others are read as without it."""
     head, good = "Nr.;Objekt;Maße (cm);;\n;;B;T;H\n", ("1;Uhr;40;30;200", "2;Krug;20;20;30")

@@ -102,6 +102,7 @@ def test_units_in_formats_of_numbers(tmp_path):
         read_inventory(tmp_path / "list.ods")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "title", ["Sockel Ø cm", "Sockel-Durchmesser (cm)", "Durchmesser des Sockels cm", "Ø zoccolo cm"]
 )
@@ -180,6 +181,7 @@ def test_a_triangle_is_no_better_than_it_is(apex, width, depth):
     assert 0.5 * min(width, depth) > nearest_side(corners)  # negative control
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sides", [5, 6, 8])
 @pytest.mark.parametrize("turn", [0.0, 0.3])
 def test_a_polygon_is_no_better_than_it_is(sides, turn):

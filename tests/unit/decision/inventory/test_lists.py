@@ -41,6 +41,7 @@ def only(text):
     return one
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", HEADS)
 def test_every_language_in_every_encoding(language, tmp_path):
     """The same object whatever the language and the encoding of the list; which one was assumed is said."""
@@ -207,6 +208,7 @@ def workbook(path, sheets, merge=()):
 HEAD = ["Objekt", "Breite cm", "Tiefe cm", "Höhe cm"]
 
 
+@pytest.mark.slow
 def test_merged_cells_and_several_sheets(tmp_path):
     """What is merged downwards holds in each of its rows; two lists in one workbook are refused."""
     rows = [HEAD, ["a", 20, 30, 90], ["b", 20, None, 80]]
@@ -218,6 +220,7 @@ def test_merged_cells_and_several_sheets(tmp_path):
         read_inventory(workbook(tmp_path / "none.xlsx", {"x": [HEAD[:3], ["a", 1, 2]]}))
 
 
+@pytest.mark.slow
 def test_a_cell_far_away_is_quick(tmp_path):
     """A workbook whose last row and column are as far away as they can be is read without them."""
     book = Workbook()
@@ -258,6 +261,7 @@ def test_files_that_are_no_list(content, words, tmp_path):
         read_inventory(path)
 
 
+@pytest.mark.slow
 def test_photos_stay_beside_the_list(tmp_path):
     """A picture beside the list or in a folder there is taken; one elsewhere, missing or broken is a remark."""
     folder = tmp_path / "lists"
@@ -344,6 +348,7 @@ def test_words_of_consequence_and_count():
     ]
 
 
+@pytest.mark.slow
 def test_museum_list(tmp_path):
     """Thirty untidy objects: each is an object, with what was assumed, or named with the reason why it is none."""
     write_museum_list(tmp_path / "liste.xlsx")
@@ -377,6 +382,7 @@ TITLES = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(TITLES, max_size=4), st.lists(CELLS, min_size=4, max_size=8))
 @settings(max_examples=150, deadline=None)
 def test_any_header_and_cells(titles, cells):
@@ -393,6 +399,7 @@ def test_any_header_and_cells(titles, cells):
     assert found.objects or found.not_assessed
 
 
+@pytest.mark.slow
 @given(st.binary(max_size=60), st.integers(0, 400))
 @settings(max_examples=60, deadline=None)
 def test_damaged_workbooks(junk, place):

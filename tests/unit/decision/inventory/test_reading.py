@@ -57,6 +57,7 @@ def test_every_column():
     assert only(f"center_of_mass_height_cm,{HEAD}\n30,{GOOD}").centre_of_mass_height == 0.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "words"),
     [
@@ -263,6 +264,7 @@ def test_encodings(tmp_path):
         read_inventory(path, "no-such")
 
 
+@pytest.mark.slow
 @given(st.text(max_size=60), st.sampled_from([",", ";", "\t"]))
 def test_any_text_is_an_inventory_or_an_error(junk, mark):
     """Whatever stands below the header is an object, a row with a reason, or refused: never another exception."""

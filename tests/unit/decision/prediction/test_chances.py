@@ -163,6 +163,7 @@ def test_a_given_distribution_of_restitution_keeps_its_tails():
         np.testing.assert_allclose(found, 0.7 * np.exp(0.05 * norm.ppf(levels)), rtol=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the model of the body on other feet", within="1e-9")
 def test_what_was_measured_follows_the_base():
     """A quantile of the drawn body times the ratio of the calibrated shifted impulse on the feet that were drawn."""
@@ -179,6 +180,7 @@ def test_what_was_measured_follows_the_base():
         assert abs(ratio - 1.0) > 1e-3  # the base matters
 
 
+@pytest.mark.slow
 def test_ends_of_a_range_are_means_of_its_fifths():
     """Of friction from 0.1 to 0.9, all alike, the lowest fifth has the mean 0.18 and the highest 0.82."""
     found = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(1.0, 0.6), friction=(0.1, 0.9), count=64)
@@ -213,6 +215,7 @@ def test_a_term_holds_the_whole_interval():
         assert ranges[last or first].low <= high <= ranges[last or first].high
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "1 - 0.025**(1/16)", within="1e-12")
 def test_none_of_sixteen_is_not_almost_certain():
     """0 of 16 histories: the Clopper-Pearson interval ends at 20.6 %, and the word is "unlikely"."""
@@ -228,6 +231,7 @@ def test_none_of_sixteen_is_not_almost_certain():
     assert likelihood(*share_interval(0, 512)) == "exceptionally unlikely"
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "sentences against the outcomes of all histories")
 def test_sentences_of_one_answer_agree():
     """Where a sentence says that an input changes the probability, none says that all histories end alike."""
@@ -240,6 +244,7 @@ def test_sentences_of_one_answer_agree():
             assert not any("near" in words for words in found.sentences)
 
 
+@pytest.mark.slow
 def test_every_probability_has_its_condition():
     found = rk.predict(BLOCK, [rk.pulses.sine(a, 0.8) for a in (1.0, 3.0)], count=16, contributions=False)
     assert "PGA 0.204 g, 0.102 to 0.306 g; PGV" in found.verdict
@@ -248,6 +253,7 @@ def test_every_probability_has_its_condition():
     assert [each["peak_ground_acceleration"] for each in found.answer().plain()["motions"]] == [1.0, 3.0]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "motions scaled by hand", within="1e-12")
 def test_scaled_to_a_pga():
     """As the motions scaled before; of two components the stronger has the PGA; of a floor it is refused."""

@@ -34,6 +34,7 @@ def peaks(what, draws=None, motion=0):
     return what.run(draws, motion, np.ones(len(draws)), 1)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "bodies on other feet, made and simulated one by one", within="1e-9")
 @pytest.mark.parametrize("polarity", [1.0, -1.0])
 def test_drawn_rows_are_the_bodies_that_they_mean(polarity):
@@ -71,6 +72,7 @@ def test_coefficients_follow_the_base():
     assert (fixed <= 0.9).all()
 
 
+@pytest.mark.slow
 def test_measured_restitution_is_the_posterior():
     from rocking.evidence import restitution_distribution
 
@@ -94,6 +96,7 @@ def test_azimuths_of_two_components():
     assert turned != pytest.approx(peaks(mechanics(BODY, x)).peak, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_answer_on_any_number_of_threads():
     motions = [noise_motion(k, peak=5.0) for k in range(3)]
     one, two, other = (
@@ -125,6 +128,7 @@ def test_the_input_that_decides_has_the_share():
     assert f"The probability of overturning is {told}." in found.sentences
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("repeated sampling", "beta-distributed probabilities of motions", within="5 %")
 def test_spread_between_motions():
     """The variance between motions without that of sampling; with none of it, next to nothing is found."""
@@ -140,6 +144,7 @@ def test_spread_between_motions():
     assert (alike.low, alike.high) == pytest.approx(share_interval(alike.value * 64, 64))  # 64 of them, not 128,000
 
 
+@pytest.mark.slow
 def test_small_differences_grow_under_a_long_motion_and_not_under_a_pulse():
     small = predict(BLOCK, rk.pulses.sine(2.6, 0.6), count=16, contributions=False).growth
     motions = SyntheticSet("firm-ground", 2, 1, pga=5.0)
@@ -220,6 +225,7 @@ def test_bad_input(given, why):
         predict(**({"body": BLOCK, "motions": PULSE} | given))
 
 
+@pytest.mark.slow
 def test_ked_and_housner_stand_beside_what_was_measured():
     """Their probabilities are those of the models by themselves; of a model or a coefficient nothing stands beside."""
     motions = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4, 5.0)]

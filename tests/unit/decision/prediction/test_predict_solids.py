@@ -19,7 +19,7 @@ from rocking.dynamics.frictional.settings import HullSettings
 from rocking.dynamics.rolling import SpatialStart
 from rocking.errors import RockingError
 
-pytestmark = pytest.mark.verifies(room="studies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="studies")]
 KNOWN = {
     "restitution": "housner-3d",
     "friction": 0.6,

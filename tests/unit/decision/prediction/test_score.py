@@ -8,7 +8,7 @@ from rocking.decision.prediction import Validation, score
 from rocking.errors import InvalidValueError
 from rocking.statistics import logistic_left_out
 
-pytestmark = pytest.mark.verifies(room="studies")
+pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="studies")]
 MOTIONS, TRIALS = 40, 8
 
 

@@ -44,6 +44,7 @@ def test_of_two_changes_at_one_time_the_last_counts():
     assert log.changes == [(0.0, stands), (0.5, slides)]
 
 
+@pytest.mark.slow
 def test_outcomes_of_five_bodies(rocked):
     """Rest, sliding, rocking, both, overturning: each has its sentence, with "overturned" only where it did."""
     pulse = rk.pulses.rectangular(4.0, 0.5)
@@ -69,6 +70,7 @@ def test_outcomes_of_five_bodies(rocked):
     assert "slid" in repr(rocked)
 
 
+@pytest.mark.slow
 def test_body_that_rests_is_only_looked_up():
     """A minute of ground that never moves the body: no sample moves, and the forces are its weight."""
     motion = GroundMotion(np.full(6001, 0.5), 0.01)
@@ -161,6 +163,7 @@ def test_start_with_a_foot_that_hits_the_ground():
     assert thrown.energy.lost_in_impacts[-1] == pytest.approx(0.5 * BODY.mass, rel=1e-14, abs=0.0)
 
 
+@pytest.mark.slow
 def test_scale_is_a_factor_on_the_motion():
     """Half of 8 m/s2 is 4 m/s2, bitwise."""
     one = rk.simulate(BODY, rk.pulses.rectangular(8.0, 0.2), None, friction=0.3, scale=0.5)
@@ -168,6 +171,7 @@ def test_scale_is_a_factor_on_the_motion():
     assert np.array_equal(one.displacement, other.displacement)
 
 
+@pytest.mark.slow
 def test_long_steps_are_cut_where_series_need_it():
     """Straight lines of 2 s sampled at 2 s and at 0.02 s are one motion: rotations agree to 1e-11 rad."""
     coarse = GroundMotion([0.0, 7.0, -6.0, 0.0], 2.0)
@@ -180,6 +184,7 @@ def test_long_steps_are_cut_where_series_need_it():
     assert np.max(np.abs(long.at(times) - short.at(times))) < 1e-11
 
 
+@pytest.mark.slow
 def test_paradox_at_the_start_is_a_shock():
     """Without a contact force at time zero the foot is struck without an approach, and loses energy."""
     response = rk.free_rocking(BODY, restitution=None, friction=2.5, start=Start(rotation=0.1, horizontal_velocity=1.0))
@@ -209,6 +214,7 @@ def test_map_refuses_what_has_no_answer():
         regime_at_start(BODY, 0.4, 0.1, gravity=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "balance of energy, gaps and forces", within="1e-10; 1e-11 m; 1e-9 of the weight")
 @settings(max_examples=15)
 @given(
@@ -244,6 +250,7 @@ def test_summary_tells_the_largest_rotation_in_degrees(rocked):
     assert "rotation" not in rk.simulate(BODY, rk.pulses.rectangular(4.0, 0.5), None, friction=0.3).summary
 
 
+@pytest.mark.slow
 def test_response_goes_on_as_long_as_its_docstring_says():
     """15 sqrt(R / g) after a motion and 60 on ground at rest, to a step of at most a tenth; as long as asked for; and
     a duration far below a step is one step."""
@@ -296,6 +303,7 @@ def test_forces_of_a_body_that_rests_follow_the_motion():
     np.testing.assert_allclose(response.forces.left, 0.5 * weight + BODY.mass * push[:count], rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_an_asymmetric_body_passes_its_own_feet(side):
     """Without sliding the instant over the foot is that of pure rocking, over the nearer foot and over the further one.

@@ -84,6 +84,7 @@ def test_threads_pieces_and_order_leave_the_bits(monkeypatch):
     assert not _same(first, other)
 
 
+@pytest.mark.slow
 @built
 def test_the_reference_engine_serves_row_by_row():
     """Both engines give the same outcomes and counts, and the same numbers to 1e-6, refusals included."""
@@ -164,6 +165,7 @@ def test_laws_by_name_number_and_object():
         batch_law("no such law")
 
 
+@pytest.mark.slow
 @built
 def test_ked_without_matter_is_a_status():
     """A body that does not know of what it consists cannot take ked-3d; its rows say so, others go on."""
@@ -277,6 +279,7 @@ def batch():
     return batch_in_space([BOX, loose], (PULSE, PULSE), ["housner-3d", 0.9], scales=[0.5, 2.5], start=starts)
 
 
+@pytest.mark.slow
 @built
 def test_a_dataset_has_axes_units_and_provenance(batch, tmp_path):
     """The five axes, the arrays, their units, and of what all was computed, also back from a netCDF file."""
@@ -314,6 +317,7 @@ ANGLES = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 MOTIONS = [(PULSE.scaled(np.cos(a)), PULSE.scaled(np.sin(a))) for a in ANGLES]
 
 
+@pytest.mark.slow
 @built
 def test_lines_show_the_share_of_scales():
     """The two lines of the first panel are the shares of overturning in percent, closed round; a control is not."""

@@ -131,6 +131,7 @@ def test_part_of_a_stretch_is_the_motion_there(start, length):
     assert not ground.segment(3, 3.0, length).any()
 
 
+@pytest.mark.slow
 def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
     """Bodies that spin fast as they fall flat on their base: no gap closes after it, and the face, on which a body
     stops, would be pulled at least as much; for some it is the face."""
@@ -188,6 +189,7 @@ def test_settings_out_of_range_are_refused(bad):
         SpaceSettings(**bad)
 
 
+@pytest.mark.slow
 def test_of_two_contact_sets_the_larger_stays():
     """A box that spins on a corner as it falls flat may land on an edge or on one of its corners, both without pull and
     with different velocities: what more points of the ground hold is taken, as the docstring says."""

@@ -14,6 +14,7 @@ from rocking.outcome import Outcome, Status
 BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
 
 
+@pytest.mark.slow
 def test_under_little_gravity_it_rocks_slower():
     """Let go until it rests under a ten thousandth of g: as many impacts, a hundred times as late."""
     here, there = (rk.free_rocking(BOX, restitution=0.6, start=SpatialStart(0.1), gravity=9.8 * k) for k in (1.0, 1e-4))
@@ -22,6 +23,7 @@ def test_under_little_gravity_it_rocks_slower():
     assert there.trajectory.pieces[-1].contact.mode is ContactMode.REST
 
 
+@pytest.mark.slow
 def test_a_law_of_ones_own_serves():
     """An object with velocity_after and label: half of the projection leaves a quarter of its energy."""
 
@@ -36,6 +38,7 @@ def test_a_law_of_ones_own_serves():
     assert half["energy_after"] == pytest.approx(0.25 * whole["energy_after"], rel=1e-12, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_body_that_is_pushed_over_says_where_and_over_what():
     """A strong pulse along y: overturned towards -y over the edge y = -0.6, number 0-1, at the time of the plane."""
     pulse = rk.pulses.half_sine(amplitude=8.0, period=1.2)
@@ -120,6 +123,7 @@ def test_nothing_of_a_response_lies_beyond_its_end():
     assert run.time[-1] <= 0.02
 
 
+@pytest.mark.slow
 def test_energy_closes_where_steps_hold_several_samples():
     """Under slow pulses the steps of a body that rocks are longer than its samples are apart, and the work is right at
     each of them."""
