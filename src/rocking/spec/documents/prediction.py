@@ -20,7 +20,7 @@ class PredictTable(JobTable):
     offset: Any = key("horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]")
     level: Any = key('slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"')
     polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
-    azimuth: Any = key("azimuth of the plane of the body for motions with two components, default uniform [rad]")
+    azimuth: Any = key("azimuth of the body to the x component, 3D or with two components, default uniform [rad]")
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
         "direction of the x component of the motion in the axes of the scan file, instead of azimuth"
     )
