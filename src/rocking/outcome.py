@@ -22,7 +22,7 @@ class Coded(Enum):
 
 
 class Outcome(Coded):
-    """Outcome of a time history; priority: overturned, flew, rocked and slid."""
+    """Outcome of a time history; priority: overturned, flew, rocked and slid, held."""
 
     NO_UPLIFT = "stayed at rest without uplift"
     ROCKED = "rocked and stayed standing"
@@ -31,6 +31,7 @@ class Outcome(Coded):
     SLID = "slid without rocking and stayed standing"
     ROCKED_AND_SLID = "rocked and slid and stayed standing"
     FLEW = "left the ground with both feet and stayed standing"
+    HELD = "rocked and stays tilted, held by friction"
 
 
 class Status(Coded):

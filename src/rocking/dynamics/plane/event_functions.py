@@ -1,13 +1,18 @@
 """Restoring moments of a body by stretch: times of uplift, and decay of impacts to rest."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.taylor import first_fall, shifted, value
+
+
+NO_MORE: Mapping[int, float] = MappingProxyType({1: 0.0, -1: 0.0})
 
 
 @dataclass(frozen=True)
@@ -20,18 +25,21 @@ class Push:
 
 
 class RestoringMoments:
-    """Restoring moments of a body by stretch."""
+    """Restoring moments of a body by stretch; more: constant moments of restraints by side over m g R [-]."""
 
-    def __init__(self, parameters: RockingParameters, push: Push, *, linear: bool) -> None:
+    def __init__(
+        self, parameters: RockingParameters, push: Push, *, linear: bool, more: Mapping[int, float] = NO_MORE
+    ) -> None:
         self.push = push
         self.linear = linear
+        self.more = more
         alphas = {sign: parameters.side(sign).slenderness_angle for sign in (1, -1)}
         self._sines = {sign: alpha if linear else math.sin(alpha) for sign, alpha in alphas.items()}
         self._cosines = {sign: 1.0 if linear else math.cos(alpha) for sign, alpha in alphas.items()}
         self.moments = {}
         for sign, sine in self._sines.items():
             moment = push.vertical * sine + push.horizontal * (sign * self._cosines[sign])  # Eq. 24
-            moment[:, 0] += sine
+            moment[:, 0] += sine + more[sign]
             self.moments[sign] = moment
         lower_bounds = {sign: m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for sign, m in self.moments.items()}
         self._candidates = np.flatnonzero((lower_bounds[1] <= 0.0) | (lower_bounds[-1] <= 0.0))
@@ -71,6 +79,7 @@ class RestoringMoments:
         z_min, z_max, z_variation = _extent(self.push.vertical[rows], tau)
         min_moments = {
             sign: (1.0 + z_min) * self._sines[sign] + min(sign * x_min, sign * x_max) * self._cosines[sign]
+            + self.more[sign]
             for sign in (1, -1)
         }
         if not (min_moments[1] > 0.0 and min_moments[-1] > 0.0):

@@ -11,7 +11,8 @@ from rocking.errors import InvalidValueError
 ORDERS = (4, 6, 8)  # orders of the fast engine
 
 
-def _checked_linear(_: str, value: object) -> bool:
+def checked_linear(_: str, value: object) -> bool:
+    """Return a flag; an error for another value."""
     if not isinstance(value, bool):
         raise InvalidValueError(parameter="linear", allowed="True or False", value=value)
     return value
@@ -47,7 +48,7 @@ class PlaneSettings(Settings):
         Bound on the last two terms of a Taylor step over the angle alpha [-].
     """
 
-    linear: bool = checked(False, _checked_linear)
+    linear: bool = checked(False, checked_linear)
     rest_speed: float = ranged(0.001, 0.0, 0.1, hint="the sum of impacts holds for small speeds")
     longest_step: float = ranged(0.15, SHORTEST_STEP, 1.0)
     order: int = checked(8, _checked_order)

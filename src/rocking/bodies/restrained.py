@@ -1,0 +1,132 @@
+"""A plane body with restraints."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rocking import checks, conventions
+from rocking.answers import Answer
+from rocking.bodies.body import Body, Side
+from rocking.bodies.restraints import Restraint
+from rocking.conventions import Foot
+from rocking.errors import InvalidValueError
+
+
+@dataclass(frozen=True)
+class Restrained:
+    """A plane body with tendons, dampers, fuses and springs.
+
+    Parameters
+    ----------
+    body : Body
+        The body: Block, Section or MassPoints.
+    restraints : sequence of Restraint
+        Tendon, ViscousDamper, FrictionDamper, Fuse and Spring, in any number. Restraints without a name receive one.
+
+    Raises
+    ------
+    InvalidValueError
+        If the body is not a plane body, or two restraints have the same name.
+
+    Notes
+    -----
+    The forces of restraints are finite, so that they give no impulse at an impact: the restitution of the body applies
+    (Dimitrakopoulos & DeJong 2012). Tests of walls with tendons and fuses report other losses at the impact; state the
+    coefficient of restitution for them.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> wall = rk.Block(width=1.0, height=6.0, mass=4000.0)
+    >>> tied = rk.Restrained(wall, [rk.Tendon(x=0.5, stiffness=500e3, prestress=20e3)])
+    >>> tied.restraints[0].name, tied.mass
+    ('tendon 1', 4000.0)
+    """
+
+    body: Body
+    restraints: tuple[Restraint, ...]
+
+    def __init__(self, body: Body, restraints: Sequence[Restraint] | Restraint) -> None:
+        checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
+        listed = [restraints] if isinstance(restraints, Restraint) else list(restraints)
+        for restraint in listed:
+            checks.of_kind("restraints", restraint, Restraint, "Tendon, ViscousDamper, FrictionDamper, Fuse or Spring")
+        object.__setattr__(self, "body", body)
+        object.__setattr__(self, "restraints", tuple(_named(listed)))
+
+    @property
+    def mass(self) -> float:
+        """Mass of the body [kg]."""
+        return self.body.mass
+
+    @property
+    def slenderness_angle(self) -> float:
+        """Slenderness angle of a body with equal sides [rad]."""
+        return self.body.slenderness_angle
+
+    @property
+    def frequency_parameter(self) -> float:
+        """Frequency parameter of a body with equal sides, at standard gravity [rad/s]."""
+        return self.body.frequency_parameter
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Assumed values of the body, as texts."""
+        return self.body.assumed
+
+    def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
+        """Return the body seen from one of its feet.
+
+        Parameters
+        ----------
+        foot : {"left", "right"}
+            The foot of the rotation.
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        Side
+            Slenderness, semi-diagonal, frequency parameter and uplift acceleration of the body without restraints.
+        """
+        return self.body.side(foot, gravity)
+
+    def answer(self, gravity: float = conventions.g) -> Answer:
+        """Return the results of the body and its restraints.
+
+        Parameters
+        ----------
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        Answer
+            Results of the body, and the law of each restraint.
+        """
+        return self.body.answer(gravity) | {"restraint_laws": [facts_of(restraint) for restraint in self.restraints]}
+
+
+def facts_of(restraint: Restraint) -> dict[str, Any]:
+    """Return name, law, source, domain and constants of a restraint."""
+    return {
+        "restraint": restraint.name, "force_law": restraint.law, "law_source": restraint.source,
+        "law_domain": restraint.domain, "ground_point": restraint.ends[0], "body_point": restraint.ends[1],
+        "law_constants": ", ".join(f"{name} {value}" for name, value in restraint.constants.items()),
+    }  # fmt: skip
+
+
+def _named(restraints: list[Restraint]) -> list[Restraint]:
+    """Return restraints with names: the kind and a number where none is stated."""
+    kinds = [restraint.kind for restraint in restraints]
+    named = [copy.copy(restraint) for restraint in restraints]
+    for k, restraint in enumerate(named):
+        if not restraint.name:
+            number = kinds[: k + 1].count(restraint.kind)
+            object.__setattr__(restraint, "name", f"{restraint.kind.replace('_', ' ')} {number}")
+    names = [restraint.name for restraint in named]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidValueError("two restraints have the name {value}", parameter="restraints", value=name)
+    return named

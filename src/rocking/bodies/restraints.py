@@ -1,0 +1,369 @@
+"""Restraints of plane bodies: tendons, dampers, fuses and springs between the ground and a point of the body."""
+
+import math
+from abc import ABC
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+from rocking import checks
+from rocking.errors import InvalidValueError
+
+Point = tuple[float, float]
+COINCIDENT = 1e-9
+"""Largest distance of two points that coincide, over the largest coordinate of the body [-]."""
+
+_EXACT = "exact change of the distance between two points; the force acts along the current line"
+_CONNECTION = ("x", "length", "ground", "point", "name")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Restraint(ABC):
+    """A device between a point of the ground and a point of the body.
+
+    State `x` alone for a device whose mouth in the base touches its anchor in the ground, such as a tendon in a duct;
+    `x` and `length` for a device below the base; `ground` and `point` for any other device, such as a tie at a height.
+    Coordinates are those of the body: x as for its feet, z upwards from the ground. The tension is positive.
+
+    Parameters
+    ----------
+    x : float, optional
+        Position of the point on the base [m].
+    length : float
+        Distance of the anchor below the base at `x` [m]; 0 if the anchor touches the base.
+    ground : (float, float), optional
+        Point (x, z) of the ground [m].
+    point : (float, float), optional
+        Point (x, z) of the body in its upright position [m].
+    name : str
+        Name in results; the default is the kind with a number.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or the position is missing or stated twice.
+    """
+
+    kind: ClassVar[str] = ""
+    law: ClassVar[str] = ""  # force law as text
+    source: ClassVar[str] = ""
+    domain: ClassVar[str] = ""
+
+    x: float | None = None
+    length: float = 0.0
+    ground: Point | None = None
+    point: Point | None = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        ends = (self.ground, self.point)
+        if (self.x is None) == (None in ends) or (self.x is not None and ends != (None, None)):
+            raise InvalidValueError(
+                "{restraint} needs x, or ground and point", parameter="x", value=self.x,
+                restraint=self.kind.replace("_", " "),
+            )  # fmt: skip
+        self._set("length", checks.within("length", self.length, 0.0, checks.LARGEST, unit="m"))
+        if self.x is not None:
+            self._set("x", checks.number("x", self.x, "m"))
+        for name, end in zip(("ground", "point"), ends, strict=True):
+            if end is not None:
+                checks.of_kind(name, end, (tuple, list), "two numbers [m]")
+                if len(end) != 2:
+                    raise InvalidValueError(parameter=name, allowed="two numbers [m]", value=end)
+                self._set(name, tuple(checks.number(name, value, "m") for value in end))
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+    def _check(self, low: float, unit: str, *names: str, open_low: bool = False) -> None:
+        for name in names:
+            value = getattr(self, name)
+            if value != math.inf:
+                self._set(name, checks.within(name, value, low, 1e30, unit=unit, open_low=open_low))
+
+    @property
+    def ends(self) -> tuple[Point, Point]:
+        """Points of the ground and of the upright body [m]."""
+        if self.x is not None:
+            return (self.x, -self.length), (self.x, 0.0)
+        assert self.ground is not None and self.point is not None
+        return self.ground, self.point
+
+    @property
+    def constants(self) -> dict[str, Any]:
+        """Constants of the force law by name; without the position."""
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name not in _CONNECTION}
+        return {name: value for name, value in values.items() if value is not None and value != math.inf}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tendon(Restraint):
+    """An unbonded tendon: elastic, perfectly plastic or hardening, slack without tension.
+
+    The force is N = P + k (e - ep), from 0 to the yield force. The plastic elongation ep grows at the yield force, so
+    that prestress is lost. A slack tendon has no force until the slack is used. At the rupture elongation the tendon
+    breaks and its stored energy vanishes.
+
+    Parameters
+    ----------
+    stiffness : float, optional
+        k [N/m]; or state `area`, `modulus` and `free_length`.
+    area : float, optional
+        Cross section [m2].
+    modulus : float, optional
+        Modulus of elasticity [Pa].
+    free_length : float, optional
+        Length between the anchors [m].
+    prestress : float
+        Force P of the upright body [N].
+    loss : float
+        Fraction of the prestress lost before the motion, by creep and relaxation [-].
+    yield_force : float
+        Largest elastic force [N]; infinite for an elastic tendon.
+    hardening : float
+        Stiffness after yielding over k [-].
+    rupture_elongation : float
+        Elongation from the prestressed upright state at which the tendon breaks [m].
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or the stiffness is missing or stated twice.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> rk.Tendon(x=0.5, area=1e-3, modulus=200e9, free_length=8.0, prestress=50e3).stiffness
+    25000000.0
+    """
+
+    kind: ClassVar[str] = "tendon"
+    law: ClassVar[str] = "N = P + k (e - ep), 0 <= N <= Ny + H ep"
+    source: ClassVar[str] = "Dimitrakopoulos & Giouvanidis (2015); Vassiliou & Makris (2015)"
+    domain: ClassVar[str] = "no friction in the duct, no mass, no relaxation during the motion; " + _EXACT
+
+    stiffness: float | None = None
+    area: float | None = None
+    modulus: float | None = None
+    free_length: float | None = None
+    prestress: float = 0.0
+    loss: float = 0.0
+    yield_force: float = math.inf
+    hardening: float = 0.0
+    rupture_elongation: float = math.inf
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        stated = [self.area, self.modulus, self.free_length]
+        if self.stiffness is None and None not in stated:
+            for name in ("area", "modulus", "free_length"):
+                self._set(name, checks.positive(name, getattr(self, name)))
+            assert self.area is not None and self.modulus is not None and self.free_length is not None
+            self._set("stiffness", self.modulus * self.area / self.free_length)
+        elif self.stiffness is None or stated != [None, None, None]:
+            raise InvalidValueError(
+                "{parameter} must be {allowed}", parameter="stiffness",
+                allowed="stated, or area, modulus and free_length", value=self.stiffness,
+            )  # fmt: skip
+        self._check(0.0, "N/m", "stiffness")
+        self._check(0.0, "N", "prestress")
+        self._set("loss", checks.within("loss", self.loss, 0.0, 1.0))
+        self._set("hardening", checks.within("hardening", self.hardening, 0.0, 1.0, open_high=True))
+        self._check(0.0, "N", "yield_force", open_low=True)
+        self._check(0.0, "m", "rupture_elongation", open_low=True)
+        if self.force_at_rest > self.yield_force:
+            raise InvalidValueError(
+                "prestress must be <= yield_force, got {value} N", parameter="prestress", value=self.force_at_rest
+            )
+
+    @property
+    def force_at_rest(self) -> float:
+        """Prestress after its loss [N]."""
+        return self.prestress * (1.0 - self.loss)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViscousDamper(Restraint):
+    """A viscous damper, F = c |e'|^a sgn e'.
+
+    Parameters
+    ----------
+    coefficient : float
+        c [N (s/m)^a].
+    exponent : float
+        a, from 0.05 to 5 [-]; 1 for a linear damper.
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> rk.ViscousDamper(x=0.0, length=0.5, coefficient=4e3, exponent=0.5).exponent
+    0.5
+    """
+
+    kind: ClassVar[str] = "viscous_damper"
+    law: ClassVar[str] = "F = c |e'|^a sgn e'"
+    source: ClassVar[str] = "Constantinou & Symans (1993); Dimitrakopoulos & DeJong (2012)"
+    domain: ClassVar[str] = "no stiffness of the damper and its supports, no end of the stroke; " + _EXACT
+
+    coefficient: float
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check(0.0, "N (s/m)^a", "coefficient")
+        self._set("exponent", checks.within("exponent", self.exponent, 0.05, 5.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionDamper(Restraint):
+    """A rigid friction damper, F = Fs sgn e', which sticks at smaller forces.
+
+    The damper delays uplift. It can hold the body at a rotation for good; the outcome is then HELD.
+
+    Parameters
+    ----------
+    slip_force : float
+        Fs [N].
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> rk.FrictionDamper(x=0.0, length=0.5, slip_force=3e3).slip_force
+    3000.0
+    """
+
+    kind: ClassVar[str] = "friction_damper"
+    law: ClassVar[str] = "F = Fs sgn e', |F| <= Fs if e' = 0"
+    source: ClassVar[str] = "Coulomb's law; Pall & Marsh (1982)"
+    domain: ClassVar[str] = "rigid before slip: a small series stiffness changes the rotation at which it sticks; " + _EXACT
+
+    slip_force: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check(0.0, "N", "slip_force")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fuse(Restraint):
+    """A yielding fuse: bilinear with kinematic hardening, F = k (e - ep), |F - H ep| <= Fy.
+
+    A buckling-restrained fuse has the same law in compression. With `tension_only` the fuse buckles without force. The
+    fuse breaks when its stroke is reached.
+
+    Parameters
+    ----------
+    stiffness : float
+        k [N/m].
+    yield_force : float
+        Fy [N]; infinite for an elastic fuse.
+    hardening : float
+        Stiffness after yielding over k, in [0, 1) [-].
+    stroke : float
+        Elongation, and shortening unless `tension_only`, at which the fuse breaks [m].
+    tension_only : bool
+        True for a slender bar, which buckles without force.
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> rk.Fuse(x=0.2, length=0.5, stiffness=2e6, yield_force=8e3, hardening=0.02).tension_only
+    False
+    """
+
+    kind: ClassVar[str] = "fuse"
+    law: ClassVar[str] = "F = k (e - ep), |F - H ep| <= Fy, H = a k / (1 - a)"
+    source: ClassVar[str] = "bilinear kinematic hardening (Prager 1956); Marriott, Pampanin & Palermo (2009)"
+    domain: ClassVar[str] = "no low-cycle fatigue, no bond slip, no bending of the bar; " + _EXACT
+
+    stiffness: float
+    yield_force: float = math.inf
+    hardening: float = 0.0
+    stroke: float = math.inf
+    tension_only: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check(0.0, "N/m", "stiffness")
+        self._check(0.0, "N", "yield_force", open_low=True)
+        self._set("hardening", checks.within("hardening", self.hardening, 0.0, 1.0, open_high=True))
+        self._check(0.0, "m", "stroke", open_low=True)
+        checks.of_kind("tension_only", self.tension_only, bool, "True or False")
+
+
+ACTIONS = ("both", "tension", "compression")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring(Restraint):
+    """An elastic spring, with a gap or hook before it acts.
+
+    The force is k (e - gap) beyond the gap in tension, and k (e + gap) beyond the gap in compression.
+
+    Parameters
+    ----------
+    stiffness : float
+        k [N/m].
+    gap : float
+        Elongation and shortening without force [m].
+    action : {"both", "tension", "compression"}
+        Direction of the force: a hook acts in tension, a buffer in compression.
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
+    Examples
+    --------
+    A tie of a facade at a height of 6 m:
+
+    >>> import rocking as rk
+    >>> rk.Spring(ground=(-2.0, 6.0), point=(0.0, 6.0), stiffness=1e6, action="tension").ends
+    ((-2.0, 6.0), (0.0, 6.0))
+    """
+
+    kind: ClassVar[str] = "spring"
+    law: ClassVar[str] = "F = k (e - gap) for e > gap, k (e + gap) for e < -gap, otherwise 0"
+    source: ClassVar[str] = "Hooke's law; ties of facades: Giresini et al. (2018)"
+    domain: ClassVar[str] = "elastic, no impact in the gap; " + _EXACT
+
+    stiffness: float
+    gap: float = 0.0
+    action: str = "both"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._check(0.0, "N/m", "stiffness")
+        self._check(0.0, "m", "gap")
+        checks.one_of("action", self.action, ACTIONS)
+
+
+KINDS: dict[str, type[Restraint]] = {
+    kind.kind: kind for kind in (Tendon, ViscousDamper, FrictionDamper, Fuse, Spring)
+}
+"""Classes of restraints by the name in files."""

@@ -1,0 +1,90 @@
+"""Restraints of one history: laws, levers about both feet, extremes, events and energy."""
+
+import math
+from dataclasses import dataclass, field
+
+from rocking.bodies.restrained import Restrained
+from rocking.dynamics.restrained.laws import ForceLaw, law_of
+from rocking.dynamics.restrained.levers import Lever
+
+
+@dataclass(frozen=True, slots=True)
+class RestraintEvent:
+    """A change of phase of a restraint."""
+
+    time: float  # [s]
+    index: int  # of the restraint
+    phase: str  # after the event
+    rotation: float  # [rad]
+    elongation: float  # [m]
+    force: float  # before the event [N]
+
+
+@dataclass(slots=True)
+class Device:
+    """One restraint during a history."""
+
+    law: ForceLaw
+    levers: dict[int, Lever]  # by side
+    work: float = 0.0  # done on the restraint [J]
+    elongation: float = 0.0  # at the last change of state [m]
+    rate: float = 0.0  # [m/s]
+    largest_force: float = -math.inf  # extremes [N, m]
+    smallest_force: float = math.inf
+    largest_elongation: float = 0.0
+    smallest_elongation: float = 0.0
+    start_energy: float = field(default=0.0)  # [J]
+
+    def force(self) -> float:
+        """Return the present force [N]."""
+        law = self.law
+        viscous = law.coefficient * abs(self.rate) ** law.exponent if law.coefficient else 0.0
+        return law.phase.force(self.elongation) + math.copysign(viscous, self.rate)
+
+    def note(self) -> None:
+        """Update the extremes."""
+        force, e = self.force(), self.elongation
+        self.largest_force, self.smallest_force = max(self.largest_force, force), min(self.smallest_force, force)
+        self.largest_elongation = max(self.largest_elongation, e)
+        self.smallest_elongation = min(self.smallest_elongation, e)
+
+    def move(self, elongation: float, rate: float) -> None:
+        """Move within a phase; the viscous work is added by the step."""
+        self.work += self.law.phase.work(self.elongation, elongation)
+        self.elongation, self.rate = elongation, rate
+        self.note()
+
+    def load(self, elongation: float) -> None:
+        """Move from the upright state to the state at the start of the history, without dynamics."""
+        direction = 1 if elongation > 0.0 else -1
+        if elongation:
+            self.law.settle(0.0, direction)
+        phase = self.law.phase
+        while not phase.low <= elongation <= phase.high:
+            self.law.cross(phase.high if direction > 0 else phase.low, upwards=direction > 0)
+            phase = self.law.phase
+        self.elongation = elongation
+        self.start_energy = self.law.stored(elongation)
+        self.note()
+
+    @property
+    def dissipated(self) -> float:
+        """Energy dissipated so far, without the loss by rupture [J]."""
+        return self.start_energy + self.work - self.law.stored(self.elongation) - self.law.lost
+
+
+def devices_of(body: Restrained, *, linear: bool) -> list[Device]:
+    """Return the restraints of a body before its motion."""
+    return [
+        Device(law_of(item), {side: Lever.of(item, body.body, side, linear=linear) for side in (1, -1)})
+        for item in body.restraints
+    ]
+
+
+def moment_at_rest(devices: list[Device], side: int) -> float:
+    """Return the moment of restraints against uplift about a foot, with static friction [N m]."""
+    return sum(
+        side * device.levers[side].at_rest * device.law.phase.force(0.0) * (not device.law.slip_force)
+        + device.law.slip_force * abs(device.levers[side].at_rest)
+        for device in devices
+    )

@@ -1,0 +1,223 @@
+"""Force laws of restraints as phases: the force is n + K e + c |e'|^a sgn e' between events of the elongation e."""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import singledispatch
+
+from rocking.bodies.restraints import FrictionDamper, Fuse, Restraint, Spring, Tendon, ViscousDamper
+
+_INF = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """A smooth phase of a law."""
+
+    name: str
+    constant: float = 0.0  # n [N]
+    stiffness: float = 0.0  # K [N/m]
+    low: float = -_INF  # elongations at which the phase ends [m]
+    high: float = _INF
+    direction: int = 0  # sign of e' throughout the phase; 0 for any
+
+    def force(self, elongation: float) -> float:
+        """Return the force without viscous part [N]."""
+        return self.constant + self.stiffness * elongation
+
+    def work(self, start: float, end: float) -> float:
+        """Return the work from one elongation to another [J]."""
+        return (self.constant + 0.5 * self.stiffness * (start + end)) * (end - start)
+
+
+class ForceLaw(ABC):
+    """State of one restraint: its phase and plastic elongation."""
+
+    phase: Phase
+    coefficient, exponent = 0.0, 1.0  # of the viscous force
+    slip_force = 0.0  # of a rigid friction damper [N]
+    plastic = 0.0  # plastic elongation [m]
+    yields = 0
+    lost = 0.0  # energy lost by rupture [J]
+
+    def settle(self, elongation: float, direction: int) -> None:
+        """Choose the phase for a direction of e', after uplift, impact, turning point, or reversal of the lever."""
+
+    def cross(self, elongation: float, *, upwards: bool) -> None:
+        """Choose the phase beyond a limit of the present phase."""
+
+    def stored(self, elongation: float) -> float:
+        """Return the elastic energy, with that of the hardening [J]."""
+        return 0.0
+
+    @property
+    def broken(self) -> bool:
+        """True after rupture."""
+        return self.phase.name == "broken"
+
+    @abstractmethod
+    def row(self) -> tuple[float, ...]:
+        """Return kind and constants for the compiled engine."""
+
+
+class Bilinear(ForceLaw):
+    """Elastic, plastic with kinematic hardening; in compression symmetric or slack; until rupture (Eq. 308-310)."""
+
+    def __init__(  # noqa: PLR0917 - the constants in the order of the engine
+        self, stiffness: float, prestress: float, limit: float, ratio: float, rupture: float, symmetric: bool
+    ) -> None:
+        self.stiffness, self.prestress, self.limit, self.rupture = stiffness, prestress, limit, rupture
+        self.ratio, self.symmetric = ratio, symmetric
+        self.hardening = ratio * stiffness / (1.0 - ratio)  # H
+        self.phase = self._elastic()
+
+    def _bounded(self, name: str, constant: float, stiffness: float, low: float, high: float, direction: int) -> Phase:
+        least = -self.rupture if self.symmetric else -_INF
+        return Phase(name, constant, stiffness, max(low, least), min(high, self.rupture), direction)
+
+    def _at(self, force: float) -> float:
+        """Return the elongation of the elastic phase at a force [m]."""
+        if not self.stiffness:
+            return math.copysign(_INF, force - self.prestress) if force != self.prestress else -_INF
+        return self.plastic + (force - self.prestress) / self.stiffness
+
+    def _elastic(self) -> Phase:
+        middle = self.hardening * self.plastic
+        low = self._at(middle - self.limit) if self.symmetric else self._at(0.0)
+        constant = self.prestress - self.stiffness * self.plastic
+        return self._bounded("elastic", constant, self.stiffness, low, self._at(middle + self.limit), 0)
+
+    def _flowing(self, sign: int) -> Phase:
+        total = self.stiffness + self.hardening
+        constant = sign * self.limit + self.hardening * (self.prestress - sign * self.limit) / total
+        slope = self.stiffness * self.hardening / total
+        name = "yields in tension" if sign > 0 else "yields in compression"
+        return self._bounded(name, constant, slope, -_INF, _INF, sign)
+
+    def _flow(self, elongation: float) -> None:
+        """Update the plastic elongation of a plastic phase."""
+        if sign := self.phase.direction:
+            total = self.stiffness + self.hardening
+            self.plastic = (self.prestress + self.stiffness * elongation - sign * self.limit) / total
+
+    def settle(self, elongation: float, direction: int) -> None:
+        if self.phase.direction * direction < 0:
+            self._flow(elongation)
+            self.phase = self._elastic()
+
+    def cross(self, elongation: float, *, upwards: bool) -> None:
+        self._flow(elongation)
+        if abs(self.rupture) < _INF and (self.phase.high if upwards else -self.phase.low) == self.rupture:
+            self.lost = self.stored(elongation)
+            self.phase = Phase("broken")
+        elif self.phase.name == "slack":
+            self.phase = self._elastic()
+        elif upwards or self.symmetric:
+            self.yields += 1
+            self.phase = self._flowing(1 if upwards else -1)
+        else:
+            self.phase = self._bounded("slack", 0.0, 0.0, -_INF, self._at(0.0), 0)
+
+    def stored(self, elongation: float) -> float:
+        if self.broken or not self.stiffness:
+            return 0.0
+        self._flow(elongation)
+        return 0.5 * self.phase.force(elongation) ** 2 / self.stiffness + 0.5 * self.hardening * self.plastic**2
+
+    def row(self) -> tuple[float, ...]:
+        return 0.0, self.stiffness, self.prestress, self.limit, self.ratio, self.rupture, float(self.symmetric)
+
+
+class Viscous(ForceLaw):
+    """Force of the rate alone."""
+
+    def __init__(self, coefficient: float, exponent: float) -> None:
+        self.coefficient, self.exponent = coefficient, exponent
+        self.phase = Phase("viscous")
+
+    def row(self) -> tuple[float, ...]:
+        return 1.0, self.coefficient, self.exponent, 0.0, 0.0, 0.0, 0.0
+
+
+class Friction(ForceLaw):
+    """Rigid friction."""
+
+    def __init__(self, slip_force: float) -> None:
+        self.slip_force = slip_force
+        self.phase = Phase("sticks")
+
+    def settle(self, elongation: float, direction: int) -> None:
+        if direction:
+            name = "slips in tension" if direction > 0 else "slips in compression"
+            self.phase = Phase(name, direction * self.slip_force, direction=direction)
+
+    def row(self) -> tuple[float, ...]:
+        return 2.0, self.slip_force, 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+class Elastic(ForceLaw):
+    """A spring with a gap."""
+
+    def __init__(self, stiffness: float, gap: float, action: str) -> None:
+        self.stiffness, self.gap, self.action = stiffness, gap, action
+        in_tension, in_compression = action != "compression", action != "tension"
+        self._tension = Phase("tension", -stiffness * gap, stiffness, low=gap)
+        self._compression = Phase("compression", stiffness * gap, stiffness, high=-gap)
+        self._open = Phase(
+            "open", low=-gap if in_compression else -_INF, high=gap if in_tension else _INF,
+        )  # fmt: skip
+        self.phase = Phase("elastic", 0.0, stiffness) if action == "both" and not gap else self._open
+
+    def settle(self, elongation: float, direction: int) -> None:
+        if direction > 0 and elongation >= self.phase.high:
+            self.cross(elongation, upwards=True)
+        elif direction < 0 and elongation <= self.phase.low:
+            self.cross(elongation, upwards=False)
+
+    def cross(self, elongation: float, *, upwards: bool) -> None:
+        outer = self._tension if upwards else self._compression
+        self.phase = outer if self.phase is self._open else self._open
+
+    def stored(self, elongation: float) -> float:
+        return 0.5 * self.phase.force(elongation) ** 2 / self.stiffness if self.stiffness else 0.0
+
+    def row(self) -> tuple[float, ...]:
+        return 3.0, self.stiffness, self.gap, float(self.action != "compression"), float(self.action != "tension"), 0.0, 0.0
+
+
+@singledispatch
+def law_of(restraint: Restraint) -> ForceLaw:
+    """Return the force law of a restraint in its state before the motion."""
+    raise NotImplementedError(type(restraint).__name__)
+
+
+@law_of.register
+def _(restraint: Tendon) -> ForceLaw:
+    stiffness = restraint.stiffness or 0.0
+    return Bilinear(
+        stiffness, restraint.force_at_rest, restraint.yield_force, restraint.hardening, restraint.rupture_elongation, False
+    )
+
+
+@law_of.register
+def _(restraint: Fuse) -> ForceLaw:
+    return Bilinear(
+        restraint.stiffness, 0.0, restraint.yield_force, restraint.hardening, restraint.stroke, not restraint.tension_only
+    )
+
+
+@law_of.register
+def _(restraint: ViscousDamper) -> ForceLaw:
+    return Viscous(restraint.coefficient, restraint.exponent)
+
+
+@law_of.register
+def _(restraint: FrictionDamper) -> ForceLaw:
+    return Friction(restraint.slip_force)
+
+
+@law_of.register
+def _(restraint: Spring) -> ForceLaw:
+    return Elastic(restraint.stiffness, restraint.gap, restraint.action)
+
+

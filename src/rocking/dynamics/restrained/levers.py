@@ -1,0 +1,59 @@
+"""Elongation of a restraint as a function of the rotation, exact or linear, for each pivot."""
+
+import math
+from dataclasses import dataclass
+
+from rocking.bodies import Body
+from rocking.bodies.restraints import COINCIDENT, Restraint
+
+
+@dataclass(frozen=True, slots=True)
+class Lever:
+    """Distance L of two points by the rotation theta about a pivot: L^2 = L0^2 + 4 s (B s - C c), s, c of theta / 2."""
+
+    side: int  # pivot: 1 right, -1 left
+    length: float  # L0 [m]
+    along: float  # B = a . d [m2]; a, d: ground point and point of the body from the pivot
+    across: float  # C = a_x d_z - a_z d_x [m2]
+    is_linear: bool = False
+
+    @classmethod
+    def of(cls, restraint: Restraint, body: Body, side: int, *, linear: bool) -> "Lever":
+        """Return the lever of a restraint about a foot."""
+        (ground_x, ground_z), (point_x, point_z) = restraint.ends
+        foot = body.feet[side > 0]
+        a_x, a_z, d_x, d_z = ground_x - foot, ground_z, point_x - foot, point_z
+        size = max(abs(value) for value in (a_x, a_z, d_x, d_z, 1e-300))
+        length = math.hypot(a_x - d_x, a_z - d_z)
+        if length <= COINCIDENT * size:  # no direction: the half-angle limit is used
+            return cls(side, 0.0, d_x * d_x + d_z * d_z, 0.0, linear)
+        return cls(side, length, a_x * d_x + a_z * d_z, a_x * d_z - a_z * d_x, linear)
+
+    @property
+    def radius(self) -> float:
+        """Signed distance D of coincident points from the pivot [m]."""
+        return self.side * math.sqrt(self.along)
+
+    @property
+    def at_rest(self) -> float:
+        """Slope de/dtheta at zero rotation [m]."""
+        return -self.across / self.length if self.length else self.radius
+
+    def elongation(self, rotation: float) -> float:
+        """Return e [m]."""
+        if self.is_linear:
+            return self.at_rest * rotation
+        sine, cosine = math.sin(0.5 * rotation), math.cos(0.5 * rotation)
+        if not self.length:
+            return 2.0 * self.radius * sine  # Eq. 306
+        change = 4.0 * sine * (self.along * sine - self.across * cosine)
+        return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 305
+
+    def slope(self, rotation: float) -> float:
+        """Return de/dtheta [m]."""
+        if self.is_linear:
+            return self.at_rest
+        if not self.length:
+            return self.radius * math.cos(0.5 * rotation)
+        along = self.along * math.sin(rotation) - self.across * math.cos(rotation)
+        return along / (self.length + self.elongation(rotation))  # Eq. 307
