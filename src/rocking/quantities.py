@@ -175,6 +175,39 @@ _HISTORY_ON_THE_HULL = (
     Quantity("contacts_held", "1", "number of impacts and changes with fixed contacts, as no law has a solution"),
     Quantity("landings_replaced", "1", "number of impacts with the law of Housner for lack of a solution"),
 )  # fmt: skip
+_RESTRAINTS = (
+    Quantity("restraint", "", "name of the restraint"),
+    Quantity("restraint_kind", "", "kind of the restraint", label="kind"),
+    Quantity("restraint_phase", "", "phase of the force law after the event", label="phase"),
+    Quantity("force_law", "", "force law of the restraint"),
+    Quantity("law_source", "", "source of the force law", label="source"),
+    Quantity("law_domain", "", "limits of the force law", label="limits"),
+    Quantity("law_constants", "", "constants of the force law, in SI units", label="constants"),
+    Quantity("ground_point", "m", "point x, z of the restraint on the ground"),
+    Quantity("body_point", "m", "point x, z of the restraint on the upright body"),
+    Quantity("elongation", "m", "elongation of the restraint from the upright body"),
+    Quantity("restraint_force", "N", "force of the restraint, positive in tension", label="force"),
+    Quantity("restraint_work", "J", "work done on the restraint since the start", label="work"),
+    Quantity("largest_force", "N", "largest force of the restraint, positive in tension"),
+    Quantity("smallest_force", "N", "smallest force of the restraint, negative in compression"),
+    Quantity("largest_elongation", "m", "largest elongation of the restraint"),
+    Quantity("smallest_elongation", "m", "smallest elongation of the restraint, negative if shorter"),
+    Quantity("yield_count", "1", "number of times the restraint begins to yield", label="yields"),
+    Quantity("is_broken", "1", "1 if the restraint is broken at the end, else 0", label="broken"),
+    Quantity("plastic_elongation", "m", "plastic elongation at the end"),
+    Quantity("residual_force", "N", "force of the restraint at the end in the upright body"),
+    Quantity("residual_slack", "m", "elongation from the upright body before a slack restraint has a force"),
+    Quantity("dissipated_energy", "J", "energy dissipated by the restraint", label="dissipated"),
+    Quantity("rupture_loss", "J", "elastic energy lost at the rupture of the restraint"),
+    Quantity("residual_rotation", "rad", "rotation at the end of the response"),
+    Quantity("uplift_height", "m", "largest height of the lifted foot above the ground", label="uplift of the foot"),
+    Quantity("base_shear", "N", "horizontal force of body and restraints on the foundation"),
+    Quantity("overturning_moment", "N m", "moment on the foundation about the middle of the base"),
+    Quantity("largest_base_shear", "N", "largest base shear at the samples"),
+    Quantity("largest_overturning_moment", "N m", "largest overturning moment at the samples"),
+    Quantity("balancing_acceleration", "m/s2", "ground acceleration in equilibrium with the rotation"),
+    Quantity("restoring_moment", "N m", "moment of gravity and restraints about the foot, against the rotation"),
+)
 _SAMPLES = (
     Quantity("time", "s", "time", digits=".6f"),
     Quantity("rotation", "rad", "rotation theta, positive clockwise"),
@@ -636,6 +669,7 @@ QUANTITIES: dict[str, Quantity] = {
         *_HISTORY_WITH_FRICTION,
         *_HISTORY_IN_SPACE,
         *_HISTORY_ON_THE_HULL,
+        *_RESTRAINTS,
         *_SAMPLES,
         *_LONG_RUN,
         *_IMPACTS_AND_INTERVALS,
@@ -665,7 +699,7 @@ _PARTS = """
     lowest_uplift mean messages method methods mirrored models motion motions_apart new not_assessed not_objects
     not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning passed_over
     passes plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies
-    resolved restitution_drawn results rigid rings scores section sense sensitivity sentence sentences sets sides
+    resolved restitution_drawn restraint_events restraint_laws restraints results rigid rings scores section sense sensitivity sentence sentences sets sides
     slow software solid source sources spacing spectrum stable stages standing starts_overturned
     starts_per_amplitude stated statement stored tables target target_spectrum test text threads title to too_sure
     traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y

@@ -5,6 +5,14 @@ from .body import Body as Body
 from .body import Side as Side
 from .mass_points import MassPoints as MassPoints
 from .region import Region as Region
+from .restrained import PLANE_BODIES as PLANE_BODIES
+from .restrained import Restrained as Restrained
+from .restraints import FrictionDamper as FrictionDamper
+from .restraints import Fuse as Fuse
+from .restraints import Restraint as Restraint
+from .restraints import Spring as Spring
+from .restraints import Tendon as Tendon
+from .restraints import ViscousDamper as ViscousDamper
 from .section import Section as Section
 from .solid import Part as Part
 from .solid import Solid as Solid

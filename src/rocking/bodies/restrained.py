@@ -108,6 +108,10 @@ class Restrained:
         return self.body.answer(gravity) | {"restraint_laws": [facts_of(restraint) for restraint in self.restraints]}
 
 
+PLANE_BODIES = (Body, Restrained)
+"""Classes of plane bodies, without and with restraints."""
+
+
 def facts_of(restraint: Restraint) -> dict[str, Any]:
     """Return name, law, source, domain and constants of a restraint."""
     return {

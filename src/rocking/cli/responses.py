@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rocking.answers import Answer, Display
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES
 from rocking.cli.compared import by_foot, grouped, spanned
 from rocking.cli.page import Page, sentence
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, given_or_assumed
@@ -23,7 +23,11 @@ from rocking.spec.response import ResponseProblem
 
 _PEAKS = (
     "peak_rotation", "peak_ratio", "peak_tilt", "sliding_distance", "residual_displacement", "friction_usage",
-    "error_estimate",
+    "error_estimate", "residual_rotation", "uplift_height", "largest_base_shear", "largest_overturning_moment",
+)  # fmt: skip
+_RESTRAINTS = (
+    "restraint", "largest_force", "smallest_force", "largest_elongation", "yield_count", "is_broken", "residual_force",
+    "dissipated_energy",
 )  # fmt: skip
 _DETAILS = (
     "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "energy_lost", "lost_in_friction",
@@ -40,6 +44,10 @@ _TABLES = {
             "time", "feet", "velocity_before", "velocity_after", "coefficient", "foot", "energy_before",
             "energy_after", "impulse", "contact", "vertices", "energy_lost", "slips",
         ),
+    ),
+    "restraint_events": (
+        "Events of restraints",
+        ("time", "restraint", "restraint_phase", "rotation", "elongation", "restraint_force"),
     ),
 }  # fmt: skip
 _COMPARED = ("model", "coefficient", "outcome", "peak_ratio", "impacts")
@@ -91,7 +99,7 @@ class ResponseAnswer:
         """Return the response, with the body and the initial conditions."""
         problem, start = self.problem, self.problem.start
         more: dict[str, Any] = {}
-        if not isinstance(problem.body, Body):
+        if not isinstance(problem.body, PLANE_BODIES):
             more["body"] = problem.body.answer()
             if isinstance(start, SpatialStart) and problem.initial_rotation is not None:
                 more |= {"initial_tilt": start.tilt, "initial_azimuth": start.azimuth}
@@ -123,6 +131,9 @@ class ResponseAnswer:
             demand, friction = display.cell("friction_demand", answer["friction_demand"]), answer["friction"]
             lines.append(("friction demand", f"{demand} ({given_or_assumed(friction)} {friction:g})"))
         page.values([*lines, *(display.lines(answer.values, _DETAILS) if self.details else ())])
+        if "restraints" in answer:
+            page.line("\nRestraints", "bold")
+            page.rows(answer["restraints"], _RESTRAINTS, display)
         page.warn(doubt.replace(_IN_PYTHON, "--friction") for doubt in answer.values.get("warnings", ()))
         if self.problem.mechanics.is_compared and self.others:
             self._compare(page)

@@ -10,7 +10,7 @@ import typer
 
 from rocking import plausibility
 from rocking.answers import Answer, Display
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES
 from rocking.cli import completion, options
 from rocking.cli.arguments import Arguments, document_file, parsed_sets, with_sets
 from rocking.cli.compared import model_facts, show_models
@@ -188,7 +188,7 @@ def _several(arguments: Arguments, texts: list[str], display: Display, *, quiet:
         tables_of = in_lists(arguments.motion_table(word) for word in texts)
         named = [checked(MotionTable, {**motion_table, **scale}) for motion_table in tables_of]
         subject = any_body_of(arguments.body_table(body), files)
-        motions = motions_of(named, files, paired=not isinstance(subject, Body))
+        motions = motions_of(named, files, paired=not isinstance(subject, PLANE_BODIES))
         problem = problem_of(checked(ResponseTables, tables), subject, motions[0], scale=1.0, inputs=files)
         listed = [motions[k] for k in range(len(motions))]
         label = next(iter(problem.restitutions))

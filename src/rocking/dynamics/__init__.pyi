@@ -16,6 +16,10 @@ from .plane_frictional.base import Start as Start
 from .plane_frictional.response import ContactResponse as ContactResponse
 from .plane_frictional.settings import ContactSettings as ContactSettings
 from .response import Response as Response
+from .restrained.pushover import Pushover as Pushover
+from .restrained.pushover import pushover as pushover
+from .restrained.response import RestrainedResponse as RestrainedResponse
+from .restrained.settings import RestrainedSettings as RestrainedSettings
 from .rolling.attitude import SpatialStart as SpatialStart
 from .rolling.body import SpatialBody as SpatialBody
 from .rolling.response import SpatialResponse as SpatialResponse

@@ -26,9 +26,11 @@ _START_UNITS = {
 }  # fmt: skip
 
 
-def plane_inputs(cases: Combinations) -> tuple[list[Body], list[Motion], FloatArray, list[Start] | None]:
-    """Return plane bodies, motions, scales, and starts (None if not stated); refuse other inputs."""
-    bodies = _several("bodies", cases.bodies, (Body,))
+def plane_inputs(
+    cases: Combinations, kinds: tuple[type, ...] = (Body,)
+) -> tuple[list[Any], list[Motion], FloatArray, list[Start] | None]:
+    """Return plane bodies of these classes, motions, scales, and starts (None if not stated); refuse other inputs."""
+    bodies = _several("bodies", cases.bodies, kinds)
     motions = [in_plane(motion) for motion in _several("motions", cases.motions, (GroundMotion, Pulse, Mapping))]
     scales = row_of("scale", cases.scales)
     plausibility.warn(plausibility.of_scaled(motions, scales))
@@ -83,11 +85,11 @@ def _coordinates(starts: list[Start]) -> dict[str, Any]:
     return {f"initial_{name}": ("start", rows[name], {"units": _START_UNITS[name]}) for name in shown}
 
 
-_KINDS = {"bodies": "Body", "motions": "GroundMotion, Pulse, Mapping"}
+_KINDS = {"motions": "GroundMotion, Pulse, Mapping"}
 
 
 def _several(name: str, value: Any, kinds: tuple[type, ...]) -> list[Any]:
-    allowed = f"one or more of {_KINDS[name]}"
+    allowed = f"one or more of {_KINDS.get(name) or kinds[0].__name__}"
     if isinstance(value, kinds):
         return [value]
     if isinstance(value, str) or not isinstance(value, Iterable):

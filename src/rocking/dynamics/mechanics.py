@@ -7,16 +7,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from rocking import conventions
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES
 from rocking.dynamics.frictional.mechanics import HullRocking
 from rocking.dynamics.mechanics_base import Mechanics, in_space
 from rocking.dynamics.plane.mechanics import PlaneRocking
 from rocking.dynamics.plane_frictional.mechanics import PlaneContact
+from rocking.dynamics.restrained.mechanics import RestrainedRocking
 from rocking.dynamics.rolling.mechanics import SpaceRocking
 from rocking.dynamics.settings import Settings
 from rocking.restitution.headline import label_of
 
-MECHANICS: tuple[Mechanics, ...] = (PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking())
+MECHANICS: tuple[Mechanics, ...] = (
+    RestrainedRocking(), PlaneRocking(), PlaneContact(), SpaceRocking(), HullRocking()
+)  # fmt: skip
 
 
 def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
@@ -27,7 +30,7 @@ def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics
 def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
     """Return the mechanics of one or several bodies; in space only if all bodies are in space."""
     several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
-    plane = [body for body in several if isinstance(body, Body)]
+    plane = [body for body in several if isinstance(body, PLANE_BODIES)]
     return mechanics_for(next(iter(plane or filter(in_space, several)), None), friction)
 
 

@@ -31,6 +31,8 @@ from .prediction import reliability_picture as reliability_picture
 from .regimes import regime_map_picture as regime_map_picture
 from .regimes import regimes_picture as regimes_picture
 from .response import response_picture as response_picture
+from .restrained import pushover_picture as pushover_picture
+from .restrained import restrained_picture as restrained_picture
 from .rocking_spectrum import rocking_spectrum_picture as rocking_spectrum_picture
 from .sensitivity import difference_map_picture as difference_map_picture
 from .sensitivity import sensitivity_picture as sensitivity_picture

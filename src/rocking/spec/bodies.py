@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.bodies import Block, Body, Section
+from rocking.bodies import Block, Body, Restrained, Section
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_file import body_from_tables
 from rocking.bodies.formats.reader import KNOWN
@@ -14,18 +14,20 @@ from rocking.checks import length_unit
 from rocking.errors import InvalidValueError
 from rocking.spec.reading import InputFiles, tables_in
 
-_OUTSIDE = ("units", "name", "note")
+_OUTSIDE = ("units", "name", "note", "restraint")
 
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     """Return the 2D body of a table."""
     body = any_body_of(table, inputs)
+    if isinstance(body, Restrained):
+        raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
     if not isinstance(body, Body):
         raise InvalidValueError("This is a 3D body; a 2D body is needed.")
     return body
 
 
-def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
+def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Solid:
     """Return the 2D or 3D body of a table."""
     if "file" in table:
         return _body_in_file(table, inputs)
@@ -43,10 +45,10 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Soli
     return body_from_tables(tables, None if inputs is None else inputs.folder)
 
 
-def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Solid:
+def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Restrained | Solid:
     """Return the body of a table; in_space: as a 3D body, also for a 2D body with a stated depth."""
     body = any_body_of(table, inputs)
-    if not in_space or not isinstance(body, Body):
+    if not in_space or not isinstance(body, (Body, Restrained)):
         return body
     tables = (tables_in(inputs.file(table["file"])) or {}) if inputs is not None and "file" in table else table
     inner_tables = (table_with_depth for table_with_depth in tables.values() if isinstance(table_with_depth, dict))
@@ -64,7 +66,7 @@ _WITH_FILE = ("units", "density", "up", "repair", "surface", "wall", "inner_part
 _OF_ANGLE = (*_OUTSIDE, "slenderness_angle", "semi_diagonal", "depth", "density", "mass", "moment_of_inertia")
 
 
-def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Solid:
+def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body | Restrained | Solid:
     options = {key: value for key, value in table.items() if key != "file"}
     if odd := sorted(set(options) - set(_WITH_FILE)):
         raise InvalidValueError(

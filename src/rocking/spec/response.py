@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rocking import checks, plausibility
-from rocking.bodies import Body
+from rocking.bodies import PLANE_BODIES
 from rocking.conventions import DEFAULT_FRICTION, DEFAULT_RESTITUTION
 from rocking.dynamics import SpatialBody, SpatialStart, Start, free_rocking, simulate
 from rocking.dynamics.mechanics import mechanics_for, mechanics_of
@@ -64,7 +64,7 @@ class ResponseProblem:
     def balance_angle(self) -> float:
         """Slenderness angle on the side of `initial_rotation` [rad]."""
         right = self.initial_rotation is None or self.initial_rotation > 0.0
-        if isinstance(self.body, Body):
+        if isinstance(self.body, PLANE_BODIES):
             return self.body.side("right" if right else "left", self.settings.gravity).slenderness_angle
         space = SpatialBody.of(self.body)
         sign, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
@@ -79,7 +79,7 @@ class ResponseProblem:
     @property
     def axes(self) -> tuple[str, ...]:
         """Axes of the initial velocity."""
-        return ("x", "up") if isinstance(self.body, Body) else ("x", "y", "up")
+        return ("x", "up") if isinstance(self.body, PLANE_BODIES) else ("x", "y", "up")
 
     @property
     def dropped(self) -> bool:
@@ -90,7 +90,7 @@ class ResponseProblem:
     def start(self) -> SpatialStart | Start:
         """Initial position and velocity; in 3D the tilt is towards +x, or -x if `initial_rotation` < 0."""
         velocity = self.start_velocity or (0.0,) * len(self.axes)
-        if isinstance(self.body, Body):
+        if isinstance(self.body, PLANE_BODIES):
             x, up = velocity
             return Start(self.rotation, horizontal_velocity=x, height=self.start_height, vertical_velocity=up)
         azimuth = 0.0 if self.rotation >= 0.0 else math.pi
@@ -165,5 +165,5 @@ def response_problem(document: "ResponseDocument", files: InputFiles, *, in_spac
     with located("motion"):
         if table is not None:
             several = components_of(table, files) if table.components else motion_of(table, files)
-            motion = together(several, plane=True) if isinstance(body, Body) else several
+            motion = together(several, plane=True) if isinstance(body, PLANE_BODIES) else several
     return problem_of(document, body, motion, inputs=files)

@@ -1,5 +1,6 @@
 """Reading and writing of the TOML body file, which contains one table of the body and always `units`."""
 
+import dataclasses
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -18,6 +19,8 @@ from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import check_count, read_text, validated
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
+from rocking.bodies.restrained import Restrained
+from rocking.bodies.restraints import KINDS
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
 from rocking.conventions import FloatArray
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 LARGEST_TOML = 16 * 2**20  # largest size of a TOML file; WKT, GeoJSON and DXF files may be larger [byte]
 
 
-def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
+def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body | Restrained:
     r"""Return the body from the text of a body file.
 
     Parameters
@@ -44,8 +47,8 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 
     Returns
     -------
-    Body
-        Block, Section or MassPoints.
+    Body or Restrained
+        Block, Section or MassPoints; with tables [[restraint]] a body with restraints.
 
     Raises
     ------
@@ -67,13 +70,18 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
         return body_from_tables(parsed_toml(text), folder)
 
 
-def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body:
+def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -> Body | Restrained:
     """Return the body from the tables of a body file."""
     from rocking.bodies.formats.schema import BodyFile
 
     if "solid" in tables:
         raise BodyFileError("This is a 3D body, [solid]; a 2D body is needed.")
     document = validated(BodyFile, tables)
+    body = _without_restraints(document, folder)
+    return _restrained(body, document.restraint, length_unit(document.units)) if document.restraint else body
+
+
+def _without_restraints(document: "schema.BodyFile", folder: str | Path | None) -> Body:
     scale = length_unit(document.units)
     if document.block:
         return _block(document.block, scale)
@@ -82,6 +90,27 @@ def body_from_tables(tables: dict[str, Any], folder: str | Path | None = None) -
     if document.section:
         return _section(document.section, document.units, None if folder is None else Path(folder))
     return _shape(document, scale)
+
+
+def _restrained(body: Body, tables: "list[schema.RestraintTable]", scale: float) -> Restrained:
+    from rocking.bodies.formats.schema import LENGTHS_OF_RESTRAINTS
+
+    restraints = []
+    for i, table in enumerate(tables):
+        values = table.model_dump(exclude={"kind"}, exclude_none=True)
+        kind = KINDS[table.kind]
+        with located(f"restraint[{i}]"):
+            names = {entry.name for entry in dataclasses.fields(kind)}
+            required = {entry.name for entry in dataclasses.fields(kind) if entry.default is dataclasses.MISSING}
+            if odd := sorted(set(values) - names):
+                raise BodyFileError("{key} is not allowed for a {kind}.", key=odd[0], kind=table.kind)
+            if missing := sorted(required - set(values)):
+                raise BodyFileError("{key} is missing for a {kind}.", key=missing[0], kind=table.kind)
+            for name in values.keys() & set(LENGTHS_OF_RESTRAINTS):
+                length = values[name]
+                values[name] = tuple(v * scale for v in length) if isinstance(length, list) else length * scale
+            restraints.append(kind(**values))
+    return Restrained(body, restraints)
 
 
 def parsed_toml(text: Any) -> dict[str, Any]:
@@ -207,7 +236,7 @@ _Coordinates = dict[float, float]
 
 
 @singledispatch
-def body_to_toml(body: Body) -> str:
+def body_to_toml(body: Body | Restrained) -> str:
     """Return a body as the text of a body file.
 
     The text contains the same numbers to the last bit. Only a mirrored or scaled `Section` can differ in the last bits.
@@ -215,8 +244,8 @@ def body_to_toml(body: Body) -> str:
 
     Parameters
     ----------
-    body : Body
-        Block, Section or MassPoints.
+    body : Body or Restrained
+        Block, Section or MassPoints, without or with restraints.
 
     Returns
     -------
@@ -270,6 +299,27 @@ def _(body: Section) -> str:
         if holes:
             lines.append(f"holes = [{', '.join(_points(hole) for hole in holes)}]")
     return _lines(*lines)
+
+
+@body_to_toml.register
+def _(body: Restrained) -> str:
+    lines = [body_to_toml(body.body).rstrip("\n")]
+    for restraint in body.restraints:
+        stated = {"kind": restraint.kind, "name": restraint.name, **restraint.constants}
+        if restraint.x is not None:
+            stated |= {"x": restraint.x, "length": restraint.length}
+        else:
+            stated |= {"ground": list(restraint.ends[0]), "point": list(restraint.ends[1])}
+        if "area" in stated:
+            del stated["stiffness"]
+        lines += ["", "[[restraint]]", *(f"{name} = {_toml(value)}" for name, value in stated.items())]
+    return _lines(*lines)
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return _row(value) if isinstance(value, list) else f'"{value}"' if isinstance(value, str) else _number(value)
 
 
 def _known_of(body: Block | Section, x: float, y: float) -> list[str]:

@@ -19,6 +19,7 @@ from rocking.bodies.formats.solid_file import solid_from_toml
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.formats.words import Placement, read_text, readable, unit_to_state
 from rocking.bodies.region import Region
+from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
 from rocking.bodies.solid._changes import InnerParts, Repair
 from rocking.bodies.solid._skin import Surface
@@ -77,7 +78,7 @@ class Request:
 
 def read_body(
     path: str | Path, *, units: str | None = None, density: float | None = None, **options: Unpack[Options]
-) -> Body | Solid:
+) -> Body | Restrained | Solid:
     r"""Return the 2D or 3D body from a file.
 
     Parameters
@@ -97,8 +98,8 @@ def read_body(
 
     Returns
     -------
-    Body or Solid
-        Block, Section, MassPoints, or a `Solid` with its `name`. `repairs` of a solid contains one sentence for each
+    Body, Restrained or Solid
+        Block, Section, MassPoints, a body with the restraints of a TOML file, or a `Solid` with its `name`. `repairs` of a solid contains one sentence for each
         change of the mesh and for each doubt about the mesh.
 
     Raises

@@ -8,6 +8,7 @@ from rocking.bodies.formats.words import suggestion
 from rocking.errors import InvalidValueError
 
 Positive = Annotated[float, Field(gt=0.0)]
+Cut = Annotated[float, Field(ge=0.0)]
 Mass = Annotated[float, Field(gt=0.0, le=1e36)]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Ring = Annotated[list[Pair], Field(min_length=3)]
@@ -166,6 +167,41 @@ class MassPointsTable(StrictTable):
     )
 
 
+class RestraintTable(StrictTable):
+    """A restraint between the ground and a point of the body."""
+
+    kind: Literal["tendon", "viscous_damper", "friction_damper", "fuse", "spring"] = Field(
+        description="kind of the restraint"
+    )
+    name: str | None = Field(None, description="name in results, default: kind and number")
+    x: float | None = Field(None, description="position on the base, x as for the feet [unit of the file]")
+    length: Cut | None = Field(None, description="distance of the anchor below the base at x [unit of the file]")
+    ground: Pair | None = Field(None, description="point (x, z) of the ground, in place of x [unit of the file]")
+    point: Pair | None = Field(None, description="point (x, z) of the upright body [unit of the file]")
+    stiffness: Cut | None = Field(None, description="tendon, fuse, spring: stiffness [N/m]")
+    area: Positive | None = Field(None, description="tendon: cross section [m2]")
+    modulus: Positive | None = Field(None, description="tendon: modulus of elasticity [Pa]")
+    free_length: Positive | None = Field(None, description="tendon: length between the anchors [unit of the file]")
+    prestress: Cut | None = Field(None, description="tendon: force of the upright body [N]")
+    loss: Cut | None = Field(None, description="tendon: fraction of the prestress lost before the motion [-]")
+    yield_force: Positive | None = Field(None, description="tendon, fuse: largest elastic force [N]")
+    hardening: Cut | None = Field(None, description="tendon, fuse: stiffness after yielding / stiffness [-]")
+    rupture_elongation: Positive | None = Field(
+        None, description="tendon: elongation from the prestressed state at rupture [unit of the file]"
+    )
+    stroke: Positive | None = Field(None, description="fuse: elongation at fracture [unit of the file]")
+    tension_only: bool | None = Field(None, description="fuse: true for a bar that buckles without force")
+    coefficient: Cut | None = Field(None, description="viscous_damper: coefficient c [N (s/m)^a]")
+    exponent: Positive | None = Field(None, description="viscous_damper: exponent a, default 1 [-]")
+    slip_force: Cut | None = Field(None, description="friction_damper: slip force [N]")
+    gap: Cut | None = Field(None, description="spring: elongation without force [unit of the file]")
+    action: Literal["both", "tension", "compression"] | None = Field(None, description="spring: direction of the force")
+
+
+LENGTHS_OF_RESTRAINTS = ("x", "length", "ground", "point", "free_length", "rupture_elongation", "stroke", "gap")
+"""Keys of `RestraintTable` in the unit of the file."""
+
+
 class BodyFile(StrictTable):
     """A body file: a unit, and one table of the body."""
 
@@ -178,6 +214,7 @@ class BodyFile(StrictTable):
     regular_polygon: RegularPolygonTable | None = Field(None, description="regular polygon")
     section: SectionTable | None = Field(None, description="section of one or more polygons")
     mass_points: MassPointsTable | None = Field(None, description="body of mass points")
+    restraint: list[RestraintTable] | None = Field(None, description="restraints, one table [[restraint]] per restraint")
 
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
@@ -219,7 +256,6 @@ def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str
         )  # fmt: skip
 
 
-Cut = Annotated[float, Field(ge=0.0)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 MOST_PARTS = 500  # largest number of parts; the check for overlaps grows with its square
 

@@ -68,6 +68,16 @@ class Device:
         self.note()
 
     @property
+    def summary(self) -> dict[str, float]:
+        """Extremes and state at the end, by the names of quantities."""
+        return {
+            "largest_force": self.largest_force, "smallest_force": self.smallest_force,
+            "largest_elongation": self.largest_elongation, "smallest_elongation": self.smallest_elongation,
+            "plastic_elongation": self.law.plastic, "yield_count": self.law.yields,
+            "is_broken": int(self.law.broken), "dissipated_energy": self.dissipated,
+        }  # fmt: skip
+
+    @property
     def dissipated(self) -> float:
         """Energy dissipated so far, without the loss by rupture [J]."""
         return self.start_energy + self.work - self.law.stored(self.elongation) - self.law.lost
@@ -75,10 +85,12 @@ class Device:
 
 def devices_of(body: Restrained, *, linear: bool) -> list[Device]:
     """Return the restraints of a body before its motion."""
-    return [
-        Device(law_of(item), {side: Lever.of(item, body.body, side, linear=linear) for side in (1, -1)})
-        for item in body.restraints
-    ]
+    devices = []
+    for item in body.restraints:
+        law = law_of(item)
+        levers = {side: Lever.of(item, body.body, side, linear=linear) for side in (1, -1)}
+        devices.append(Device(law, levers, start_energy=law.stored(0.0)))
+    return devices
 
 
 def moment_at_rest(devices: list[Device], side: int) -> float:

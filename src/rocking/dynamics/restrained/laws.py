@@ -51,6 +51,16 @@ class ForceLaw(ABC):
         return 0.0
 
     @property
+    def residual_force(self) -> float:
+        """Force of the upright body at rest [N]."""
+        return 0.0
+
+    @property
+    def residual_slack(self) -> float:
+        """Elongation of the upright body before a slack restraint has a force [m]."""
+        return 0.0
+
+    @property
     def broken(self) -> bool:
         """True after rupture."""
         return self.phase.name == "broken"
@@ -123,6 +133,17 @@ class Bilinear(ForceLaw):
             return 0.0
         self._flow(elongation)
         return 0.5 * self.phase.force(elongation) ** 2 / self.stiffness + 0.5 * self.hardening * self.plastic**2
+
+    @property
+    def residual_force(self) -> float:
+        if self.broken:
+            return 0.0
+        force = self.prestress - self.stiffness * self.plastic
+        return force if self.symmetric else max(force, 0.0)
+
+    @property
+    def residual_slack(self) -> float:
+        return 0.0 if self.symmetric or self.broken or not self.stiffness else max(self._at(0.0), 0.0)
 
     def row(self) -> tuple[float, ...]:
         return 0.0, self.stiffness, self.prestress, self.limit, self.ratio, self.rupture, float(self.symmetric)

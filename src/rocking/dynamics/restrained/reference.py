@@ -23,6 +23,9 @@ from rocking.outcome import Outcome, Status
 _ORDER = 30
 _STRETCH_END = 1.0 - 1e-13
 _HALF_PI = 0.5 * math.pi
+_TIE = 1e-11  # of a step
+_ROUNDING, _MOST_AT_ONCE = 1e-9, 1000
+_AFTER = 30.0  # p times the time on ground at rest for the outcome
 _SHORTER, _SHORTEST = 1e-4, 1e-20  # parts of a stretch
 _SINGULAR = 1e-14  # speed over p alpha next to a turning point with a damper of an exponent other than 1
 
@@ -47,6 +50,7 @@ class RestrainedTrajectory:
     devices: list[Device]
     events: list[Event] = field(default_factory=list)  # of the body, in order of time
     restraint_events: list[RestraintEvent] = field(default_factory=list)
+    peaks: list[tuple[float, float]] = field(default_factory=list)  # turning points: time [s], theta [rad]
     outcome: Outcome = Outcome.NO_UPLIFT
     status: Status = Status.GOOD
     side: int = 0  # of overturning
@@ -57,6 +61,11 @@ class RestrainedTrajectory:
     impacts: int = 0
     uplifts: int = 0
     engine: str = f"reference (Taylor, order up to {_ORDER})"
+
+    def cut(self, count: int) -> None:
+        """Keep the first stretches only."""
+        for name in ("rotation", "angular_velocity", "elongation", "force", "restraint_work", "work"):
+            setattr(self, name, getattr(self, name)[: count + 1])
 
     @property
     def still_rocking(self) -> bool:
@@ -95,7 +104,7 @@ class RestrainedReference:
         )  # fmt: skip
         self.side, self.theta, self.rate, self.direction = 0, 0.0, 0.0, 0  # direction: sign of theta'
         self.stretch, self.tau, self.work = 0, 0.0, 0.0
-        self.ended = False
+        self.ended, self.at_once = False, 0
         self._ground: RestoringMoments | None = None
 
     def _equation(self, side: int) -> Equation:
@@ -157,6 +166,9 @@ class RestrainedReference:
             return self._end(Outcome.FAILED, Status.NOT_FINITE) if too_short else self._step(_SHORTER * width)
         event = self._first_event(terms, items, fraction)
         x = fraction if event is None else event.x * fraction
+        self.at_once = 0 if x > 0.0 else self.at_once + 1
+        if self.at_once > _MOST_AT_ONCE:
+            return self._end(Outcome.FAILED, Status.STUCK)
         self._add_work(terms, items, x, h, push, weight)
         self.theta, self.rate = value(terms, x), slope(terms, x) / h
         self.out.peak_velocity = max(self.out.peak_velocity, abs(self.rate))
@@ -195,7 +207,8 @@ class RestrainedReference:
             if phase.direction and item.slope[0]:
                 events += [_Next(x, "lever", device) for x in _falls(_scaled(item.slope, fraction, math.copysign(1.0, item.slope[0])))]
         events += [_Next(x, "turn") for x in _falls(rate)]
-        return min(events, key=lambda event: event.x, default=None)
+        # a limit at the impact itself belongs to the impact
+        return min(events, key=lambda event: event.x - _TIE * (event.kind == "impact"), default=None)
 
     def _add_work(  # noqa: PLR0917 - the series of the step
         self, terms: Poly, items: list[RestraintSeries], x: float, h: float, push: Poly, weight: Poly
@@ -266,7 +279,7 @@ class RestrainedReference:
         if out.impacts >= self.settings.most_events:
             return self._end(Outcome.FAILED, Status.TOO_MANY_EVENTS)
         if self.stretch >= self.count:
-            return None
+            return None if self.ended else self._end(Outcome.ROCKED)
         for device in self.devices:
             device.elongation = 0.0
         if self._decays(r * speed):
@@ -295,7 +308,11 @@ class RestrainedReference:
     def _turn(self) -> None:
         """Reverse at a turning point, or stay there by friction."""
         self.rate = 0.0
+        if self.stretch >= self.count and self.side * self._acceleration_at(self.stretch, self.tau) < 0.0:
+            self._peak()
+            return self._end(Outcome.ROCKED)
         self._peak()
+        self.out.peaks.append((self.now, self.theta))
         for device in self.devices:
             device.rate = 0.0
         acceleration, limit = self._acceleration_at(self.stretch, self.tau), self._friction()
@@ -371,7 +388,7 @@ class RestrainedReference:
         return -(equation.p**2) * (weight * sine + push * cosine) - moment / equation.inertia
 
     def _acceleration_at(self, stretch: int, tau: float) -> float:
-        k = min(stretch, self.count - 1)
+        k = min(stretch, len(self.push.horizontal) - 1)
         push, lift = (value(rows[k].tolist(), tau) for rows in (self.push.horizontal, self.push.vertical))
         return self._acceleration(push, 1.0 + lift)
 
@@ -427,9 +444,13 @@ class RestrainedReference:
             self.tau = tau
             return
         self.stretch, self.tau = self.stretch + 1, 0.0
-        self._sample(self.stretch)
-        if self.stretch >= self.count:
-            self._finish()
+        if self.stretch <= self.count:
+            self._sample(self.stretch)
+        if self.stretch == self.count:
+            return self._finish()
+        if self.stretch > self.count and (not self._may_overturn() or self.stretch >= len(self.push.horizontal)):
+            return self._end(Outcome.ROCKED)
+        return None
 
     def _sample(self, k: int) -> None:
         out = self.out
@@ -442,7 +463,18 @@ class RestrainedReference:
         self._peak()
         if self.theta != 0.0 and self.rate == 0.0 and abs(self._acceleration_at(self.count - 1, 1.0)) <= self._friction():
             return self._end(Outcome.HELD)
-        return self._end(Outcome.ROCKED if self.out.uplifts or self.out.impacts else Outcome.NO_UPLIFT)
+        if not self._may_overturn():
+            return self._end(Outcome.ROCKED if self.out.uplifts or self.out.impacts else Outcome.NO_UPLIFT)
+        # the outcome follows on ground at rest
+        still = np.zeros((math.ceil(_AFTER / (self.equation.p * self.push.step)), self.push.horizontal.shape[1]))
+        rows = (np.vstack([self.push.horizontal, still]), np.vstack([self.push.vertical, still]))
+        self.push = Push(self.push.step, *rows)
+        return None
+
+    def _may_overturn(self) -> bool:
+        """Return True if the body is beyond the slenderness angle, or on its way out."""
+        outwards = self.side * self.rate > 0.0
+        return self.theta != 0.0 and (outwards or self.side * self.theta > self.equation.alpha)
 
     def _end(self, outcome: Outcome, status: Status = Status.GOOD) -> None:
         out = self.out
@@ -454,7 +486,7 @@ class RestrainedReference:
             out.overturning_time = math.nan
         if outcome in {Outcome.OVERTURNED, Outcome.FAILED}:
             for array in (out.rotation, out.angular_velocity, out.elongation, out.force, out.work, out.restraint_work):
-                array[self.stretch + 1 :] = np.nan
+                array[min(self.stretch, self.count) + 1 :] = np.nan
 
 
 def _falls(poly: Poly) -> list[float]:
@@ -463,8 +495,8 @@ def _falls(poly: Poly) -> list[float]:
         x = first_fall(poly)
     else:
         tail = poly[1:]
-        while tail and tail[0] == 0.0:
-            tail = tail[1:]
+        while len(tail) > 1 and -_ROUNDING * max(map(abs, tail[1:])) <= tail[0] <= 0.0:
+            tail = tail[1:]  # after a release only rounding can be negative
         x = None if not tail else 0.0 if tail[0] < 0.0 else first_fall(tail)
     return [] if x is None else [x]
 
