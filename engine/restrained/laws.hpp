@@ -129,16 +129,17 @@ struct Lever {
         at_rest = length != 0.0 ? -across / length : radius;
     }
     double elongation(double rotation) const {
-        if (linear) return at_rest * rotation;
-        const double s = std::sin(0.5 * rotation), c = std::cos(0.5 * rotation);
-        if (length == 0.0) return 2.0 * radius * s;  // Eq. 363
+        return linear ? at_rest * rotation : elongation(std::sin(0.5 * rotation), std::cos(0.5 * rotation));
+    }
+    double elongation(double s, double c) const {  // of half the rotation
+        if (length == 0.0) return 2.0 * radius * s;  // Eq. 343
         const double change = 4.0 * s * (along * s - across * c);
-        return change / (length + std::sqrt(length * length + change));  // Eq. 362
+        return change / (length + std::sqrt(length * length + change));  // Eq. 342
     }
     double slope(double rotation) const {
         if (linear) return at_rest;
         if (length == 0.0) return radius * std::cos(0.5 * rotation);
-        return (along * std::sin(rotation) - across * std::cos(rotation)) / (length + elongation(rotation));  // Eq. 364
+        return (along * std::sin(rotation) - across * std::cos(rotation)) / (length + elongation(rotation));  // Eq. 344
     }
 };
 

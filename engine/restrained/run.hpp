@@ -33,7 +33,7 @@ struct Trace {
 class Run {
   public:
     Run(const Body& body, const Motion& motion, double scale, std::int64_t count, const Settings& set, std::vector<Device>& devices, Trace* trace)
-        : b_(body), m_(motion), scale_(scale / set.gravity), count_(count), end_(count), set_(set), d_(devices), trace_(trace) {
+        : b_(body), m_(motion), scale_(scale / set.gravity), count_(count), end_(count), set_(set), d_(devices), trace_(trace), s_(set.tolerance) {
         for (int k = 0; k < 2; ++k) {
             const Side& s = b_.sides[k];
             const double top = (k ? -1.0 : 1.0) * s.alpha;
@@ -92,7 +92,7 @@ class Run {
         const bool singular = powers_ && std::fabs(rate_) < slow();
         double push[kGround], weight[kGround];
         const int terms = ground(width, push, weight), count = static_cast<int>(d_.size());
-        for (int i = 0; i < count; ++i) s_.items[i].is_viscous = d_[i].law.exponent == 1.0 || (!singular && lever(d_[i]).slope(theta_) != 0.0);
+        for (int i = 0; i < count; ++i) s_.items[i].is_viscous = !d_[i].law.is_power() || (!singular && lever(d_[i]).slope(theta_) != 0.0);
         s_.expand(q(), theta_, rate_, h, push, weight, terms, d_.data(), count);
         if (singular) return pass_turn(h, width);
         const double fraction = trusted(h);
@@ -107,8 +107,8 @@ class Run {
         add_work(x, push, weight, terms);
         theta_ = value(s_.theta, s_.n, x), rate_ = slope(s_.theta, s_.n, x) / h;
         r_.peak_velocity = std::max(r_.peak_velocity, std::fabs(rate_));
-        carry();
-        move(x == 1.0 && tau_ + width >= kEnd && longest() == 1.0 ? 1.0 : tau_ + x * width);
+        carry(x, h);
+        move(x == 1.0 && width + tau_ == longest() ? longest() : tau_ + x * width);
         if (next_.kind != kNone && !done_) act();
     }
 
@@ -139,10 +139,12 @@ class Run {
     };
 
     void offer(const double* c, int n, double fraction, double sign, double first, What kind, int device = 0, bool upwards = false) {
-        double bound = 0.0, power = fraction, scaled[kMost + 2];
+        double bound = 0.0;
+        for (int k = 1; k < n; ++k) bound += std::fabs(c[k]);
+        if (first > bound) return;  // also for a shorter step
+        double power = fraction, scaled[kMost + 2];
         scaled[0] = first;
-        for (int k = 1; k < n; ++k, power *= fraction) scaled[k] = sign * c[k] * power, bound += std::min(scaled[k], 0.0);
-        if (first + bound > 0.0) return;
+        for (int k = 1; k < n; ++k, power *= fraction) scaled[k] = sign * c[k] * power;
         const double x = first_fall(scaled, n);
         if (x > 1.0) return;
         const double rank = kind == kContact ? x - kTie : x, best = next_.kind == kContact ? next_.x - kTie : next_.x;
@@ -163,7 +165,7 @@ class Run {
         }
         double rate[kMost + 1];
         for (int k = 1; k < n; ++k) rate[k - 1] = k * s_.theta[k];
-        offer(rate, n - 1, fraction, direction_ / fraction * fraction, direction_ * rate[0], kTurn);
+        offer(rate, n - 1, fraction, direction_, direction_ * rate[0], kTurn);
     }
 
     // Work of the ground, for a trace only, and of viscous forces.
@@ -191,7 +193,7 @@ class Run {
             for (int j = 0; j < terms && j <= k; ++j, power *= x) force[k] += power * (push[j] * cosines[k - j] + (weight[j] - (j ? 0.0 : 1.0)) * sines[k - j]);
         }
         for (int k = 0; k + 1 < n; ++k) total += product(force, rates, k) / (k + 1);
-        work_ -= b_.sides[at()].unit * total;  // Eq. 369
+        work_ -= b_.sides[at()].unit * total;  // Eq. 350
     }
 
     // Leaves or reaches a turning point without the damper, whose power has no series there.
@@ -207,7 +209,7 @@ class Run {
         }
         theta_ = value(s_.theta, s_.n, x), rate_ = reaches ? 0.0 : slope(s_.theta, s_.n, x) / h;
         next_ = {};
-        carry();
+        carry(x, h);
         move(tau_ + x * width);
         if (reaches && !done_) turn();
     }
@@ -274,7 +276,7 @@ class Run {
         hold(limit);
     }
 
-    // Stays at a rotation until the moment exceeds friction (Eq. 370).
+    // Stays at a rotation until the moment exceeds friction.
     void hold(double limit) {
         const double still = acceleration(0.0, 0.0), by_push = acceleration(1.0, 0.0) - still, by_weight = acceleration(0.0, 1.0) - still;
         while (stretch_ < count_) {
@@ -340,7 +342,7 @@ class Run {
                 const double arm = d.levers[k].at_rest;
                 moment += d.law.slip_force != 0.0 ? d.law.slip_force * std::fabs(arm) : (k ? -1.0 : 1.0) * arm * d.law.phase.force(0.0);
             }
-            held.more[k] = moment / b_.sides[k].unit;  // Eq. 371
+            held.more[k] = moment / b_.sides[k].unit;  // Eq. 352
             held.sine[k] = set_.linear ? b_.sides[k].alpha : std::sin(b_.sides[k].alpha);
             held.cosine[k] = set_.linear ? 1.0 : std::cos(b_.sides[k].alpha);
         }
@@ -366,23 +368,28 @@ class Run {
         return total / q().inertia;
     }
 
-    void carry() {
-        if (next_.kind == kContact) theta_ = 0.0;
-        if (next_.kind == kTurn) rate_ = 0.0;
-        for (Device& d : d_) d.move(lever(d).elongation(theta_), lever(d).slope(theta_) * rate_);
+    void carry(double x, double h) {
+        const bool lands = next_.kind == kContact, turns = next_.kind == kTurn || rate_ == 0.0;
+        if (lands) theta_ = 0.0;
+        if (turns) rate_ = 0.0;
+        const int n = s_.n - 2;
+        for (std::size_t i = 0; i < d_.size(); ++i) {
+            const Terms& t = s_.items[i];
+            const double e = lands ? 0.0 : lever(d_[i]).linear ? lever(d_[i]).at_rest * theta_ : value(t.elongation, n, x);
+            d_[i].move(e, turns ? 0.0 : lands ? lever(d_[i]).at_rest * rate_ : value(t.rate, n, x) / h);
+        }
         if (!(side_ * theta_ > q().alpha)) r_.overturning_time = kNan;
         else if (!(r_.overturning_time >= 0.0)) r_.overturning_time = now();
     }
 
     void move(double tau) {
         while (tau >= kEnd && !done_) {
-            tau = longest() > 1.0 ? 0.0 : tau - 1.0;
-            stretch_ = longest() > 1.0 ? end_ : stretch_ + 1;
-            tau_ = 0.0;
+            const std::int64_t whole = longest() > 1.0 ? static_cast<std::int64_t>(tau + (1.0 - kEnd)) : 1;
+            stretch_ += whole, tau = std::max(tau - static_cast<double>(whole), 0.0), tau_ = 0.0;
+            if (tau < 1.0 - kEnd) tau = 0.0;
             if (stretch_ <= count_) sample();
             if (stretch_ == count_ && end_ == count_) finish();
             else if (stretch_ > count_ && (!may_overturn() || stretch_ >= end_)) end(kRocked, kGood);
-            if (tau < kEnd) tau = 0.0;
         }
         if (!done_) tau_ = tau;
     }
@@ -429,8 +436,8 @@ class Run {
     const Settings& set_;
     std::vector<Device>& d_;
     Trace* trace_;
-    Equation q_[2];
     Series s_;
+    Equation q_[2];
     Next next_;
     Result r_;
     bool powers_ = false, friction_ = false, done_ = false;

@@ -40,6 +40,8 @@ class Series {
     bool ended = false;    // the last terms are below rounding
     Terms items[kDevices];
 
+    explicit Series(double tolerance) : small_(1e-4 * tolerance) {}
+
     // push: a_x / g, weight: 1 + a_z / g, over the step.
     void expand(const Equation& q, double rotation, double velocity, double h, const double* push, const double* weight, int terms, const Device* devices, int count) {
         const int at = q.side > 0.0 ? 0 : 1;
@@ -50,8 +52,7 @@ class Series {
             ends_early &= !(active && devices[i].law.exponent != 1.0);
         }
         theta[0] = rotation, theta[1] = velocity * h;
-        const double floor = 1e-19 * std::max(q.alpha, std::fabs(rotation)), h2 = h * h, p2 = q.p * q.p, per_inertia = 1.0 / q.inertia;
-        int small = 0;
+        const double floor = small_ * std::max(q.alpha, std::fabs(rotation)), h2 = h * h, p2 = q.p * q.p, per_inertia = 1.0 / q.inertia;
         ended = false;
         double steps[kMost + 1];  // (j + 1) theta[j + 1]
         for (int k = 0; k < kMost - 1; ++k) {
@@ -64,10 +65,9 @@ class Series {
             for (int j = 0; j < terms && j <= k; ++j) moment += weight[j] * falls_[k - j] + push[j] * arms_[k - j];
             double acceleration = -p2 * moment;
             for (int i = 0; i < count; ++i) acceleration -= per_inertia * moment_of(k, devices[i].law, devices[i].levers[at], items[i], steps, h);
-            theta[k + 2] = h2 * acceleration / ((k + 1) * (k + 2));  // Eq. 365
+            theta[k + 2] = h2 * acceleration / ((k + 1) * (k + 2));  // Eq. 345
             n = k + 3;
-            small = std::fabs(theta[k + 2]) <= floor && k >= terms ? small + 1 : 0;
-            if (small == 2 && ends_early) {
+            if (ends_early && k >= terms && std::fabs(theta[k + 2]) <= floor && std::fabs(theta[k + 1]) <= 100.0 * floor) {
                 ended = true;
                 return;
             }
@@ -77,8 +77,8 @@ class Series {
   private:
     void trigonometry(int k, double rotation, const double* steps, bool halves) {
         if (k == 0) {
-            sines_[0] = std::sin(rotation), cosines_[0] = std::cos(rotation);
-            if (halves) half_sines_[0] = std::sin(0.5 * rotation), half_[0] = std::cos(0.5 * rotation);
+            const double s = half_sines_[0] = std::sin(0.5 * rotation), c = half_[0] = std::cos(0.5 * rotation);
+            sines_[0] = 2.0 * s * c, cosines_[0] = 1.0 - 2.0 * s * s;
             return;
         }
         const double per = 1.0 / k;
@@ -94,15 +94,15 @@ class Series {
             moment = lever.at_rest * (phase.stiffness * t.elongation[k] + (k ? 0.0 : phase.constant));
         } else {
             const double along = lever.along * sines_[k] - lever.across * cosines_[k];
-            t.elongation[k] = k ? t.rate[k - 1] / k : lever.elongation(theta[0]);
+            t.elongation[k] = k ? t.rate[k - 1] / k : lever.elongation(half_sines_[0], half_[0]);
             if (lever.length != 0.0) {
                 double past = 0.0;
                 for (int j = 1; j <= k; ++j) past += t.elongation[j] * t.slope[k - j];
-                t.slope[k] = (along - past) / (lever.length + t.elongation[0]);  // Eq. 364
+                t.slope[k] = (along - past) / (lever.length + t.elongation[0]);  // Eq. 344
             } else {
                 t.slope[k] = lever.radius * half_[k];
             }
-            moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 366
+            moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 346
         }
         t.rate[k] = product(steps, t.slope, k);
         if (law.coefficient == 0.0 || !t.is_viscous) return moment;
@@ -114,13 +114,14 @@ class Series {
             } else {
                 double total = 0.0;
                 for (int j = 1; j <= k; ++j) total += (law.exponent * j - (k - j)) * t.rate[j] * t.root[k - j];
-                t.root[k] = total / (k * t.rate[0]);  // Eq. 367
+                t.root[k] = total / (k * t.rate[0]);  // Eq. 347
             }
             t.viscous[k] = std::copysign(law.coefficient, t.rate[0]) * t.root[k];
         }
         return moment + product(t.viscous, t.slope, k);
     }
 
+    double small_;  // of the last terms, over the angle
     double sines_[kMost + 1], cosines_[kMost + 1], half_sines_[kMost + 1], half_[kMost + 1], falls_[kMost + 1], arms_[kMost + 1];
 };
 

@@ -75,10 +75,12 @@ CASES = {
     ),
     "1H3": Case(
         WALL, [tendon(stiffness=800e3, yield_force=60e3)], (7.0, 0.8),
-        [(0.76167499728, 4.70575050689e-01, 4.51497683769e-01), (2.16253979718, -3.95937288860e-01, -3.79885777150e-01)],
+        [(0.76167499728, 4.70575050689e-01, 4.51497683769e-01),
+         (2.16253979718, -3.95937288860e-01, -3.79885777150e-01)],
         [(0.53266510166, -5.88443997675e-02), (1.43857493756, 1.54397036998e-01), (2.87066524568, -1.44424635789e-01)],
         0.04588353708,
-        [(1.03086014324, 0, T, 1.00041713612e-01, 5.0e-02), (2.15176379097, 0, SL, 4.24372815311e-03, 2.12186248434e-03),
+        [(1.03086014324, 0, T, 1.00041713612e-01, 5.0e-02),
+         (2.15176379097, 0, SL, 4.24372815311e-03, 2.12186248434e-03),
          (2.17377638940, 0, EL, -4.24372815311e-03, 2.12186248434e-03),
          (3.56755410195, 0, SL, -4.24372815311e-03, 2.12186248434e-03)],
         (3.56755410195, 5.678119145e03, 7.410817051e02, [1.377311749e03], 3.559725691e03),
@@ -93,19 +95,22 @@ CASES = {
     "1H5": Case(
         WALL, [tendon(stiffness=500e3)], None,
         [(0.57211096401, -3.48433833542e-01, -3.34308137588e-01), (1.67101154646, 3.34308137588e-01, 3.20755104983e-01),
-         (2.72632998822, -3.20755104983e-01, -3.07751519646e-01), (3.73974172627, 3.07751519646e-01, 2.95275106687e-01)],
+         (2.72632998822, -3.20755104983e-01, -3.07751519646e-01), (3.73974172627, 3.07751519646e-01,
+         2.95275106687e-01)],
         [(1.12156125524, -9.21270619193e-02), (2.19867076734, 8.48700662293e-02), (3.23303585724, -7.81812422002e-02)],
         energy=(3.73974172627, 0.0, 8.440624440e02, [-1.624062726e03], 2.150622253e03), rotation=0.1,
     ),
     "2H1": Case(
         BLOCK, FUSES, (7.0, 0.7),
-        [(0.56951562808, 4.60749466968e-01, 4.20095102235e-01), (1.72243315774, -2.19347487709e-01, -1.99993297617e-01)],
+        [(0.56951562808, 4.60749466968e-01, 4.20095102235e-01),
+         (1.72243315774, -2.19347487709e-01, -1.99993297617e-01)],
         [(0.40874913861, -3.82411747001e-02), (0.98653085793, 1.17579572731e-01)], 0.03987892440,
         [(0.16353904935, 1, T, -5.00002070956e-03, 4.0e-03), (0.26454986308, 0, T, -2.00013256337e-02, 4.0e-03),
          (0.48996886952, 1, C, -2.82358879246e-02, 2.25858062193e-02),
          (0.59134862500, 0, T, 9.55813391678e-03, 7.64639202105e-03), (0.65733912940, 1, T, 4.00105481694e-02, 8.0e-03),
          (1.11553501515, 0, C, 1.07525251351e-01, 8.58727584419e-02),
-         (1.31499544272, 1, C, 7.73934447265e-02, 1.54635889988e-02), (1.77673844130, 1, T, -1.00001647055e-02, 8.0e-03)],
+         (1.31499544272, 1, C, 7.73934447265e-02, 1.54635889988e-02), (1.77673844130, 1, T, -1.00001647055e-02,
+         8.0e-03)],
         (1.77673844130, 2.512745851e03, 2.489150067e02, [1.381844853e03, 6.449345170e02], 2.370514737e02),
         duration=1.78, plastic=3.92e-03,
     ),
@@ -114,26 +119,30 @@ CASES = {
         [(0.70632897219, 5.19747680162e-01, 4.73887590736e-01), (2.64126886633, -4.04213412086e-01, -3.68547522784e-01),
          (3.69224512365, 3.30351583317e-01, 3.01202914201e-01)],
         [(0.48145592454, -6.93226832191e-02), (1.62872324477, 1.67804421244e-01), (3.15154320204, -8.49370575308e-02)],
-        0.03987892440, [], (3.69224512365, 1.698602882e03, 5.187174947e02, [3.466921415e02, 3.190951380e02], 5.140981080e02),
+        0.03987892440, [], (3.69224512365, 1.698602882e03, 5.187174947e02,
+        [3.466921415e02, 3.190951380e02], 5.140981080e02),
     ),
     "2H3": Case(
         BLOCK, pair(rk.ViscousDamper, coefficient=3e3, exponent=0.5), (7.0, 0.7),
         [(0.69262997184, 5.24203170036e-01, 4.77949949151e-01), (2.50105728971, -3.83571519103e-01, -3.49726973300e-01),
          (3.43158406810, 2.98191912553e-01, 2.71880861445e-01)],
         [(0.47509982494, -6.55592774865e-02), (1.50974859229, 1.57433294548e-01), (2.93960015736, -7.07255038493e-02)],
-        0.03987892440, [], (3.43158406810, 1.768382456e03, 4.882976747e02, [4.639978830e02, 3.972114156e02], 4.188754826e02),
+        0.03987892440, [], (3.43158406810, 1.768382456e03, 4.882976747e02,
+        [4.639978830e02, 3.972114156e02], 4.188754826e02),
     ),
     "2H4": Case(
         BLOCK, pair(rk.FrictionDamper, slip_force=3e3), (7.0, 0.7),
         [(0.63797932502, 5.03440269046e-01, 4.59019068836e-01), (2.54914254214, -3.16357807288e-01, -2.88443883115e-01),
          (3.22781251593, 2.04310889768e-01, 1.86283458318e-01)],
         [(0.44859042066, -4.91412692671e-02), (1.26872400856, 1.40797142094e-01), (2.82674545446, -3.91632361643e-02)],
-        0.05293925847, [], (3.22781251593, 1.946593358e03, 3.778386017e02, [8.424532221e02, 5.296595482e02], 1.966419854e02),
+        0.05293925847, [], (3.22781251593, 1.946593358e03, 3.778386017e02,
+        [8.424532221e02, 5.296595482e02], 1.966419854e02),
     ),
     "3H1": Case(
         SKEW, [rk.Tendon(x=0.55, prestress=6e3, stiffness=2e5)], None,
         [(0.39083679453, -5.11473727706e-01, -4.79634545012e-01), (1.30953149652, 4.79634545012e-01, 4.26994198156e-01),
-         (1.96239110595, -4.26994198156e-01, -4.00413856786e-01), (2.75893486735, 4.00413856786e-01, 3.56468055703e-01)],
+         (1.96239110595, -4.26994198156e-01, -4.00413856786e-01), (2.75893486735, 4.00413856786e-01,
+         3.56468055703e-01)],
         [(0.85018414552, -1.13865522438e-01), (1.63596130123, 6.97282644748e-02), (2.36066298665, -8.17507606942e-02)],
         energy=(2.75893486735, 0.0, 7.967888642e02, [-4.722188203e02], 7.525689641e02), rotation=0.1,
     ),
@@ -155,7 +164,7 @@ def respond(case, engine, **options):
     return rk.simulate(body, rk.pulses.sine(*case.motion), **values)
 
 
-ENGINES = ("reference",)
+ENGINES = ("reference", "fast")
 
 
 @pytest.mark.verifies("reference values", "independent code, two routes", within="1e-10")
@@ -282,7 +291,8 @@ def test_without_force_nothing_changes(body, engine):
     items = [
         rk.Tendon(x=0.4, stiffness=0.0), rk.ViscousDamper(x=0.0, length=0.5, coefficient=0.0),
         rk.ViscousDamper(x=0.0, length=0.5, coefficient=0.0, exponent=0.5),
-        rk.FrictionDamper(x=0.1, length=0.5, slip_force=0.0), rk.Spring(ground=(-1.0, 2.0), point=(0.0, 2.0), stiffness=0.0),
+        rk.FrictionDamper(x=0.1, length=0.5, slip_force=0.0), rk.Spring(ground=(-1.0, 2.0), point=(0.0, 2.0),
+        stiffness=0.0),
     ]  # fmt: skip
     options = {"restitution": 0.9, "gravity": G, "duration": 4.0}
     for motion in (rk.pulses.sine(3.5, 0.9), record()):
@@ -323,11 +333,12 @@ def test_linear_option_is_the_limit_of_small_rotations():
 
 @pytest.mark.verifies("elongation", "40-digit distances", within="1e-14")
 @pytest.mark.parametrize(
-    ("ground", "point"), [((0.3, -0.5), (0.3, 0.0)), ((0.5, 0.0), (0.5, 0.0)), ((-2.0, 4.0), (0.0, 4.0)), ((2.0, 0.0), (1.0, 5.0))]
+    ("ground", "point"),
+    [((0.3, -0.5), (0.3, 0.0)), ((0.5, 0.0), (0.5, 0.0)), ((-2.0, 4.0), (0.0, 4.0)), ((2.0, 0.0), (1.0, 5.0))],
 )
 @pytest.mark.parametrize("theta", [1e-9, -1e-9, 1e-3, -0.2, 1.2])
 def test_elongation_is_the_change_of_the_distance(ground, point, theta):
-    """Also for a duct mouth on its anchor, which has no direction at zero elongation: (P - A) / |P - A| loses digits."""
+    """Also for a duct mouth on its anchor, which has no direction at zero elongation."""
     mp.mp.dps = 40
     side = 1 if theta > 0.0 else -1
     lever = Lever.of(rk.Spring(ground=ground, point=point, stiffness=1.0), WALL, side, linear=False)
@@ -336,7 +347,8 @@ def test_elongation_is_the_change_of_the_distance(ground, point, theta):
     def distance(angle):
         x, z = mp.mpf(point[0]) - foot, mp.mpf(point[1])
         return mp.hypot(
-            foot + x * mp.cos(angle) + z * mp.sin(angle) - mp.mpf(ground[0]), z * mp.cos(angle) - x * mp.sin(angle) - mp.mpf(ground[1])
+            foot + x * mp.cos(angle) + z * mp.sin(angle) - mp.mpf(ground[0]),
+            z * mp.cos(angle) - x * mp.sin(angle) - mp.mpf(ground[1]),
         )
 
     exact = distance(mp.mpf(theta)) - distance(mp.mpf(0))
@@ -350,14 +362,15 @@ def test_elongation_is_the_change_of_the_distance(ground, point, theta):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_fuses_outside_the_base_are_compressed_and_unload_at_the_peak(engine):
-    """A bar beyond the foot shortens while the body opens about that foot; it yields, and is elastic from the peak on."""
+    """A bar beyond the foot shortens while the body opens about it, yields, and is elastic from the peak on."""
     fuse = rk.Fuse(x=1.6, length=0.5, stiffness=4e6, yield_force=6e3, hardening=0.02)
     response = rk.simulate(
         rk.Restrained(BLOCK, fuse), rk.pulses.sine(-7.0, 0.7), "housner", gravity=G, duration=2.0, engine=engine
     )
     events = response.trajectory.restraint_events
     yields = [event for event in events if event.phase == C and event.rotation > 0.0]
-    assert yields and yields[0].elongation == pytest.approx(-6e3 / 4e6, rel=1e-9)
+    assert yields
+    assert yields[0].elongation == pytest.approx(-6e3 / 4e6, rel=1e-9)
     after = next(event for event in events if event.time > yields[0].time)
     assert after.phase == EL
     k = int(after.time / response.time[1])
@@ -456,7 +469,10 @@ def test_restitution_is_that_of_the_body():
 def test_gap_hook_and_buffer():
     """A hook acts beyond its gap in tension only, a buffer in compression only; the pushover shows both."""
     position = {"ground": (-2.0, 6.0), "point": (0.0, 6.0), "stiffness": 1e6, "gap": 0.05}
-    hook, buffer = (rk.pushover(rk.Restrained(WALL, rk.Spring(action=a, **position)), [0.02, -0.02, 0.005]) for a in ("tension", "compression"))
+    hook, buffer = (
+        rk.pushover(rk.Restrained(WALL, rk.Spring(action=a, **position)), [0.02, -0.02, 0.005])
+        for a in ("tension", "compression")
+    )
     e = hook.elongation[:, 0]
     assert hook.force[:, 0] == pytest.approx([1e6 * (e[0] - 0.05), 0.0, 0.0])
     assert buffer.force[:, 0] == pytest.approx([0.0, 1e6 * (e[1] + 0.05), 0.0])

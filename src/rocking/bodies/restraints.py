@@ -1,7 +1,6 @@
 """Restraints of plane bodies: tendons, dampers, fuses and springs between the ground and a point of the body."""
 
 import math
-from abc import ABC
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
@@ -17,7 +16,7 @@ _CONNECTION = ("x", "length", "ground", "point", "name")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Restraint(ABC):
+class Restraint:
     """A device between a point of the ground and a point of the body.
 
     State `x` alone for a device whose mouth in the base touches its anchor in the ground, such as a tendon in a duct;
@@ -85,7 +84,8 @@ class Restraint(ABC):
         """Points of the ground and of the upright body [m]."""
         if self.x is not None:
             return (self.x, -self.length), (self.x, 0.0)
-        assert self.ground is not None and self.point is not None
+        assert self.ground is not None
+        assert self.point is not None
         return self.ground, self.point
 
     @property
@@ -159,8 +159,8 @@ class Tendon(Restraint):
         if self.stiffness is None and None not in stated:
             for name in ("area", "modulus", "free_length"):
                 self._set(name, checks.positive(name, getattr(self, name)))
-            assert self.area is not None and self.modulus is not None and self.free_length is not None
-            self._set("stiffness", self.modulus * self.area / self.free_length)
+            area, modulus, free_length = (float(getattr(self, name)) for name in ("area", "modulus", "free_length"))
+            self._set("stiffness", modulus * area / free_length)
         elif self.stiffness is None or stated != [None, None, None]:
             raise InvalidValueError(
                 "{parameter} must be {allowed}", parameter="stiffness",
@@ -250,7 +250,9 @@ class FrictionDamper(Restraint):
     kind: ClassVar[str] = "friction_damper"
     law: ClassVar[str] = "F = Fs sgn e', |F| <= Fs if e' = 0"
     source: ClassVar[str] = "Coulomb's law; Pall & Marsh (1982)"
-    domain: ClassVar[str] = "rigid before slip: a small series stiffness changes the rotation at which it sticks; " + _EXACT
+    domain: ClassVar[str] = (
+        "rigid before slip: a small series stiffness changes the rotation at which it sticks; " + _EXACT
+    )
 
     slip_force: float
 
@@ -363,7 +365,5 @@ class Spring(Restraint):
         checks.one_of("action", self.action, ACTIONS)
 
 
-KINDS: dict[str, type[Restraint]] = {
-    kind.kind: kind for kind in (Tendon, ViscousDamper, FrictionDamper, Fuse, Spring)
-}
+KINDS: dict[str, type[Restraint]] = {kind.kind: kind for kind in (Tendon, ViscousDamper, FrictionDamper, Fuse, Spring)}
 """Classes of restraints by the name in files."""

@@ -49,7 +49,9 @@ def restrained_picture(response: "RestrainedResponse") -> "Figure":
         axes[3].plot(time, 1e-3 * response.restraint_work[:, k], color=colour, linewidth=0.9)
     legend_above(axes[2], 4)
     axes[2].set_ylabel("force\n[kN]")
-    axes[3].plot(time, 1e-3 * response.forces.energy_lost, color=INK, linewidth=0.9, linestyle="dashed", label="impacts")
+    axes[3].plot(
+        time, 1e-3 * response.forces.energy_lost, color=INK, linewidth=0.9, linestyle="dashed", label="impacts"
+    )
     axes[3].set_ylabel("work on\nrestraints\n[kJ]")
     legend_above(axes[3], 1)
     for panel in axes:

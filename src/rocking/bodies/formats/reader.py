@@ -99,8 +99,8 @@ def read_body(
     Returns
     -------
     Body, Restrained or Solid
-        Block, Section, MassPoints, a body with the restraints of a TOML file, or a `Solid` with its `name`. `repairs` of a solid contains one sentence for each
-        change of the mesh and for each doubt about the mesh.
+        Block, Section, MassPoints, a body with the restraints of a TOML file, or a `Solid` with its `name`. `repairs`
+        of a solid contains one sentence for each change of the mesh and for each doubt about the mesh.
 
     Raises
     ------

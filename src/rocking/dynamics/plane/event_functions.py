@@ -11,7 +11,6 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.taylor import first_fall, shifted, value
 
-
 NO_MORE: Mapping[int, float] = MappingProxyType({1: 0.0, -1: 0.0})
 
 
@@ -78,7 +77,8 @@ class RestoringMoments:
         x_min, x_max, x_variation = _extent(self.push.horizontal[rows], tau)
         z_min, z_max, z_variation = _extent(self.push.vertical[rows], tau)
         min_moments = {
-            sign: (1.0 + z_min) * self._sines[sign] + min(sign * x_min, sign * x_max) * self._cosines[sign]
+            sign: (1.0 + z_min) * self._sines[sign]
+            + min(sign * x_min, sign * x_max) * self._cosines[sign]
             + self.more[sign]
             for sign in (1, -1)
         }

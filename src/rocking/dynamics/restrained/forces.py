@@ -56,7 +56,9 @@ class RestrainedForces:
             for k in range(count):
                 lever = levers[int(side[k])]
                 arms[k, i] = lever.slope(float(rotation[k]))
-                pull_x[k, i], pull_z[k, i] = direction_of(restraint.ends, body.body.feet, int(side[k]), float(rotation[k]))
+                pull_x[k, i], pull_z[k, i] = direction_of(
+                    restraint.ends, body.body.feet, int(side[k]), float(rotation[k])
+                )
         push, weight = horizontal / gravity, 1.0 + vertical / gravity
         acceleration = equations.angular_acceleration(rotation, side, alpha, p, push, weight, linear=linear)
         acceleration = np.where(moving != 0.0, acceleration - (force * arms).sum(axis=1) / inertia, 0.0)
@@ -100,7 +102,7 @@ def losses(
 def direction_of(
     ends: tuple[tuple[float, float], tuple[float, float]], feet: tuple[float, float], side: int, rotation: float
 ) -> tuple[float, float]:
-    """Return the unit vector from the point of the ground to the point of the body (Eq. 370)."""
+    """Return the unit vector from the point of the ground to the point of the body."""
     (ground_x, ground_z), (point_x, point_z) = ends
     foot = feet[side > 0]
     d_x, d_z = point_x - foot, point_z
@@ -111,4 +113,4 @@ def direction_of(
     if length > 1e-6 * math.hypot(d_x, d_z) or math.hypot(ground_x - point_x, ground_z - point_z):
         return (x / length, z / length) if length else (0.0, 0.0)
     sign = -math.copysign(1.0, d_x * side) if d_x else 0.0  # coincident points: half the angle
-    return sign * math.sin(0.5 * rotation), sign * math.cos(0.5 * rotation)
+    return sign * math.sin(0.5 * rotation), sign * math.cos(0.5 * rotation)  # Eq. 353

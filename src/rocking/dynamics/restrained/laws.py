@@ -40,15 +40,19 @@ class ForceLaw(ABC):
     yields = 0
     lost = 0.0  # energy lost by rupture [J]
 
-    def settle(self, elongation: float, direction: int) -> None:
+    def settle(self, elongation: float, direction: int) -> None:  # noqa: B027 - most laws have one phase
         """Choose the phase for a direction of e', after uplift, impact, turning point, or reversal of the lever."""
 
-    def cross(self, elongation: float, *, upwards: bool) -> None:
+    def cross(self, elongation: float, *, upwards: bool) -> None:  # noqa: B027
         """Choose the phase beyond a limit of the present phase."""
 
     def stored(self, elongation: float) -> float:
         """Return the elastic energy, with that of the hardening [J]."""
         return 0.0
+
+    def named(self, name: str) -> Phase:
+        """Return the phase of a name in the present state."""
+        return self.phase
 
     @property
     def residual_force(self) -> float:
@@ -71,9 +75,9 @@ class ForceLaw(ABC):
 
 
 class Bilinear(ForceLaw):
-    """Elastic, plastic with kinematic hardening; in compression symmetric or slack; until rupture (Eq. 308-310)."""
+    """Elastic, plastic with kinematic hardening; in compression symmetric or slack; until rupture."""
 
-    def __init__(  # noqa: PLR0917 - the constants in the order of the engine
+    def __init__(
         self, stiffness: float, prestress: float, limit: float, ratio: float, rupture: float, symmetric: bool
     ) -> None:
         self.stiffness, self.prestress, self.limit, self.rupture = stiffness, prestress, limit, rupture
@@ -100,15 +104,20 @@ class Bilinear(ForceLaw):
     def _flowing(self, sign: int) -> Phase:
         total = self.stiffness + self.hardening
         constant = sign * self.limit + self.hardening * (self.prestress - sign * self.limit) / total
-        slope = self.stiffness * self.hardening / total
+        slope = self.stiffness * self.hardening / total  # Eq. 348
         name = "yields in tension" if sign > 0 else "yields in compression"
         return self._bounded(name, constant, slope, -_INF, _INF, sign)
+
+    def named(self, name: str) -> Phase:
+        if name == "slack":
+            return self._bounded("slack", 0.0, 0.0, -_INF, self._at(0.0), 0)
+        return self._elastic() if name == "elastic" else self._flowing(1 if "tension" in name else -1)
 
     def _flow(self, elongation: float) -> None:
         """Update the plastic elongation of a plastic phase."""
         if sign := self.phase.direction:
             total = self.stiffness + self.hardening
-            self.plastic = (self.prestress + self.stiffness * elongation - sign * self.limit) / total
+            self.plastic = (self.prestress + self.stiffness * elongation - sign * self.limit) / total  # Eq. 349
 
     def settle(self, elongation: float, direction: int) -> None:
         if self.phase.direction * direction < 0:
@@ -126,7 +135,7 @@ class Bilinear(ForceLaw):
             self.yields += 1
             self.phase = self._flowing(1 if upwards else -1)
         else:
-            self.phase = self._bounded("slack", 0.0, 0.0, -_INF, self._at(0.0), 0)
+            self.phase = self.named("slack")
 
     def stored(self, elongation: float) -> float:
         if self.broken or not self.stiffness:
@@ -167,10 +176,13 @@ class Friction(ForceLaw):
         self.slip_force = slip_force
         self.phase = Phase("sticks")
 
+    def named(self, name: str) -> Phase:
+        direction = {"slips in tension": 1, "slips in compression": -1}.get(name, 0)
+        return Phase(name, direction * self.slip_force, direction=direction)
+
     def settle(self, elongation: float, direction: int) -> None:
         if direction:
-            name = "slips in tension" if direction > 0 else "slips in compression"
-            self.phase = Phase(name, direction * self.slip_force, direction=direction)
+            self.phase = self.named("slips in tension" if direction > 0 else "slips in compression")
 
     def row(self) -> tuple[float, ...]:
         return 2.0, self.slip_force, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -189,6 +201,10 @@ class Elastic(ForceLaw):
         )  # fmt: skip
         self.phase = Phase("elastic", 0.0, stiffness) if action == "both" and not gap else self._open
 
+    def named(self, name: str) -> Phase:
+        phases = (self._open, self._tension, self._compression, self.phase)
+        return next(phase for phase in phases if phase.name == name)
+
     def settle(self, elongation: float, direction: int) -> None:
         if direction > 0 and elongation >= self.phase.high:
             self.cross(elongation, upwards=True)
@@ -203,7 +219,15 @@ class Elastic(ForceLaw):
         return 0.5 * self.phase.force(elongation) ** 2 / self.stiffness if self.stiffness else 0.0
 
     def row(self) -> tuple[float, ...]:
-        return 3.0, self.stiffness, self.gap, float(self.action != "compression"), float(self.action != "tension"), 0.0, 0.0
+        return (
+            3.0,
+            self.stiffness,
+            self.gap,
+            float(self.action != "compression"),
+            float(self.action != "tension"),
+            0.0,
+            0.0,
+        )
 
 
 @singledispatch
@@ -216,14 +240,24 @@ def law_of(restraint: Restraint) -> ForceLaw:
 def _(restraint: Tendon) -> ForceLaw:
     stiffness = restraint.stiffness or 0.0
     return Bilinear(
-        stiffness, restraint.force_at_rest, restraint.yield_force, restraint.hardening, restraint.rupture_elongation, False
+        stiffness,
+        restraint.force_at_rest,
+        restraint.yield_force,
+        restraint.hardening,
+        restraint.rupture_elongation,
+        False,
     )
 
 
 @law_of.register
 def _(restraint: Fuse) -> ForceLaw:
     return Bilinear(
-        restraint.stiffness, 0.0, restraint.yield_force, restraint.hardening, restraint.stroke, not restraint.tension_only
+        restraint.stiffness,
+        0.0,
+        restraint.yield_force,
+        restraint.hardening,
+        restraint.stroke,
+        not restraint.tension_only,
     )
 
 
@@ -240,5 +274,3 @@ def _(restraint: FrictionDamper) -> ForceLaw:
 @law_of.register
 def _(restraint: Spring) -> ForceLaw:
     return Elastic(restraint.stiffness, restraint.gap, restraint.action)
-
-

@@ -39,15 +39,19 @@ class Lever:
         """Slope de/dtheta at zero rotation [m]."""
         return -self.across / self.length if self.length else self.radius
 
+    def row(self) -> tuple[float, float, float]:
+        """Return the constants for the compiled engine."""
+        return self.length, self.along, self.across
+
     def elongation(self, rotation: float) -> float:
         """Return e [m]."""
         if self.is_linear:
             return self.at_rest * rotation
         sine, cosine = math.sin(0.5 * rotation), math.cos(0.5 * rotation)
         if not self.length:
-            return 2.0 * self.radius * sine  # Eq. 306
+            return 2.0 * self.radius * sine  # Eq. 343
         change = 4.0 * sine * (self.along * sine - self.across * cosine)
-        return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 305
+        return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 342
 
     def slope(self, rotation: float) -> float:
         """Return de/dtheta [m]."""
@@ -56,4 +60,4 @@ class Lever:
         if not self.length:
             return self.radius * math.cos(0.5 * rotation)
         along = self.along * math.sin(rotation) - self.across * math.cos(rotation)
-        return along / (self.length + self.elongation(rotation))  # Eq. 307
+        return along / (self.length + self.elongation(rotation))  # Eq. 344

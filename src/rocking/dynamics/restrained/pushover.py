@@ -78,7 +78,9 @@ class Pushover:
         return pushover_picture(self)
 
 
-def pushover(restrained: Restrained, rotation: Any, *, gravity: float = conventions.g, linear: bool = False) -> Pushover:
+def pushover(
+    restrained: Restrained, rotation: Any, *, gravity: float = conventions.g, linear: bool = False
+) -> Pushover:
     """Return the quasi-static moment of a body with restraints along a path of rotations.
 
     Parameters
@@ -132,7 +134,7 @@ def pushover(restrained: Restrained, rotation: Any, *, gravity: float = conventi
         elongation[k], force[k] = [device.elongation for device in devices], [device.force() for device in devices]
         work[k] = [device.work for device in devices]
         held = sum(f * device.levers[side].slope(angle) for f, device in zip(force[k], devices, strict=True))
-        moment[k] = half.mass * gravity * half.semi_diagonal * sine + held  # Eq. 371
+        moment[k] = half.mass * gravity * half.semi_diagonal * sine + held  # Eq. 354
         acceleration[k] = -moment[k] / (half.mass * half.semi_diagonal * cosine)
         before = angle
     dissipated = np.array([device.dissipated for device in devices])

@@ -205,15 +205,18 @@ class RestrainedReference:
                     gap[0] = sign * (device.elongation - limit)
                     events += [_Next(x, "limit", device, upwards=sign < 0.0) for x in _falls(gap)]
             if phase.direction and item.slope[0]:
-                events += [_Next(x, "lever", device) for x in _falls(_scaled(item.slope, fraction, math.copysign(1.0, item.slope[0])))]
+                events += [
+                    _Next(x, "lever", device)
+                    for x in _falls(_scaled(item.slope, fraction, math.copysign(1.0, item.slope[0])))
+                ]
         events += [_Next(x, "turn") for x in _falls(rate)]
         # a limit at the impact itself belongs to the impact
         return min(events, key=lambda event: event.x - _TIE * (event.kind == "impact"), default=None)
 
-    def _add_work(  # noqa: PLR0917 - the series of the step
+    def _add_work(
         self, terms: Poly, items: list[RestraintSeries], x: float, h: float, push: Poly, weight: Poly
     ) -> None:
-        """Add the work of the ground and of viscous forces over a part of the step (Eq. 366)."""
+        """Add the work of the ground and of viscous forces over a part of the step."""
         g, equation, side = self.settings.gravity, self.equation, self.parameters.side(self.side)
         unit = self.mass * g * side.semi_diagonal
         terms, push, weight = (_scaled(poly, x) for poly in (terms, push, weight))
@@ -222,7 +225,7 @@ class RestrainedReference:
         sines, cosines = (to_top, [1.0]) if equation.linear else _sine_cosine(to_top)
         lift = [weight[0] - 1.0, *weight[1:]]
         power = _product(_sum(_product(push, cosines), _product(lift, sines)), rates)
-        self.work -= unit * _integral(power)
+        self.work -= unit * _integral(power)  # Eq. 350
         for device, item in zip(self.devices, items, strict=True):
             if item.viscous:
                 device.work += x * _integral(_product(_scaled(item.viscous, x), _scaled(item.rate, x)))
@@ -235,14 +238,14 @@ class RestrainedReference:
         return abs(self.rate) < _SINGULAR * self.equation.p * self.equation.alpha
 
     def _pass_turn(self, terms: Poly, h: float, width: float) -> None:
-        """Leave or reach a turning point without the damper, whose power has no series there (Eq. 367)."""
+        """Leave or reach a turning point without the damper, whose power has no series there."""
         first, second, third = [*terms, 0.0, 0.0][1:4]
         if reaches := first * second < 0.0:
             x = min(1.0, -0.5 * first / second)
         else:
             speed = 1.01 * _SINGULAR * self.equation.p * self.equation.alpha * h
             root = abs(second) + math.sqrt(second**2 + 3.0 * abs(third) * speed)
-            x = min(1.0, speed / root) if root else 1.0
+            x = min(1.0, speed / root) if root else 1.0  # Eq. 355
         self.theta, self.rate = value(terms, x), 0.0 if reaches else slope(terms, x) / h
         self._carry(None)
         self._move(self.tau + x * width)
@@ -318,10 +321,10 @@ class RestrainedReference:
         acceleration, limit = self._acceleration_at(self.stretch, self.tau), self._friction()
         if abs(acceleration) > limit:
             return self._head(1 if acceleration > 0.0 else -1)
-        return self._hold(limit)
+        return self._hold(limit)  # Eq. 351
 
     def _hold(self, limit: float) -> None:
-        """Stay at a rotation until the moment exceeds friction (Eq. 368)."""
+        """Stay at a rotation until the moment exceeds friction."""
         while self.stretch < self.count:
             rows = [self._acceleration_at(self.stretch, x) for x in (self.tau, 1.0)]
             poly = self._acceleration_series()
@@ -364,12 +367,12 @@ class RestrainedReference:
         return self._head(self.side)
 
     def _holding(self) -> RestoringMoments:
-        """Return the restoring moments with those of restraints in their present state (Eq. 369)."""
+        """Return the restoring moments with those of restraints in their present state."""
         more = {}
         for side in (1, -1):
             half = self.parameters.side(side)
             unit = self.mass * self.settings.gravity * half.semi_diagonal
-            more[side] = moment_at_rest(self.devices, side) / unit
+            more[side] = moment_at_rest(self.devices, side) / unit  # Eq. 352
         if self._ground is None or self._ground.more != more:
             self._ground = RestoringMoments(self.parameters, self.push, linear=self.settings.linear, more=more)
         return self._ground
@@ -430,9 +433,7 @@ class RestrainedReference:
     def _note_phase(self, device: Device, before: float) -> None:
         index = self.devices.index(device)
         phase = device.law.phase.name
-        self.out.restraint_events.append(
-            RestraintEvent(self.now, index, phase, self.theta, device.elongation, before)
-        )
+        self.out.restraint_events.append(RestraintEvent(self.now, index, phase, self.theta, device.elongation, before))
         device.note()
 
     def _peak(self) -> None:
@@ -442,7 +443,7 @@ class RestrainedReference:
     def _move(self, tau: float) -> None:
         if tau < _STRETCH_END:
             self.tau = tau
-            return
+            return None
         self.stretch, self.tau = self.stretch + 1, 0.0
         if self.stretch <= self.count:
             self._sample(self.stretch)
@@ -461,7 +462,11 @@ class RestrainedReference:
 
     def _finish(self) -> None:
         self._peak()
-        if self.theta != 0.0 and self.rate == 0.0 and abs(self._acceleration_at(self.count - 1, 1.0)) <= self._friction():
+        if (
+            self.theta != 0.0
+            and self.rate == 0.0
+            and abs(self._acceleration_at(self.count - 1, 1.0)) <= self._friction()
+        ):
             return self._end(Outcome.HELD)
         if not self._may_overturn():
             return self._end(Outcome.ROCKED if self.out.uplifts or self.out.impacts else Outcome.NO_UPLIFT)

@@ -284,8 +284,10 @@ class RestrainedResponse(ResponseBase):
     @property
     def _samples(self) -> dict[str, FloatArray]:
         forces = self.forces
-        names = ("kinetic_energy", "potential_energy", "energy_lost", "horizontal_force", "vertical_force", "base_shear",
-                 "overturning_moment")  # fmt: skip
+        names = (
+            "kinetic_energy", "potential_energy", "energy_lost", "horizontal_force", "vertical_force", "base_shear",
+            "overturning_moment",
+        )  # fmt: skip
         return {
             "time": self.time, "rotation": self.rotation, "angular_velocity": self.angular_velocity,
             "ground_acceleration": self.ground_acceleration,

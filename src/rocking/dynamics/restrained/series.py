@@ -15,7 +15,7 @@ Poly = list[float]
 
 @dataclass(frozen=True, slots=True)
 class Equation:
-    """Constants of the equation of motion about one foot (Eq. 363)."""
+    """Constants of the equation of motion about one foot."""
 
     side: int
     alpha: float  # [rad]
@@ -52,7 +52,7 @@ class RestraintSeries:
             else:
                 slope.append(lever.radius * half[k])
                 self._extend_elongation(k, theta)
-            moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 364
+            moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 346
         self.rate.append(sum((j + 1) * theta[j + 1] * slope[k - j] for j in range(k + 1)))
         if law.coefficient and self.is_viscous:
             self._extend_viscous(k, h)
@@ -60,7 +60,7 @@ class RestraintSeries:
         return moment
 
     def _extend_slope(self, k: int, along: float, theta: float) -> None:
-        """Divide the arm by the distance, L G = B sin theta - C cos theta (Eq. 362)."""
+        """Divide the arm by the distance, L G = B sin theta - C cos theta."""
         e, lever = self.elongation, self.lever
         if k == 0:
             e.append(lever.elongation(theta))
@@ -74,7 +74,7 @@ class RestraintSeries:
         self.elongation.append(self.rate[k - 1] / k if k else self.lever.elongation(theta[0]))
 
     def _extend_viscous(self, k: int, h: float) -> None:
-        """Extend c |e'|^a sgn e' by its differential equation (Eq. 365)."""
+        """Extend c |e'|^a sgn e' by its differential equation."""
         law, rate, root = self.law, self.rate, self.root
         if law.exponent == 1.0:
             self.viscous.append(law.coefficient * rate[k] / h)
@@ -84,7 +84,7 @@ class RestraintSeries:
             root.append(abs(rate[0] / h) ** a)
         else:
             total = sum((a * j - (k - j)) * rate[j] * root[k - j] for j in range(1, k + 1))
-            root.append(total / (k * rate[0]))
+            root.append(total / (k * rate[0]))  # Eq. 347
         self.viscous.append(math.copysign(law.coefficient, rate[0]) * root[k])
 
 
@@ -123,10 +123,10 @@ def series(  # noqa: PLR0917 - the state and the ground in the order of the equa
             falls.append(top_sine * cosines[k] - top_cosine * sines[k])
             arms.append(top_cosine * cosines[k] + top_sine * sines[k])
         moment = sum(map(mul, weight, falls[k::-1])) + sum(map(mul, push, arms[k::-1]))
-        acceleration = -equation.p**2 * moment
+        acceleration = -(equation.p**2) * moment
         for item in restraints:
             acceleration -= item.moments(k, terms, sines, cosines, half, h) / equation.inertia
-        terms.append(h2 * acceleration / ((k + 1) * (k + 2)))  # Eq. 363
+        terms.append(h2 * acceleration / ((k + 1) * (k + 2)))  # Eq. 345
         small = small + 1 if abs(terms[-1]) <= floor and k >= len(push) + len(weight) else 0
         if small == 3 and ends_early:
             break
