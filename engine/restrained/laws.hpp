@@ -132,14 +132,14 @@ struct Lever {
         return linear ? at_rest * rotation : elongation(std::sin(0.5 * rotation), std::cos(0.5 * rotation));
     }
     double elongation(double s, double c) const {  // of half the rotation
-        if (length == 0.0) return 2.0 * radius * s;  // Eq. 343
+        if (length == 0.0) return 2.0 * radius * s;  // Eq. 344
         const double change = 4.0 * s * (along * s - across * c);
-        return change / (length + std::sqrt(length * length + change));  // Eq. 342
+        return change / (length + std::sqrt(length * length + change));  // Eq. 343
     }
     double slope(double rotation) const {
         if (linear) return at_rest;
         if (length == 0.0) return radius * std::cos(0.5 * rotation);
-        return (along * std::sin(rotation) - across * std::cos(rotation)) / (length + elongation(rotation));  // Eq. 344
+        return (along * std::sin(rotation) - across * std::cos(rotation)) / (length + elongation(rotation));  // Eq. 345
     }
 };
 

@@ -64,7 +64,7 @@ class Library {
             for (std::int64_t from; (from = next.fetch_add(kChunk)) < rows;)
                 for (std::int64_t row = from; row < std::min(from + kChunk, rows); ++row) {
                     std::vector<Device> devices = devices_of(laws, c + row * kChoices, set);
-                    const Result r = one(v + row * kNumbers, c + row * kChoices, set, devices, nullptr, nullptr);
+                    const Result r = followed(v + row * kNumbers, c + row * kChoices, set, devices, nullptr, nullptr);
                     write(r, out + row * kResults, integers + row * kCounts);
                     for (std::size_t i = 0; i < devices.size(); ++i) describe(devices[i], r, device_out + (first[row] + i) * kOfRestraint);
                 }
@@ -89,7 +89,7 @@ class Library {
         double* s = samples.data();
         Trace out{s, s + count, s + 2 * count, elongation.data(), force.data(), restraint_work.data(), {}, {}, {}};
         std::int64_t written = 0;
-        const Result r = one(numbers.data(), c, set, devices, &out, &written);
+        const Result r = followed(numbers.data(), c, set, devices, &out, &written);
         double values[kResults];
         std::int64_t counts[kCounts];
         write(r, values, counts);
@@ -119,7 +119,7 @@ class Library {
         for (std::int64_t i = 0; i < c[3]; ++i) devices.emplace_back(laws + (c[2] + i) * kRestraint, set.linear);
         return devices;
     }
-    Result one(const double* v, const std::int64_t* c, const Settings& set, std::vector<Device>& devices, Trace* trace, std::int64_t* written) const {
+    Result followed(const double* v, const std::int64_t* c, const Settings& set, std::vector<Device>& devices, Trace* trace, std::int64_t* written) const {
         for (int k = 0; k < kNumbers; ++k)
             if (!(std::fabs(v[k]) <= 1e30)) return {};
         Body b;

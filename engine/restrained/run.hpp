@@ -24,7 +24,7 @@ struct Result {
     double peak_rotation = 0.0, peak_time = 0.0, peak_velocity = 0.0, overturning_time = kNan, first_uplift = kNan, residual_rotation = 0.0;
 };
 
-// What a single history writes: samples, and events as rows (kind, time, side or restraint, 4 numbers).
+// Output of a single history: samples, and events as rows (kind, time, side or restraint, 4 numbers).
 struct Trace {
     double *rotation, *velocity, *work, *elongation, *force, *restraint_work;  // one row per sample
     std::vector<double> body, restraints, peaks;
@@ -65,7 +65,7 @@ class Run {
         if (upright && std::fabs(rate_) <= kNothing * q().p * q().alpha) {
             theta_ = rate_ = 0.0;
             sample();
-            return rest();
+            return stay();
         }
         sample();
         ++r_.uplifts, r_.first_uplift = 0.0;
@@ -193,7 +193,7 @@ class Run {
             for (int j = 0; j < terms && j <= k; ++j, power *= x) force[k] += power * (push[j] * cosines[k - j] + (weight[j] - (j ? 0.0 : 1.0)) * sines[k - j]);
         }
         for (int k = 0; k + 1 < n; ++k) total += product(force, rates, k) / (k + 1);
-        work_ -= b_.sides[at()].unit * total;  // Eq. 350
+        work_ -= b_.sides[at()].unit * total;  // Eq. 351
     }
 
     // Leaves or reaches a turning point without the damper, whose power has no series there.
@@ -244,7 +244,7 @@ class Run {
             note(kRest, 0.0, 0.0, 0.0);
             rate_ = 0.0;
             for (Device& d : d_) d.rate = 0.0;
-            return rest();
+            return stay();
         }
         head(side_);
     }
@@ -300,7 +300,7 @@ class Run {
         }
     }
 
-    void rest() {
+    void stay() {
         if (done_) return;
         const Holding held = holding();
         const std::int64_t last = std::min(m_.count, count_);
@@ -342,7 +342,7 @@ class Run {
                 const double arm = d.levers[k].at_rest;
                 moment += d.law.slip_force != 0.0 ? d.law.slip_force * std::fabs(arm) : (k ? -1.0 : 1.0) * arm * d.law.phase.force(0.0);
             }
-            held.more[k] = moment / b_.sides[k].unit;  // Eq. 352
+            held.more[k] = moment / b_.sides[k].unit;  // Eq. 353
             held.sine[k] = set_.linear ? b_.sides[k].alpha : std::sin(b_.sides[k].alpha);
             held.cosine[k] = set_.linear ? 1.0 : std::cos(b_.sides[k].alpha);
         }
@@ -384,8 +384,8 @@ class Run {
 
     void move(double tau) {
         while (tau >= kEnd && !done_) {
-            const std::int64_t whole = longest() > 1.0 ? static_cast<std::int64_t>(tau + (1.0 - kEnd)) : 1;
-            stretch_ += whole, tau = std::max(tau - static_cast<double>(whole), 0.0), tau_ = 0.0;
+            const std::int64_t stretches = longest() > 1.0 ? static_cast<std::int64_t>(tau + (1.0 - kEnd)) : 1;
+            stretch_ += stretches, tau = std::max(tau - static_cast<double>(stretches), 0.0), tau_ = 0.0;
             if (tau < 1.0 - kEnd) tau = 0.0;
             if (stretch_ <= count_) sample();
             if (stretch_ == count_ && end_ == count_) finish();

@@ -65,7 +65,7 @@ class Series {
             for (int j = 0; j < terms && j <= k; ++j) moment += weight[j] * falls_[k - j] + push[j] * arms_[k - j];
             double acceleration = -p2 * moment;
             for (int i = 0; i < count; ++i) acceleration -= per_inertia * moment_of(k, devices[i].law, devices[i].levers[at], items[i], steps, h);
-            theta[k + 2] = h2 * acceleration / ((k + 1) * (k + 2));  // Eq. 345
+            theta[k + 2] = h2 * acceleration / ((k + 1) * (k + 2));  // Eq. 346
             n = k + 3;
             if (ends_early && k >= terms && std::fabs(theta[k + 2]) <= floor && std::fabs(theta[k + 1]) <= 100.0 * floor) {
                 ended = true;
@@ -98,11 +98,11 @@ class Series {
             if (lever.length != 0.0) {
                 double past = 0.0;
                 for (int j = 1; j <= k; ++j) past += t.elongation[j] * t.slope[k - j];
-                t.slope[k] = (along - past) / (lever.length + t.elongation[0]);  // Eq. 344
+                t.slope[k] = (along - past) / (lever.length + t.elongation[0]);  // Eq. 345
             } else {
                 t.slope[k] = lever.radius * half_[k];
             }
-            moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 346
+            moment = (phase.constant - phase.stiffness * lever.length) * t.slope[k] + phase.stiffness * along;  // Eq. 347
         }
         t.rate[k] = product(steps, t.slope, k);
         if (law.coefficient == 0.0 || !t.is_viscous) return moment;
@@ -114,7 +114,7 @@ class Series {
             } else {
                 double total = 0.0;
                 for (int j = 1; j <= k; ++j) total += (law.exponent * j - (k - j)) * t.rate[j] * t.root[k - j];
-                t.root[k] = total / (k * t.rate[0]);  // Eq. 347
+                t.root[k] = total / (k * t.rate[0]);  // Eq. 348
             }
             t.viscous[k] = std::copysign(law.coefficient, t.rate[0]) * t.root[k];
         }

@@ -38,15 +38,15 @@ inline int zeros(const double* c, int n, double* x) {
     double d[kTop], stops[kTop];
     for (int k = 1; k < n; ++k) d[k - 1] = k * c[k];
     stops[0] = 0.0;
-    int count = 1 + zeros(d, n - 1, stops + 1), found = 0;
+    int count = 1 + zeros(d, n - 1, stops + 1), total = 0;
     stops[count++] = 1.0 + 1e-9;
     bool below = value_at(c, n, 0.0) < 0.0;
     for (int k = 1; k < count; ++k) {
         const bool next = value_at(c, n, stops[k]) < 0.0;
-        if (next != below) x[found++] = zero_between(c, d, n, stops[k - 1], stops[k]);
+        if (next != below) x[total++] = zero_between(c, d, n, stops[k - 1], stops[k]);
         below = next;
     }
-    return found;
+    return total;
 }
 
 // A zero at the start is a touch; after a release only rounding can be negative there. 2 if there is none.

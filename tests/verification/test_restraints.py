@@ -19,7 +19,7 @@ from rocking.dynamics.restrained.levers import Lever
 from rocking.dynamics.restrained.reference import RestrainedReference
 from rocking.dynamics.restrained.settings import RestrainedSettings
 
-pytestmark = pytest.mark.verifies(room="rocking with restraints")
+pytestmark = pytest.mark.verifies(room="rocking in the plane")
 
 G = 9.81
 WALL = rk.Block(width=1.0, height=6.0, mass=4000.0)
@@ -167,10 +167,11 @@ def respond(case, engine, **options):
 ENGINES = ("reference", "fast")
 
 
-@pytest.mark.verifies("reference values", "independent code, two routes", within="1e-10")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.verifies("computed anew", "two independent programs", within="2e-10", control="test_a_wrong_lever_is_seen")
 def test_independent_values(name, engine):
+    """Impacts, peaks, events of restraints and plastic elongations are those of independent code."""
     case = CASES[name]
     response = respond(case, engine)
     run = response.trajectory
@@ -208,8 +209,8 @@ class Watched(RestrainedReference):
         self.totals = [*getattr(self, "totals", []), (self.now, self.work, *(d.work for d in self.devices))]
 
 
-@pytest.mark.verifies("energy", "independent code, two routes", within="1e-9")
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.energy and name not in {"1H3", "2H1"}])
+@pytest.mark.verifies("computed anew", "two independent programs", within="1e-9")
 def test_independent_energy(name):
     """Input, losses and work of restraints up to the last event of the case (of two cases no peak and no impact)."""
     case = CASES[name]
@@ -233,11 +234,13 @@ def test_independent_energy(name):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.verifies("invariant", "energy", within="1e-12")
 def test_energy_closes(name, engine):
     """Work of the ground = kinetic + potential + restraints + impacts, at every sample."""
     assert respond(CASES[name], engine).energy_closure < 1e-12
 
 
+@pytest.mark.verifies("negative control")
 def test_a_wrong_lever_is_seen():
     """Negative control: a tendon 1 mm off the axis misses the values."""
     case = CASES["1H1"]
@@ -254,9 +257,10 @@ PERIODS = [  # P0/mg, k b^2/(m g h), phi0; full period, next peak over alpha (ph
 ]
 
 
-@pytest.mark.verifies("periods with a tendon", "40-digit quadrature", within="1e-12")
 @pytest.mark.parametrize(("prestress", "stiffness", "phi", "period", "peak"), PERIODS)
+@pytest.mark.verifies("computed anew", "40-digit quadrature", within="1e-12")
 def test_periods_with_a_tendon(prestress, stiffness, phi, period, peak):
+    """Quarter period and next peak in free rocking with a tendon in the axis."""
     block = rk.Block(width=1.0, height=4.0, mass=1.0)
     item = rk.Tendon(x=0.5, prestress=prestress * G, stiffness=stiffness * G * 2.0 / 0.25)
     alpha = block.slenderness_angle
@@ -270,6 +274,7 @@ def test_periods_with_a_tendon(prestress, stiffness, phi, period, peak):
     assert second > first
 
 
+@pytest.mark.verifies("closed form", "a sine between impacts", within="1e-13")
 def test_slender_positive_stiffness_is_a_sine():
     """kappa = 4: T/4 = acos(q / (phi0 + q)) / w, with q = 1/3, w = sqrt 3 in units of 1/p (physics.md 9.1)."""
     block = rk.Block(width=1.0, height=4.0, mass=1.0)
@@ -283,9 +288,9 @@ def test_slender_positive_stiffness_is_a_sine():
     assert p * response.impacts["time"][0] == pytest.approx(0.669310320263978928607, rel=1e-13)
 
 
-@pytest.mark.verifies("limits", "rocking without restraints", within="1e-12")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("body", [WALL, SKEW], ids=["wall", "asymmetric"])
+@pytest.mark.verifies("second engine", "the engine without restraints", within="1e-12")
 def test_without_force_nothing_changes(body, engine):
     """A tendon of no stiffness, a damper of no coefficient, friction of no force: the response of the body alone."""
     items = [
@@ -309,8 +314,8 @@ def record(seed=1, count=400, strength=4.0):
     return rk.GroundMotion(strength * smooth / np.abs(smooth).max(), 0.01)
 
 
-@pytest.mark.verifies("limits", "a linear spring", within="1e-12")
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("invariant", "a linear spring", within="1e-12")
 def test_a_fuse_that_never_yields_is_a_spring(engine):
     options = {"restitution": 0.93, "gravity": G, "duration": 4.0, "engine": engine}
     position = {"x": 0.3, "length": 0.5, "stiffness": 1e5}
@@ -322,6 +327,7 @@ def test_a_fuse_that_never_yields_is_a_spring(engine):
     assert fuse.peak_rotation > 1e-3
 
 
+@pytest.mark.verifies("closed form", "the first order of the rotation", within="0.1")
 def test_linear_option_is_the_limit_of_small_rotations():
     """The difference of linear and exact elongation falls with the rotation; at 0.1 rad it is seen."""
     item = rk.Spring(ground=(-2.0, 4.0), point=(0.0, 4.0), stiffness=1.0)
@@ -331,12 +337,12 @@ def test_linear_option_is_the_limit_of_small_rotations():
     assert gaps[2] / gaps[1] == pytest.approx(1e-2, rel=0.1)  # of first order in the rotation
 
 
-@pytest.mark.verifies("elongation", "40-digit distances", within="1e-14")
 @pytest.mark.parametrize(
     ("ground", "point"),
     [((0.3, -0.5), (0.3, 0.0)), ((0.5, 0.0), (0.5, 0.0)), ((-2.0, 4.0), (0.0, 4.0)), ((2.0, 0.0), (1.0, 5.0))],
 )
 @pytest.mark.parametrize("theta", [1e-9, -1e-9, 1e-3, -0.2, 1.2])
+@pytest.mark.verifies("computed anew", "40-digit distances", within="1e-14")
 def test_elongation_is_the_change_of_the_distance(ground, point, theta):
     """Also for a duct mouth on its anchor, which has no direction at zero elongation."""
     mp.mp.dps = 40
@@ -361,6 +367,7 @@ def test_elongation_is_the_change_of_the_distance(ground, point, theta):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("behaviour")
 def test_fuses_outside_the_base_are_compressed_and_unload_at_the_peak(engine):
     """A bar beyond the foot shortens while the body opens about it, yields, and is elastic from the peak on."""
     fuse = rk.Fuse(x=1.6, length=0.5, stiffness=4e6, yield_force=6e3, hardening=0.02)
@@ -378,6 +385,7 @@ def test_fuses_outside_the_base_are_compressed_and_unload_at_the_peak(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("behaviour")
 def test_without_hardening_reverse_yield_coincides_with_the_impact(engine):
     """At every closing the fuse is at -Fy to rounding; after the impact it opens elastically from there."""
     fuse = rk.Fuse(x=0.5, length=0.5, stiffness=2e6, yield_force=8e3)
@@ -393,6 +401,7 @@ def test_without_hardening_reverse_yield_coincides_with_the_impact(engine):
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("exponent", [0.3, 0.5, 1.5])
+@pytest.mark.verifies("invariant", "energy, and another tolerance", within="1e-11")
 def test_powers_of_dampers_near_a_peak(exponent, engine):
     """Energy closes with the singular acceleration at every peak, with equal results for another tolerance."""
     damper = pair(rk.ViscousDamper, coefficient=3e3, exponent=exponent)
@@ -404,6 +413,7 @@ def test_powers_of_dampers_near_a_peak(exponent, engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("behaviour")
 def test_friction_holds_the_body_for_good(engine):
     """Beyond m g b / (sum of arms) the body stays at its first peak; below, it returns."""
     limit = BLOCK.mass * G * 0.5  # one damper at the middle has the arm b, as gravity has
@@ -422,6 +432,7 @@ def test_friction_holds_the_body_for_good(engine):
 
 @pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")  # a damper stronger than the weight
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("closed form", "equilibrium of moments", within="1e-10")
 def test_friction_releases_the_body_when_the_ground_moves(engine):
     """The held body starts again when the ground acceleration exceeds the closed form."""
     force, theta, alpha = 20e3, 0.05, BLOCK.slenderness_angle
@@ -440,6 +451,7 @@ def test_friction_releases_the_body_when_the_ground_moves(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.verifies("closed form", "equilibrium of moments", within="1e-9")
 def test_prestress_delays_uplift_and_the_residual_prestress_decides_rest(engine):
     """Uplift at (g + P0 / m) b / h; after yielding the residual prestress P0 - k ep takes the place of P0."""
     ramp = rk.GroundMotion(np.linspace(0.0, 4.0, 401), 0.01)
@@ -458,6 +470,7 @@ def test_prestress_delays_uplift_and_the_residual_prestress_decides_rest(engine)
     assert 2.5 / 9.99 * lift == pytest.approx((G + residual / 4000.0) / 6.0, rel=1e-9)
 
 
+@pytest.mark.verifies("closed form", "Housner's coefficient", within="1e-14")
 def test_restitution_is_that_of_the_body():
     """Finite forces give no impulse: the coefficient does not depend on the restraints (Dimitrakopoulos & DeJong)."""
     response = respond(CASES["1H1"], "reference")
@@ -466,6 +479,7 @@ def test_restitution_is_that_of_the_body():
     assert np.allclose(ratio, expected, rtol=1e-14)
 
 
+@pytest.mark.verifies("behaviour")
 def test_gap_hook_and_buffer():
     """A hook acts beyond its gap in tension only, a buffer in compression only; the pushover shows both."""
     position = {"ground": (-2.0, 6.0), "point": (0.0, 6.0), "stiffness": 1e6, "gap": 0.05}
@@ -478,6 +492,7 @@ def test_gap_hook_and_buffer():
     assert buffer.force[:, 0] == pytest.approx([0.0, 1e6 * (e[1] + 0.05), 0.0])
 
 
+@pytest.mark.verifies("closed form", "the area of the loop", within="1e-12")
 def test_pushover_of_a_fuse_dissipates_its_loop():
     """The energy of a cycle is the area of the loop, and the moment at yield is in closed form."""
     item = rk.Fuse(x=0.5, length=0.5, stiffness=2e6, yield_force=8e3)
@@ -489,6 +504,7 @@ def test_pushover_of_a_fuse_dissipates_its_loop():
     assert curve.restraint_work[-1, 0] == pytest.approx(area, rel=1e-3)  # a polygon of 200 points
 
 
+@pytest.mark.verifies("behaviour")
 def test_bodies_on_files_and_many(tmp_path):
     """A body file with [[restraint]] gives the same body; many histories give the results of each."""
     from rocking.bodies.formats.body_file import body_to_toml
@@ -506,7 +522,9 @@ def test_bodies_on_files_and_many(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["1H2", "2H1", "3H2"])
+@pytest.mark.verifies("behaviour")
 def test_answers_name_all_quantities(name):
+    """All keys of an answer with restraints are named quantities."""
     from rocking.quantities import is_named
 
     answer = respond(CASES[name], "reference").answer()
@@ -515,6 +533,7 @@ def test_answers_name_all_quantities(name):
     assert np.isfinite(answer["largest_base_shear"])
 
 
+@pytest.mark.verifies("closed form", "weight and prestress", within="1e-14")
 def test_forces_of_the_ground_balance():
     """At rest the ground carries weight and prestress; the least force is then above the weight."""
     body = rk.Restrained(WALL, tendon(stiffness=500e3))

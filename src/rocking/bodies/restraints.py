@@ -105,6 +105,8 @@ class Tendon(Restraint):
 
     Parameters
     ----------
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
     stiffness : float, optional
         k [N/m]; or state `area`, `modulus` and `free_length`.
     area : float, optional
@@ -123,8 +125,6 @@ class Tendon(Restraint):
         Stiffness after yielding over k [-].
     rupture_elongation : float
         Elongation from the prestressed upright state at which the tendon breaks [m].
-    x, length, ground, point, name
-        Position and name, as for `Restraint`.
 
     Raises
     ------
@@ -189,12 +189,12 @@ class ViscousDamper(Restraint):
 
     Parameters
     ----------
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
     coefficient : float
         c [N (s/m)^a].
     exponent : float
         a, from 0.05 to 5 [-]; 1 for a linear damper.
-    x, length, ground, point, name
-        Position and name, as for `Restraint`.
 
     Raises
     ------
@@ -230,10 +230,10 @@ class FrictionDamper(Restraint):
 
     Parameters
     ----------
-    slip_force : float
-        Fs [N].
     x, length, ground, point, name
         Position and name, as for `Restraint`.
+    slip_force : float
+        Fs [N].
 
     Raises
     ------
@@ -270,6 +270,8 @@ class Fuse(Restraint):
 
     Parameters
     ----------
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
     stiffness : float
         k [N/m].
     yield_force : float
@@ -280,8 +282,6 @@ class Fuse(Restraint):
         Elongation, and shortening unless `tension_only`, at which the fuse breaks [m].
     tension_only : bool
         True for a slender bar, which buckles without force.
-    x, length, ground, point, name
-        Position and name, as for `Restraint`.
 
     Raises
     ------
@@ -326,14 +326,14 @@ class Spring(Restraint):
 
     Parameters
     ----------
+    x, length, ground, point, name
+        Position and name, as for `Restraint`.
     stiffness : float
         k [N/m].
     gap : float
         Elongation and shortening without force [m].
     action : {"both", "tension", "compression"}
         Direction of the force: a hook acts in tension, a buffer in compression.
-    x, length, ground, point, name
-        Position and name, as for `Restraint`.
 
     Raises
     ------

@@ -50,7 +50,7 @@ _PIECE = 1 << 14
 
 
 @dataclass(frozen=True)
-class History:
+class RestrainedHistory:
     """Inputs of one history."""
 
     body: Restrained
@@ -122,7 +122,7 @@ def run(
 
 
 def run_rows(
-    histories: Sequence[History],
+    histories: Sequence[RestrainedHistory],
     segments: Sequence[Segments],
     settings: RestrainedSettings,
     *,
@@ -160,7 +160,7 @@ def run_rows(
 
 def _run_piece(  # noqa: PLR0917 - tables of inputs and results
     library: Any,
-    histories: Sequence[History],
+    histories: Sequence[RestrainedHistory],
     segments: Sequence[Segments],
     settings: RestrainedSettings,
     threads: int,
@@ -244,7 +244,7 @@ def _restore(device: Device, state: tuple[Any, ...]) -> None:
     device.largest_force, device.smallest_force, device.largest_elongation, device.smallest_elongation = extremes
 
 
-def _followed(history: History, motion: Segments, settings: RestrainedSettings) -> RestrainedTrajectory:
+def _followed(history: RestrainedHistory, motion: Segments, settings: RestrainedSettings) -> RestrainedTrajectory:
     """Return one history of many by the reference engine."""
     count = max(1, math.ceil(history.length / motion.step - 1e-9))
     return run(

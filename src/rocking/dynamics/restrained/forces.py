@@ -113,4 +113,4 @@ def direction_of(
     if length > 1e-6 * math.hypot(d_x, d_z) or math.hypot(ground_x - point_x, ground_z - point_z):
         return (x / length, z / length) if length else (0.0, 0.0)
     sign = -math.copysign(1.0, d_x * side) if d_x else 0.0  # coincident points: half the angle
-    return sign * math.sin(0.5 * rotation), sign * math.cos(0.5 * rotation)  # Eq. 353
+    return sign * math.sin(0.5 * rotation), sign * math.cos(0.5 * rotation)  # Eq. 354

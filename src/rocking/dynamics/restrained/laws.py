@@ -75,7 +75,7 @@ class ForceLaw(ABC):
 
 
 class Bilinear(ForceLaw):
-    """Elastic, plastic with kinematic hardening; in compression symmetric or slack; until rupture."""
+    """Elastic or plastic with kinematic hardening, symmetric or slack in compression, until rupture."""
 
     def __init__(
         self, stiffness: float, prestress: float, limit: float, ratio: float, rupture: float, symmetric: bool
@@ -86,8 +86,8 @@ class Bilinear(ForceLaw):
         self.phase = self._elastic()
 
     def _bounded(self, name: str, constant: float, stiffness: float, low: float, high: float, direction: int) -> Phase:
-        least = -self.rupture if self.symmetric else -_INF
-        return Phase(name, constant, stiffness, max(low, least), min(high, self.rupture), direction)
+        lowest = -self.rupture if self.symmetric else -_INF
+        return Phase(name, constant, stiffness, max(low, lowest), min(high, self.rupture), direction)
 
     def _at(self, force: float) -> float:
         """Return the elongation of the elastic phase at a force [m]."""
@@ -104,7 +104,7 @@ class Bilinear(ForceLaw):
     def _flowing(self, sign: int) -> Phase:
         total = self.stiffness + self.hardening
         constant = sign * self.limit + self.hardening * (self.prestress - sign * self.limit) / total
-        slope = self.stiffness * self.hardening / total  # Eq. 348
+        slope = self.stiffness * self.hardening / total  # Eq. 349
         name = "yields in tension" if sign > 0 else "yields in compression"
         return self._bounded(name, constant, slope, -_INF, _INF, sign)
 
@@ -117,7 +117,7 @@ class Bilinear(ForceLaw):
         """Update the plastic elongation of a plastic phase."""
         if sign := self.phase.direction:
             total = self.stiffness + self.hardening
-            self.plastic = (self.prestress + self.stiffness * elongation - sign * self.limit) / total  # Eq. 349
+            self.plastic = (self.prestress + self.stiffness * elongation - sign * self.limit) / total  # Eq. 350
 
     def settle(self, elongation: float, direction: int) -> None:
         if self.phase.direction * direction < 0:

@@ -49,9 +49,9 @@ class Lever:
             return self.at_rest * rotation
         sine, cosine = math.sin(0.5 * rotation), math.cos(0.5 * rotation)
         if not self.length:
-            return 2.0 * self.radius * sine  # Eq. 343
+            return 2.0 * self.radius * sine  # Eq. 344
         change = 4.0 * sine * (self.along * sine - self.across * cosine)
-        return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 342
+        return change / (self.length + math.sqrt(self.length**2 + change))  # Eq. 343
 
     def slope(self, rotation: float) -> float:
         """Return de/dtheta [m]."""
@@ -60,4 +60,4 @@ class Lever:
         if not self.length:
             return self.radius * math.cos(0.5 * rotation)
         along = self.along * math.sin(rotation) - self.across * math.cos(rotation)
-        return along / (self.length + self.elongation(rotation))  # Eq. 344
+        return along / (self.length + self.elongation(rotation))  # Eq. 345

@@ -8,12 +8,12 @@ from rocking import checks, quantities
 from rocking.bodies.restrained import Restrained
 from rocking.conventions import FloatArray
 from rocking.dynamics.combined import dataset_of, label_of, plane_inputs
-from rocking.dynamics.plane_frictional.base import Start, rocking_start
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.mechanics_base import Combinations
 from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane_frictional.base import Start, rocking_start
 from rocking.dynamics.response import start_within
-from rocking.dynamics.restrained.engines import RESTRAINT_RESULTS, RESULTS, History, run_rows
+from rocking.dynamics.restrained.engines import RESTRAINT_RESULTS, RESULTS, RestrainedHistory, run_rows
 from rocking.dynamics.restrained.settings import RestrainedSettings
 from rocking.dynamics.settings import thread_count
 from rocking.errors import InvalidValueError
@@ -50,7 +50,9 @@ def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "
         parameters = table[body][choice]
         slow = min(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
         length = cases.duration or motions[motion].duration + _AFTER / slow
-        histories.append(History(bodies[body], parameters, motion, states[start], float(scales[scale]), length))
+        histories.append(
+            RestrainedHistory(bodies[body], parameters, motion, states[start], float(scales[scale]), length)
+        )
     segments = [motion.segments() for motion in motions]
     engine, results, restraints = run_rows(
         histories, segments, settings, engine=cases.engine, threads=thread_count(cases.threads), progress=cases.progress

@@ -134,7 +134,7 @@ def pushover(
         elongation[k], force[k] = [device.elongation for device in devices], [device.force() for device in devices]
         work[k] = [device.work for device in devices]
         held = sum(f * device.levers[side].slope(angle) for f, device in zip(force[k], devices, strict=True))
-        moment[k] = half.mass * gravity * half.semi_diagonal * sine + held  # Eq. 354
+        moment[k] = half.mass * gravity * half.semi_diagonal * sine + held  # Eq. 355
         acceleration[k] = -moment[k] / (half.mass * half.semi_diagonal * cosine)
         before = angle
     dissipated = np.array([device.dissipated for device in devices])

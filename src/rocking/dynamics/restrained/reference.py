@@ -41,8 +41,8 @@ class _Next(NamedTuple):
 class RestrainedTrajectory:
     """A history at the ends of all stretches of the motion, with its events."""
 
-    rotation: FloatArray  # theta [rad], theta' [rad/s]; after overturning NaN; shape (stretches + 1,)
-    angular_velocity: FloatArray
+    rotation: FloatArray  # theta [rad], NaN after overturning; shape (stretches + 1,)
+    angular_velocity: FloatArray  # theta' [rad/s]
     elongation: FloatArray  # [m]; shape (stretches + 1, restraints)
     force: FloatArray  # [N]
     restraint_work: FloatArray  # done on restraints since the start [J]
@@ -225,7 +225,7 @@ class RestrainedReference:
         sines, cosines = (to_top, [1.0]) if equation.linear else _sine_cosine(to_top)
         lift = [weight[0] - 1.0, *weight[1:]]
         power = _product(_sum(_product(push, cosines), _product(lift, sines)), rates)
-        self.work -= unit * _integral(power)  # Eq. 350
+        self.work -= unit * _integral(power)  # Eq. 351
         for device, item in zip(self.devices, items, strict=True):
             if item.viscous:
                 device.work += x * _integral(_product(_scaled(item.viscous, x), _scaled(item.rate, x)))
@@ -245,7 +245,7 @@ class RestrainedReference:
         else:
             speed = 1.01 * _SINGULAR * self.equation.p * self.equation.alpha * h
             root = abs(second) + math.sqrt(second**2 + 3.0 * abs(third) * speed)
-            x = min(1.0, speed / root) if root else 1.0  # Eq. 355
+            x = min(1.0, speed / root) if root else 1.0  # Eq. 356
         self.theta, self.rate = value(terms, x), 0.0 if reaches else slope(terms, x) / h
         self._carry(None)
         self._move(self.tau + x * width)
@@ -321,7 +321,7 @@ class RestrainedReference:
         acceleration, limit = self._acceleration_at(self.stretch, self.tau), self._friction()
         if abs(acceleration) > limit:
             return self._head(1 if acceleration > 0.0 else -1)
-        return self._hold(limit)  # Eq. 351
+        return self._hold(limit)  # Eq. 352
 
     def _hold(self, limit: float) -> None:
         """Stay at a rotation until the moment exceeds friction."""
@@ -372,7 +372,7 @@ class RestrainedReference:
         for side in (1, -1):
             half = self.parameters.side(side)
             unit = self.mass * self.settings.gravity * half.semi_diagonal
-            more[side] = moment_at_rest(self.devices, side) / unit  # Eq. 352
+            more[side] = moment_at_rest(self.devices, side) / unit  # Eq. 353
         if self._ground is None or self._ground.more != more:
             self._ground = RestoringMoments(self.parameters, self.push, linear=self.settings.linear, more=more)
         return self._ground

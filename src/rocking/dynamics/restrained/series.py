@@ -52,7 +52,7 @@ class RestraintSeries:
             else:
                 slope.append(lever.radius * half[k])
                 self._extend_elongation(k, theta)
-            moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 346
+            moment = (constant - stiffness * lever.length) * slope[k] + stiffness * along  # Eq. 347
         self.rate.append(sum((j + 1) * theta[j + 1] * slope[k - j] for j in range(k + 1)))
         if law.coefficient and self.is_viscous:
             self._extend_viscous(k, h)
@@ -84,7 +84,7 @@ class RestraintSeries:
             root.append(abs(rate[0] / h) ** a)
         else:
             total = sum((a * j - (k - j)) * rate[j] * root[k - j] for j in range(1, k + 1))
-            root.append(total / (k * rate[0]))  # Eq. 347
+            root.append(total / (k * rate[0]))  # Eq. 348
         self.viscous.append(math.copysign(law.coefficient, rate[0]) * root[k])
 
 
@@ -126,7 +126,7 @@ def series(  # noqa: PLR0917 - the state and the ground in the order of the equa
         acceleration = -(equation.p**2) * moment
         for item in restraints:
             acceleration -= item.moments(k, terms, sines, cosines, half, h) / equation.inertia
-        terms.append(h2 * acceleration / ((k + 1) * (k + 2)))  # Eq. 345
+        terms.append(h2 * acceleration / ((k + 1) * (k + 2)))  # Eq. 346
         small = small + 1 if abs(terms[-1]) <= floor and k >= len(push) + len(weight) else 0
         if small == 3 and ends_early:
             break
