@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test test-all speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions identification evidence-sets virtual-rocks bench mutants pelicun lock clean
+.PHONY: help demo test test-all speed docs oldest packages coverage portable portable-quick lint types messages golden engine campaign fuzz fuzz-web durability predictions shaking-tests identification evidence-sets virtual-rocks bench mutants pelicun lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -28,6 +28,7 @@ help:
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
 	@echo "make predictions  2000 bodies foreseen of which base, friction and restitution are hidden, and the scores (goes on where it stopped)"
+	@echo "make shaking-tests  predictions of shaking-table tests of real bodies that are present; the kept posteriors and scores"
 	@echo "make identification  10000 free rockings made up, heard with bounces and gaps, and how often intervals hold the truth (goes on where it stopped)"
 	@echo "make evidence-sets  1000 sets of measurements made up, and how often a left-out group lies within its interval (goes on where it stopped)"
 	@echo "make virtual-rocks  20 rocks foreseen from their scans, and what another program makes of them (goes on where it stopped)"
@@ -198,6 +199,9 @@ durability: $(VENV)/dev $(ENGINE)
 
 predictions: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m benchmarks.predictions
+
+shaking-tests: $(VENV)/dev $(ENGINE)
+	$(BIN)/python -m benchmarks.shaking_tests
 
 identification: $(VENV)/dev
 	$(BIN)/python -m benchmarks.identification

@@ -47,7 +47,7 @@ def foreseen(number: int, count: int, motions: int) -> dict[str, float]:
         truly, motion, coefficients, friction=friction, scale=sign, threads=1
     ).overturned.item()
     settings: dict[str, Any] = {"restitution": RESTITUTION, "base": (0.0, BASE * body.half_width), "centre": 1.0}
-    settings |= {"offset": 0.0, "level": 0.0}
+    settings |= {"offset": 0.0, "level": 0.0, "model_error": "off"}
     settings |= {"contributions": False, "seed": number, "threads": 1}
     predictions = [predict(body, motion, friction=mu, count=count, **settings) for mu in (FRICTION, TAKEN_FOR_KNOWN)]
     # a share of a finite sample is never quite certain

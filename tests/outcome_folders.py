@@ -9,7 +9,8 @@ from rocking.restitution._implied import energy_bound
 
 BODY = rk.Block(width=0.4, height=1.6)
 TOML = "[body]\nunits = 'm'\nwidth = 0.4\nheight = 1.6\n[predict]\nfriction = [0.1, 0.8]\ncount = 32\n"
-TOML += "restitution = { mean = 0.88, deviation = 0.04 }\nbase = [0.0, 0.02]\ncentre = 1.0\n[motion]\nunits = 'm/s2'\n"
+TOML += "restitution = { mean = 0.88, deviation = 0.04 }\nbase = [0.0, 0.02]\ncentre = 1.0\nmodel_error = 'off'\n"
+TOML += "[motion]\nunits = 'm/s2'\n"
 SCALES = (0.6, 1.0, 1.7)
 FEW = ("--set", "predict.count=16")
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -59,6 +60,47 @@ def _meaning(entry: object) -> str:
     return shown.replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;")
 
 
+class TestedBodies(SphinxDirective):
+    """The kept scores of predictions of shaking-table tests: `scores` or `reliability`."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return a table of the scores of all forecasts, or of the observed fractions."""
+        from rocking.decision.prediction.model_error import kept
+
+        return self.parse_text_to_nodes({"scores": _scores, "reliability": _reliability}[self.arguments[0]](kept()))
+
+
+def _scores(tests: dict[str, Any]) -> str:
+    heading = (
+        "forecast",
+        "Brier score",
+        "balanced accuracy at 0.5",
+        "Spiegelhalter's statistic",
+        "better than logistic",
+    )
+    rows = (
+        (name, _interval(item["brier"]), _interval(item["balanced_accuracy"]), f"{item['calibration']:.1f}",
+         _interval(item["better_than_logistic"]))
+        for name, item in tests["scores"].items()
+    )  # fmt: skip
+    return table(heading, rows)
+
+
+def _reliability(tests: dict[str, Any]) -> str:
+    rows = (
+        (f"{row['low']:.1f} to {row['high']:.1f}", str(row["count"]), f"{row['observed']:.2f}",
+         f"{row['observed_low']:.2f} to {row['observed_high']:.2f}")
+        for row in tests["reliability"]
+    )  # fmt: skip
+    return table(("predicted probability", "tests", "overturned", "95 % interval"), rows)
+
+
+def _interval(score: dict[str, float]) -> str:
+    return f"{score['value']:.3f} ({score['low']:.3f} to {score['high']:.3f})"
+
+
 def write(folder: Path) -> None:
     """Write the pages of the keys of input files and body files."""
     from rocking.spec.reference import reference
@@ -79,4 +121,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("builder-inited", lambda started: write(Path(started.srcdir) / "keys"))
     app.add_directive("record-formats", RecordFormats)
     app.add_directive("quantities", Quantities)
+    app.add_directive("tested-bodies", TestedBodies)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -696,14 +696,15 @@ _PARTS = """
     examples facets file file_unit files finding findings first_corner folder forced from growth hazard headline
     hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory islands judged_by
     label laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest
-    lowest_uplift mean messages method methods mirrored models motion motions_apart new not_assessed not_objects
-    not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning passed_over
+    lowest_uplift mean messages method methods mirrored model_error models motion motions_apart new not_assessed
+    not_objects not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning
+    passed_over
     passes plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies
     resolved restitution_drawn restraint_events restraint_laws restraints results
     rigid rings scores section sense sensitivity sentence sentences sets sides
     slow software solid source sources spacing spectrum stable stages standing starts_overturned
     starts_per_amplitude stated statement stored tables target target_spectrum test text threads title to too_sure
-    traces unit uplift_threshold values varied verdict vertical_component whole with_friction words x y
+    traces unit updated uplift_threshold values varied verdict vertical_component whole with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
 

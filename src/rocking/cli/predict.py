@@ -237,6 +237,7 @@ class AssessmentAnswer:
         result = self.result
         for text, style in zip(result.sentences[:3], ("bold", "bold", None), strict=True):
             page.line(text, style=style)
+        page.line(result.prediction.evidence)
         page.line()
         if self.details:
             self._show_details(page)

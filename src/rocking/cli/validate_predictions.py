@@ -38,6 +38,10 @@ def validate_predictions(
     restitution: options.MeasuredRestitution = None,
     friction: options.FrictionOfRange = None,
     units: options.Units = None,
+    update: Annotated[
+        Path | None,
+        typer.Option(help="Update the model error with the outcomes; write the .json file for predict.model_error."),
+    ] = None,
     sets: options.Set = None,
     threads: options.Threads = None,
     output: Annotated[list[str] | None, options.output(EXPORTS)] = None,
@@ -51,7 +55,9 @@ def validate_predictions(
     document, inputs = _document(context, files[0])
     problem = ValidationProblem.of(document, files, inputs)
     with bar("motions", len(problem.motions), quiet=as_json) as progress:
-        result = problem.answer(lambda done: progress(1), threads)
+        result = problem.answer(lambda done: progress(1), threads, update=update is not None)
+    if update is not None and result.updated is not None:
+        result.updated.error.save(update)
     deliver(ValidationAnswer(result), exports, as_json=as_json)
 
 
@@ -104,6 +110,12 @@ class ValidationAnswer:
             page.rows(({"forecast": name, **scores} for name, scores in answer["scores"].items()), _SCORES)
             page.line()
             page.rows(answer["reliability"], ("predicted", "observed", "count"))
+            page.line()
+        if self.result.updated is not None:
+            for line in self.result.updated.sentences:
+                page.line(line)
+            answer = self.result.updated.left_out.answer()
+            page.rows(({"forecast": name, **scores} for name, scores in answer["scores"].items()), _SCORES)
             page.line()
         page.line(NOTE)
         page.facts([("assumed", reason) for reason in self.result.prediction.assumed])

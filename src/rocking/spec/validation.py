@@ -11,11 +11,15 @@ import numpy as np
 from rocking.answers import Answer
 from rocking.bodies import Body, Solid
 from rocking.bodies.formats import FORMATS
+from rocking.conventions import FloatArray, IntArray
 from rocking.decision.prediction import Prediction, Validation, predict, score
+from rocking.decision.prediction._predict import sampled_bodies
 from rocking.decision.prediction._score import EVENTS, Outcomes, RefusedRow, Trial, column, is_outcomes
+from rocking.decision.prediction.model_error import ModelError, hierarchy, kept_bodies
+from rocking.decision.prediction.recalibration import WIDE, BodyTests, wide_samples
 from rocking.errors import InvalidValueError, RockingError, located
 from rocking.exported import Exported
-from rocking.messages import by_key
+from rocking.messages import Message, by_key
 from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pipeline import processed
@@ -84,6 +88,7 @@ class FolderValidation(Exported):
     ignored: tuple[str, ...]  # ignored columns of the table
     repairs: tuple[str, ...]  # of a scan
     scores: dict[str, Validation]  # by event, overturning first
+    updated: "Update | None" = None
 
     def answer(self) -> Answer:
         """Return all results."""
@@ -100,6 +105,7 @@ class FolderValidation(Exported):
             "not_read": [f"{self.source}, line {item.line}: {item.reason}" for item in self.refused],
             "ignored": self.ignored,
             "events": {event: item.answer() for event, item in self.scores.items()},
+            "updated": None if self.updated is None else self.updated.answer(),
         })  # fmt: skip
 
     def exported(self) -> "Table":
@@ -119,6 +125,30 @@ class FolderValidation(Exported):
             columns[name.replace(" ", "_")] = Column(values, "1", f"probability by the {name}")
         verdicts = {f"verdict_{event}": validation.verdict for event, validation in self.scores.items()}
         return Table("trial", columns, {"body": repr(self.prediction.body), **verdicts})
+
+
+@dataclass(frozen=True, eq=False)
+class Update:
+    """Model error of the body, updated by its tests, and scores with the tests of all other earthquakes only."""
+
+    error: ModelError
+    left_out: Validation
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Factors, their source, and the verdict on the left-out earthquakes."""
+        facts = {"factors": self.error.text, "source": self.error.source}
+        return (
+            Message("Updated model error: {factors} ({source}).", facts),
+            Message("Each earthquake from the tests of the others: {verdict}", {"verdict": self.left_out.verdict}),
+        )
+
+    def answer(self) -> Answer:
+        """Return the factors and the scores."""
+        return Answer({
+            "model_error": self.error.text, "source": self.error.source, "sentences": self.sentences,
+            "events": {"overturning": self.left_out.answer()},
+        })  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -160,9 +190,9 @@ class ValidationProblem:
         return cls(body, options, outcomes, tuple(trials), tuple(refused), clusters, motions, name)
 
     def answer(
-        self, progress: Callable[[int], None] | None = None, threads: int | None = None
+        self, progress: Callable[[int], None] | None = None, threads: int | None = None, *, update: bool = False
     ) -> FolderValidation:  # fmt: skip
-        """Predict every trial from the body alone, and score the predictions."""
+        """Predict every trial from the body alone, and score the predictions; update: also the model error."""
         motions = list(self.motions.values())
         prediction = predict(self.body, motions, **self.options, threads=threads, progress=progress)
         index_of_key = {key: k for k, key in enumerate(self.motions)}
@@ -195,7 +225,20 @@ class ValidationProblem:
             self.outcomes.ignored,
             repairs,
             scored,
+            self._updated(scored["overturning"], motion_index, pga, pgv, prediction, threads) if update else None,
         )
+
+    def _updated(
+        self, scored: Validation, motion_index: IntArray, pga: FloatArray, pgv: FloatArray, prediction: Prediction,
+        threads: int | None,
+    ) -> Update:  # fmt: skip
+        """Return the model error with the tests, and the scores of the left-out earthquakes."""
+        mechanics = sampled_bodies(self.body, list(self.motions.values()), self.options | {"model_error": WIDE})
+        logarithms, overturned = wide_samples(mechanics, prediction.count, prediction.seed, threads)
+        prior, names = hierarchy(kept_bodies(mechanics.kind)), np.array(self.clusters)
+        tests = BodyTests(logarithms[motion_index], overturned[motion_index], scored.outcome, names)
+        left_out = score(tests.left_out(prior), scored.outcome, names, pga=pga, pgv=pgv, seed=prediction.seed)
+        return Update(tests.error(prior), left_out)
 
 
 class _Records:
@@ -258,6 +301,7 @@ class _Records:
         if odd := sorted(set(self._keys) - {"units", "time_step", "process"}):
             raise InvalidValueError("[motion] accepts units, time_step and process with an array file, got {key}",
                                     key=odd[0])  # fmt: skip
+
         return doubted_once(lambda: processed(arrays.motion(word, self._keys), self._keys.get("process") or ()), word)  # type: ignore[no-any-return]
 
     def _file_and_component(self, word: str) -> dict[str, str]:

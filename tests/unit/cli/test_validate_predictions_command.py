@@ -66,6 +66,7 @@ def test_json_is_the_python_call(answered, copy):
     found = answered(copy, *FEW)
     record = rk.read_motion(copy / "record_0.txt", units="m/s2")
     options = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": {"mean": 0.88, "deviation": 0.04}}
+    options["model_error"] = "off"
     alone = rk.predict(
         BODY, [record.scaled(s) for s in (0.6, 1.0, 1.7)], **options, centre=1.0, count=16, contributions=False
     )

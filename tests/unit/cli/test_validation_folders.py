@@ -156,3 +156,16 @@ def test_times_with_an_offset_are_one(tmp_path):
     record = read_record(tmp_path / "log.csv")
     assert [component.time_step for component in record.components] == [0.01, 0.01]
     assert record.components[1].acceleration[:3].tolist() == [-2.0, -1.0, 0.0]
+
+
+def test_update_writes_the_model_error_of_the_body(answered, run, tmp_path):
+    """The file of --update is the input of predict; the earthquakes are scored without their own tests."""
+    folder, own = _array_folder(tmp_path, motions=8), tmp_path / "own.json"
+    result = answered(folder, "--set", "predict.count=16", "--update", str(own))["updated"]
+    assert result["events"]["overturning"]["outcomes"] == 16
+    assert "16 tests of this body" in result["source"]
+    prediction = rk.predict(BODY, rk.pulses.sine(4.0, 0.8), model_error=str(own), count=16)
+    assert prediction.inputs["model_error"] == result["model_error"]
+    code, out, _ = run(folder, "--set", "predict.count=16", "--update", str(own))
+    assert code == 0
+    assert "Updated model error: uplift acceleration times" in out

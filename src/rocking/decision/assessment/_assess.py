@@ -70,7 +70,7 @@ class SolidHistories:
         self.components = [Components(*components_of(motions[k])) for k in range(len(motions))]
         for components in self.components:
             ground_components(components)  # raises an error for other types
-        fixed = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "restitution": 0.0}
+        fixed = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "restitution": 0.0, "model_error": "off"}
         inputs = {"friction": friction, **fixed}
         self._mechanics, self._options = SampledInSpace(solid, self.components, inputs, options["gravity"]), options
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()

@@ -10,6 +10,7 @@ import numpy as np
 from rocking.answers import Answer, AnswerRows
 from rocking.conventions import FloatArray, percent
 from rocking.decision.prediction.likelihood import likelihood, scale_words
+from rocking.decision.prediction.model_error import evidence
 from rocking.exported import Exported
 from rocking.messages import Message
 from rocking.motions.summary import MotionSummary, condition
@@ -200,6 +201,11 @@ class Prediction(Exported):
         return self._sentence("overturning")
 
     @property
+    def evidence(self) -> str:
+        """Observed fraction of overturning in tests of real bodies with a similar predicted probability."""
+        return evidence(self.chances["overturning"].value)
+
+    @property
     def decides(self) -> str:
         """Reason for missing contributions to the variance; empty if there are contributions."""
         if any(share.total for share in self.contributions.values()):
@@ -220,6 +226,7 @@ class Prediction(Exported):
             sentences.append(
                 Message("For other motions like these the interval is {interval}.", {"interval": interval})
             )
+        sentences.append(self.evidence)
         if self.directions:
             range_of_quarters = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
             sentences.append(Message(_DIRECTIONS, range_of_quarters))
@@ -276,8 +283,8 @@ class Prediction(Exported):
         Answer
             Values by name; NaN without a value.
         """
-        plain = ("verdict", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs", "decides",
-                 "count", "histories", "failed", "seed", "gravity")  # fmt: skip
+        plain = ("verdict", "evidence", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs",
+                 "decides", "count", "histories", "failed", "seed", "gravity")  # fmt: skip
         return Answer({
             **{name: getattr(self, name) for name in plain},
             "sentences": list(self.sentences),

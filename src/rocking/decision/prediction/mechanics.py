@@ -4,12 +4,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray, g
+from rocking.decision.prediction.model_error import model_error_of
 from rocking.decision.prediction.placement import STEEPEST, level_default
 from rocking.errors import InvalidValueError
 from rocking.messages import Amount, Message, Range
@@ -186,6 +187,7 @@ class BodyOutcomes:
 class SampledBodies(ABC):
     """A body on an engine: samples from the unit cube, and outcomes."""
 
+    kind: ClassVar[str]  # "2D" or "3D", the kind of tested bodies for the model error
     widths_of: Mapping[str, int] = {}  # dimensions of an input in the unit cube; default: 1
     reasons: Mapping[str, str] = {}  # reasons of the defaults, by input
     never_sampled: Mapping[str, str] = MappingProxyType({})  # reasons of quantities with one value, by name
@@ -214,6 +216,16 @@ class SampledBodies(ABC):
             if stated is None:
                 self.assumed[name] = with_reason(self.inputs[name].text, self.reasons[name])
         plausibility.warn(plausibility.of_friction(self.inputs["friction"].median))
+
+    def _set_model_error(self) -> None:
+        """Set the factors of the model error, by default those of the tested bodies of this kind."""
+        error = model_error_of(self.stated.get("model_error"), self.kind)
+        if error is None:
+            self.inputs["model_error"] = Uncertain(Message("off"), lambda levels: np.ones(levels.shape), fixed=True)
+            return
+        self.inputs["model_error"] = Uncertain(error.text, error.factors)
+        if self.stated.get("model_error") is None:
+            self.assumed["model_error"] = with_reason(error.text, error.source)
 
     @property
     def widths(self) -> dict[str, int]:

@@ -25,6 +25,7 @@ from rocking.decision.prediction.mechanics import (
     ground_components,
     with_reason,
 )
+from rocking.decision.prediction.model_error import Similarity
 from rocking.decision.prediction.placement import FARTHEST, OFFSET, OFFSET_REASON
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import coefficients_of
@@ -68,7 +69,8 @@ _FOLLOWS = Message("restitution depends on base and centre as in the shifted imp
 class SampledInPlane(SampledBodies):
     """A plane body that may slide, hop and fly."""
 
-    widths_of, reasons, never_sampled = {"base": 2}, _REASONS, NOT_SAMPLED
+    kind = "2D"
+    widths_of, reasons, never_sampled = {"base": 2, "model_error": 2}, _REASONS, NOT_SAMPLED
 
     def __init__(self, body: Body, motions: Any, inputs: Mapping[str, Any], settings: ContactSettings) -> None:
         super().__init__(motions, inputs)
@@ -93,6 +95,7 @@ class SampledInPlane(SampledBodies):
         if not np.isin(self.inputs["polarity"].quantile(np.linspace(0.0, 1.0, 33)), (-1.0, 1.0)).all():
             raise InvalidValueError(parameter="polarity", allowed="1, -1 or both as a sample", value=inputs["polarity"])
         self._set_restitution(inputs.get("restitution"))
+        self._set_model_error()
 
     def _set_restitution(self, stated: Any) -> None:
         """Set the quantiles of the coefficients of both feet, and their dependence on the base."""
@@ -142,15 +145,17 @@ class SampledInPlane(SampledBodies):
         levers = _moved(self._levers - values["base"], values["offset"][:, 0], height, values["level"][:, 0])
         coefficients = self._coefficients(levels["restitution"][:, 0], levers, height)
         levers, coefficients = _turned(levers, mirrored), _turned(coefficients, mirrored)
+        similar = Similarity.of_factors(values["model_error"])
         rows: dict[str, FloatArray] = {
-            "friction": values["friction"][:, 0], "scale": factor,
+            "friction": values["friction"][:, 0] * similar.friction, "scale": factor * similar.friction,
             "rotation": np.zeros(len(draws)), "velocity": np.zeros(len(draws)),
         }  # fmt: skip
         for k, foot in enumerate(FEET):
             square = levers[:, k] ** 2 + height**2
             inertia = self._spread + square
             rows[f"alpha_{foot}"] = np.arctan2(levers[:, k], height)
-            rows[f"p_{foot}"] = np.sqrt(self._settings.gravity * np.sqrt(square) / inertia)  # Eq. 26
+            # the size of the similar body changes its frequency parameter, Eq. 26
+            rows[f"p_{foot}"] = np.sqrt(self._settings.gravity * similar.gravity * np.sqrt(square) / inertia)
             rows[f"q_{foot}"] = square / inertia  # Eq. 27
             rows[f"r_{foot}"] = coefficients[:, k]
         runner = RowsWithContact(segments, ConstantRestitution(), self._settings, "auto")
@@ -158,7 +163,7 @@ class SampledInPlane(SampledBodies):
         failed = np.asarray(results["outcome"]) == Outcome.FAILED.code
         uplift = np.isfinite(results["first_uplift"]) | (results["peak_rotation"] != 0.0)
         return BodyOutcomes(
-            np.where(failed, np.nan, uplift), np.where(failed, np.nan, results["sliding_distance"]),
+            np.where(failed, np.nan, uplift), np.where(failed, np.nan, results["sliding_distance"] / similar.friction),
             overturned(results["outcome"]), np.abs(results["peak_rotation"]),
         )  # fmt: skip
 

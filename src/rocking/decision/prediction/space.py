@@ -26,6 +26,7 @@ from rocking.decision.prediction.mechanics import (
     ground_components,
     with_reason,
 )
+from rocking.decision.prediction.model_error import Similarity
 from rocking.decision.prediction.placement import OFFSET, OFFSET_REASON
 from rocking.decision.prediction.shapes import SampledShapes
 from rocking.dynamics.frictional import histories
@@ -70,8 +71,9 @@ _LAWS = {
 class SampledInSpace(SampledBodies):
     """A 3D body that may slide, hop, fly and overturn onto another side."""
 
+    kind = "3D"
     reasons, never_sampled = _REASONS, NOT_SAMPLED
-    widths_of: Mapping[str, int] = MappingProxyType({"offset": 2, "level": 2})
+    widths_of: Mapping[str, int] = MappingProxyType({"offset": 2, "level": 2, "model_error": 2})
 
     def __init__(self, solid: Solid, motions: Any, inputs: Mapping[str, Any], gravity: float) -> None:
         super().__init__(motions, inputs)
@@ -99,6 +101,7 @@ class SampledInSpace(SampledBodies):
             "azimuth": ((0.0, full_turn), -full_turn, full_turn, "rad"),
         })  # fmt: skip
         self._set_restitution(inputs.get("restitution"))
+        self._set_model_error()
 
     def with_restitution(self, stated: Any) -> "SampledInSpace":
         """Return a copy with another restitution."""
@@ -162,6 +165,7 @@ class SampledInSpace(SampledBodies):
         """Return the outcomes of bodies under a motion times a factor."""
         values = self.values(draws)
         sampled = {name: column[:, 0] for name, column in values.items()}
+        similar = Similarity.of_factors(values["model_error"])
         offset, slope = values["offset"], values["level"]
         factor_of_shift = self.shapes.standing(sampled["base"], offset + self.pose.height * np.tan(slope))[:, None]
         offset, slope = factor_of_shift * offset, factor_of_shift * slope
@@ -174,8 +178,8 @@ class SampledInSpace(SampledBodies):
         turned = zip(shapes, sampled["azimuth"].tolist(), strict=True)
         state = np.array([shape.state(azimuth) for shape, azimuth in turned])
         numbers = numbers_of_rows(
-            sampled["restitution"], factor, sampled["friction"], state, self._gravity,
-            sloping(_rotated(slope, sampled["azimuth"])),
+            sampled["restitution"], factor * similar.motion, sampled["friction"] * similar.friction, state,
+            self._gravity * similar.gravity, sloping(_rotated(slope, sampled["azimuth"])),
         )  # fmt: skip
         initial_facet = np.array([shape.facet for shape in shapes])
         choices = np.column_stack(
@@ -186,8 +190,8 @@ class SampledInSpace(SampledBodies):
         results = rows.run(numbers, choices, thread_count(threads))
         valid = results["status"] == Status.GOOD.code
         overturned = np.asarray(results["pose"] == 1, dtype=np.float64)
-        columns = (np.isfinite(results["first_uplift"]), results["sliding_distance"], overturned, results["peak_tilt"],
-                   results["direction"])  # fmt: skip
+        columns = (np.isfinite(results["first_uplift"]), results["sliding_distance"] * similar.length, overturned,
+                   results["peak_tilt"], results["direction"])  # fmt: skip
         return BodyOutcomes(*(np.where(valid, column, np.nan) for column in columns))
 
     def values(self, draws: FloatArray) -> dict[str, FloatArray]:

@@ -24,6 +24,10 @@ class PredictTable(JobTable):
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
         "direction of the x component of the motion in the axes of the scan file, instead of azimuth"
     )
+    model_error: Any = key(
+        'factors on uplift acceleration and energy barrier: "off", a file of validate-predictions --update, or a table '
+        "with mean and covariance of ln of both factors; default: from shaking-table tests of other bodies [-]"
+    )
     sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
     pga: Text | None = key("peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2")
     count: int = key("number of sampled bodies for each motion, a power of two", 128, ge=4, le=1 << 20)

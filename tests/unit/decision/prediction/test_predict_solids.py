@@ -28,6 +28,7 @@ KNOWN = {
     "offset": 0.0,
     "level": 0.0,
     "azimuth": 0.0,
+    "model_error": "off",
 }
 
 
@@ -150,7 +151,8 @@ def test_a_prediction_of_a_solid():
     assert one.chances["overturning"].per_motion.tolist() == two.chances["overturning"].per_motion.tolist()
     assert np.all(np.diff(one.chances["overturning"].per_motion) >= 0.0)
     assert one.chances["overturning"].per_motion[-1] > 0.5
-    assert set(one.inputs) == {"restitution", "friction", "base", "centre", "offset", "level", "azimuth"}
+    names = {"restitution", "friction", "base", "centre", "offset", "level", "azimuth", "model_error"}
+    assert set(one.inputs) == names
     assert any("base:" in each for each in one.assumed)
 
 

@@ -1,0 +1,260 @@
+"""Model error: factors on the uplift acceleration and on the energy barrier of a body, from tests of real bodies.
+
+A body with the factors f on its uplift acceleration and F on the energy barrier of its lowest pass is similar to the
+body without factors: its size is s = F / f**2 times larger, and its angles are f times larger. The body without factors
+has the same response under gravity g / s, with the motion times 1 / (s f) and friction over f. Thus factors need no
+other shape. Lengths are then s f times longer.
+"""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtri
+
+from rocking import checks
+from rocking.conventions import FloatArray, percent
+from rocking.errors import InvalidValueError
+from rocking.messages import Message
+
+KEPT = Path(__file__).parent / "data" / "shaking_tests.json"
+"""Posteriors and scores of tests of real bodies, written by `make shaking-tests`."""
+
+OFF = "off"
+ORDERS = np.array([1.0, 2.0])
+"""The uplift acceleration is proportional to an angle, and the energy barrier to its square: so are their errors."""
+
+BETWEEN, COMMON = 0.2, 0.2
+"""Prior of ln of the factor on the uplift acceleration: scale of the half-normal standard deviation between bodies, and
+standard deviation of the mean of a class. With both, 95 % of the bodies have factors between 0.6 and 1.8."""
+
+DEVIATIONS = np.linspace(0.02, 0.8, 40)
+"""Grid of the standard deviation between bodies [-]."""
+
+SCATTERS = np.array([0.05, 0.1, 0.15, 0.2])
+"""Grid of the standard deviation between repeated tests of one body, with equal prior probabilities [-]."""
+
+MOST_FACTOR = 20.0
+_HOW = (
+    '"off", a file of `rocking validate-predictions --update`, or a table with mean and covariance of ln of the factors'
+)
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """Lognormal factors on the uplift acceleration and on the energy barrier, and their source."""
+
+    mean: tuple[float, float]  # of ln of both factors [-]
+    covariance: tuple[tuple[float, float], tuple[float, float]]  # of ln of both factors [-]
+    source: str
+
+    def __post_init__(self) -> None:
+        mean = checks.finite("mean", self.mean, "-", (2,))
+        matrix = checks.finite("covariance", self.covariance, "-", (2, 2))
+        limit = math.log(MOST_FACTOR)
+        if not (np.abs(mean) <= limit).all() or not (matrix.diagonal() <= limit**2).all():
+            raise InvalidValueError(
+                parameter="model_error", allowed=f"factors up to {MOST_FACTOR:g}", value=mean.tolist()
+            )
+        if matrix[0, 1] != matrix[1, 0] or not matrix[0, 0] > 0.0 or not np.linalg.det(matrix) > 0.0:
+            raise InvalidValueError(
+                "the covariance of {parameter} must be symmetric and positive definite, got {value}",
+                parameter="model_error", value=matrix.tolist(),
+            )  # fmt: skip
+
+    @classmethod
+    def of_moments(cls, mean: FloatArray, covariance: FloatArray, source: str) -> "ModelError":
+        """Return the model error with a mean and a covariance of ln of the factors."""
+        (first, both), (_, second) = covariance.tolist()
+        return cls((float(mean[0]), float(mean[1])), ((first, both), (both, second)), source)
+
+    def factors(self, levels: FloatArray) -> FloatArray:
+        """Return the factors at points of the unit square, shape (n, 2)."""
+        root = np.linalg.cholesky(np.array(self.covariance))
+        return np.asarray(np.exp(np.array(self.mean) + ndtri(levels) @ root.T))
+
+    @property
+    def text(self) -> str:
+        """Medians and 95 % intervals of both factors as text."""
+        deviations = np.sqrt(np.array(self.covariance).diagonal())
+        ends = np.exp(np.array(self.mean) + 1.96 * np.outer([-1.0, 1.0], deviations))
+        facts = {
+            "low": float(ends[0, 0]), "high": float(ends[1, 0]), "lower": float(ends[0, 1]), "higher": float(ends[1, 1])
+        }  # fmt: skip
+        return Message(
+            "uplift acceleration times {low:.2f} to {high:.2f}, energy barrier times {lower:.2f} to {higher:.2f} in "
+            "95 % of samples", facts,
+        )  # fmt: skip
+
+    def save(self, path: Path) -> None:
+        """Write the model error to a file that `predict` accepts."""
+        table = {"mean": self.mean, "covariance": self.covariance, "source": self.source}
+        path.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """Factors on motion, friction and gravity of histories with a model error, and on their lengths."""
+
+    motion: FloatArray
+    friction: FloatArray
+    gravity: FloatArray
+    length: FloatArray
+
+    @classmethod
+    def of_factors(cls, factors: FloatArray) -> "Similarity":
+        """Return the similarity of factors on uplift acceleration and energy barrier, shape (n, 2)."""
+        uplift, barrier = factors.T
+        size = barrier / uplift**2
+        return cls(1.0 / (size * uplift), 1.0 / uplift, 1.0 / size, size * uplift)
+
+
+def model_error_of(stated: Any, kind: str) -> ModelError | None:
+    """Return the stated model error, by default that of the tested bodies of a kind; None without one."""
+    if stated is None:
+        return kept_error(kind)
+    if isinstance(stated, ModelError):
+        return stated
+    if isinstance(stated, str) and stated == OFF:
+        return None
+    if isinstance(stated, (str, Path)):
+        return _in_file(Path(stated))
+    if isinstance(stated, Mapping) and {"mean", "covariance"} <= set(stated) <= {"mean", "covariance", "source"}:
+        mean = checks.finite("mean", stated["mean"], "-", (2,))
+        covariance = checks.finite("covariance", stated["covariance"], "-", (2, 2))
+        return ModelError.of_moments(mean, covariance, str(stated.get("source", Message("given"))))
+    raise InvalidValueError(parameter="model_error", allowed=_HOW, value=stated)
+
+
+def _in_file(path: Path) -> ModelError:
+    try:
+        table = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise InvalidValueError(parameter="model_error", allowed=_HOW, value=str(path)) from error
+    if not isinstance(table, dict):
+        raise InvalidValueError(parameter="model_error", allowed=_HOW, value=str(path))
+    return model_error_of(table, "") or _refused(path)
+
+
+def _refused(path: Path) -> ModelError:
+    raise InvalidValueError(parameter="model_error", allowed=_HOW, value=str(path))
+
+
+@dataclass(frozen=True)
+class BodyEvidence:
+    """Factors of one tested body from its tests alone: mean and covariance of ln of the factors, and scatter."""
+
+    name: str
+    kind: str  # "3D" or "2D"
+    tests: int
+    earthquakes: int
+    mean: FloatArray  # shape (2,)
+    covariance: FloatArray  # shape (2, 2)
+    scatter: float  # mean square between repeated tests, of ln of the uplift acceleration [-]
+
+
+@dataclass(frozen=True)
+class FurtherBody:
+    """Distribution of ln of the factors of a further body of a class, and its scatter between repeated tests."""
+
+    mean: FloatArray  # shape (2,)
+    covariance: FloatArray  # shape (2, 2)
+    scatter: float  # mean square, of ln of the uplift acceleration [-]
+
+    def error(self, source: str) -> ModelError:
+        """Return the model error of a test of this body."""
+        return ModelError.of_moments(self.mean, self.covariance + self.scatter * np.diag(ORDERS**2), source)
+
+
+def hierarchy(bodies: Sequence[BodyEvidence]) -> FurtherBody:
+    """Return the distribution of the factors of a further body of the class of tested bodies.
+
+    The mean of a class has a normal prior, the standard deviation between bodies a half-normal one. Its likelihood is
+    the restricted one, which does not depend on the deviation for a single body: one specimen cannot shrink it.
+    """
+    weights, means, covariances = [], [], []
+    for deviation in DEVIATIONS.tolist():
+        between = deviation**2 * np.diag(ORDERS**2)
+        precisions = [np.linalg.inv(between + body.covariance) for body in bodies]
+        information, moment = _sums(precisions, bodies)
+        restricted = 0.0
+        if len(bodies) > 1:
+            centre = np.linalg.solve(information, moment)
+            off = [body.mean - centre for body in bodies]
+            restricted = 0.5 * sum(float(np.linalg.slogdet(matrix)[1]) for matrix in precisions)
+            restricted -= 0.5 * float(np.linalg.slogdet(information)[1])
+            restricted -= 0.5 * sum(float(x @ matrix @ x) for x, matrix in zip(off, precisions, strict=True))
+        covariance = np.linalg.inv(information + np.diag(1.0 / (COMMON * ORDERS) ** 2))
+        means.append(covariance @ moment)
+        covariances.append(covariance + between)
+        weights.append(restricted - 0.5 * (deviation / BETWEEN) ** 2)
+    scatter = float(np.mean([body.scatter for body in bodies])) if bodies else float(np.mean(SCATTERS**2))
+    return FurtherBody(*mixed(np.array(weights), np.array(means), np.array(covariances)), scatter)
+
+
+def _sums(precisions: Sequence[FloatArray], bodies: Sequence[BodyEvidence]) -> tuple[FloatArray, FloatArray]:
+    """Return the information and the moment of the mean of a class with a flat prior."""
+    information, moment = np.zeros((2, 2)), np.zeros(2)
+    for matrix, body in zip(precisions, bodies, strict=True):
+        information, moment = information + matrix, moment + matrix @ body.mean
+    return information, moment
+
+
+def mixed(logarithms: FloatArray, means: FloatArray, covariances: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return mean and covariance of a mixture of distributions with unnormalised logarithms of weights."""
+    weights = np.exp(logarithms - logarithms.max())
+    weights = weights / weights.sum()
+    mean = weights @ means
+    off = means - mean
+    covariance = np.einsum("k,kij->ij", weights, covariances) + np.einsum("k,ki,kj->ij", weights, off, off)
+    return mean, covariance
+
+
+@cache
+def kept() -> dict[str, Any]:
+    """Return the kept posteriors and scores of tests of real bodies."""
+    return dict(json.loads(KEPT.read_text("utf-8")))
+
+
+def kept_bodies(kind: str) -> list[BodyEvidence]:
+    """Return the kept tested bodies of a kind, "3D" or "2D"."""
+    return [
+        BodyEvidence(
+            item["name"], item["kind"], item["tests"], item["earthquakes"], np.array(item["mean"]),
+            np.array(item["covariance"]), item["scatter"],
+        )
+        for item in kept()["bodies"] if item["kind"] == kind
+    ]  # fmt: skip
+
+
+@cache
+def kept_error(kind: str) -> ModelError:
+    """Return the model error of a further body of a kind, "3D" or "2D", from the kept tests."""
+    bodies = kept_bodies(kind)
+    if not bodies:
+        return hierarchy([]).error(Message("prior without a tested body of this kind"))
+    facts = {"bodies": ", ".join(body.name for body in bodies), "tests": sum(body.tests for body in bodies)}
+    return hierarchy(bodies).error(Message("{tests} shaking-table tests of {bodies}, with a wide prior", facts))
+
+
+_TESTED = (
+    "Shaking-table tests of real bodies ({bodies}): of {count} tests with a predicted probability of {low} to {high}, "
+    "{share} overturned (95 % interval {interval_low} to {interval_high})."
+)
+
+
+def evidence(probability: float) -> str:
+    """Return the observed fraction of overturning in kept tests with a similar predicted probability as a sentence."""
+    rows = kept()["reliability"]
+    row = next((row for row in rows if row["low"] <= probability <= row["high"]), None)
+    if row is None or math.isnan(probability):
+        return Message("No shaking-table test of a real body has a predicted probability near this one.")
+    facts: dict[str, Any] = {"bodies": ", ".join(item["name"] for item in kept()["bodies"]), "count": row["count"]}
+    names = {"low": "low", "high": "high", "share": "observed", "interval_low": "observed_low",
+             "interval_high": "observed_high"}  # fmt: skip
+    return Message(_TESTED, facts | {name: percent(row[key]) for name, key in names.items()})

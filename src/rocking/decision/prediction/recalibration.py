@@ -1,0 +1,171 @@
+"""Factors of one body from tests with known outcomes: posterior, prediction of left-out earthquakes."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.decision.prediction.mechanics import SampledBodies
+from rocking.decision.prediction.model_error import (
+    ORDERS,
+    SCATTERS,
+    BodyEvidence,
+    FurtherBody,
+    ModelError,
+    mixed,
+)
+from rocking.messages import Message
+from rocking.statistics.sobol import scrambled_sobol
+
+WIDE = ModelError((0.0, 0.0), ((0.09, 0.0), (0.0, 0.36)), "proposal")
+"""Distribution from which the factors of the tests are sampled; weights replace it by any narrower one."""
+
+_STEPS = np.linspace(-0.9, 0.9, 19)
+OF_HISTORY = {"restitution", "friction", "level", "azimuth", "polarity", "model_error"}
+"""Inputs that do not change the shape of a body: sampled anew for each test."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodyTests:
+    """Tests of one body: sampled histories with widely sampled factors, and observed outcomes.
+
+    Parameters
+    ----------
+    logarithms : ndarray, shape (tests, samples, 2)
+        Ln of the sampled factors on uplift acceleration and energy barrier [-].
+    overturned : ndarray, shape (tests, samples)
+        1 with overturning, 0 without, NaN without a result [-].
+    observed : ndarray, shape (tests,)
+        1 if the body overturned, 0 if not, NaN if unknown [-].
+    earthquakes : ndarray, shape (tests,)
+        Name of the earthquake of each test; tests of one earthquake are dependent.
+    """
+
+    logarithms: FloatArray
+    overturned: FloatArray
+    observed: FloatArray
+    earthquakes: Any
+
+    @cached_property
+    def nodes(self) -> FloatArray:
+        """Grid of ln of both factors, and of the scatter between repeated tests; shape (nodes, 3)."""
+        grid = np.meshgrid(_STEPS * ORDERS[0], _STEPS * ORDERS[1], SCATTERS, indexing="ij")
+        return np.stack([values.ravel() for values in grid], axis=1)
+
+    @cached_property
+    def probabilities(self) -> FloatArray:
+        """Probability of overturning of each test at each node, shape (tests, nodes), by weighted samples.
+
+        The fraction of all samples of the test, (h + 1/2) / (n + 1) as in `score`, counts as one effective sample.
+        """
+        widths = np.sqrt(np.array(WIDE.covariance).diagonal())
+        scatter = self.nodes[:, 2:] * ORDERS
+        rows = []
+        for logarithms, overturned in zip(self.logarithms, self.overturned, strict=True):
+            valid = np.isfinite(overturned)
+            sampled, fell = logarithms[valid], overturned[valid]
+            off = (sampled[:, None, :] - self.nodes[None, :, :2]) / scatter
+            exponent = 0.5 * ((sampled / widths) ** 2).sum(axis=1)[:, None] - 0.5 * (off**2).sum(axis=2)
+            weights = np.exp(exponent - exponent.max(axis=0, initial=-np.inf))
+            total = weights.sum(axis=0)
+            effective = total**2 / np.maximum((weights**2).sum(axis=0), 1e-300)
+            every = (fell.sum() + 0.5) / (fell.size + 1.0)
+            rows.append((effective * (fell @ weights) / np.maximum(total, 1e-300) + every) / (effective + 1.0))
+        return np.array(rows)
+
+    @cached_property
+    def likelihood(self) -> FloatArray:
+        """Logarithm of the likelihood of each outcome at each node, shape (tests, nodes).
+
+        The tests of one earthquake count as one test: their motions differ in scale only.
+        """
+        p, happened = self.probabilities, self.observed[:, None]
+        _, index, count = np.unique(self.earthquakes, return_inverse=True, return_counts=True)
+        terms = np.where(happened == 1.0, np.log(p), np.log(1.0 - p)) / count[index][:, None]
+        return np.where(np.isfinite(happened), terms, 0.0)
+
+    def weights(self, prior: FurtherBody | None, tests: Any = slice(None)) -> FloatArray:
+        """Return the posterior probabilities of the nodes from a subset of the tests; without a prior, a flat one."""
+        logarithms = self.likelihood[tests].sum(axis=0)
+        if prior is not None:
+            off = self.nodes[:, :2] - prior.mean
+            logarithms = logarithms - 0.5 * np.einsum("ki,ij,kj->k", off, np.linalg.inv(prior.covariance), off)
+        weights = np.exp(logarithms - logarithms.max())
+        return np.asarray(weights / weights.sum())
+
+    def left_out(self, prior: FurtherBody) -> FloatArray:
+        """Return the probability of each test from the tests of all other earthquakes."""
+        probability = np.empty(len(self.observed))
+        for name in np.unique(self.earthquakes):
+            out = self.earthquakes == name
+            probability[out] = self.probabilities[out] @ self.weights(prior, ~out)
+        return probability
+
+    def without(self, prior: FurtherBody) -> FloatArray:
+        """Return the probability of each test from the prior alone."""
+        off = self.nodes[:, :2] - prior.mean
+        weights = np.exp(-0.5 * np.einsum("ki,ij,kj->k", off, np.linalg.inv(prior.covariance), off))
+        return np.asarray(self.probabilities @ (weights / weights.sum()))
+
+    def error(self, prior: FurtherBody) -> ModelError:
+        """Return the model error of a further test of this body."""
+        mean, covariance, scatter = self._moments(self.weights(prior))
+        facts = {"tests": int(np.isfinite(self.observed).sum())}
+        return FurtherBody(mean, covariance, scatter).error(Message("{tests} tests of this body", facts))
+
+    def tested(self, name: str, kind: str) -> BodyEvidence:
+        """Return the factors from these tests alone, as evidence for further bodies."""
+        mean, covariance, scatter = self._moments(self.weights(None))
+        scored = np.isfinite(self.observed)
+        count = np.unique(np.asarray(self.earthquakes)[scored]).size
+        return BodyEvidence(name, kind, int(scored.sum()), int(count), mean, covariance, scatter)
+
+    def _moments(self, weights: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Return mean and covariance of ln of the factors, and the mean square of the scatter."""
+        nodes = self.nodes
+        step = (_STEPS[1] - _STEPS[0]) * ORDERS
+        within = np.tile(np.diag(step**2 / 12.0), (len(nodes), 1, 1))  # of the cells of the grid
+        with np.errstate(divide="ignore"):
+            mean, covariance = mixed(np.log(weights), nodes[:, :2], within)
+        return mean, covariance, float(weights @ nodes[:, 2] ** 2)
+
+
+def wide_samples(
+    mechanics: SampledBodies, count: int, seed: int = 0, threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Return ln of the sampled factors and the outcomes of histories, one row per motion.
+
+    The mechanics have the model error `WIDE`, and the count is a power of two.
+    """
+    rows = []
+    for motion in range(len(mechanics.names)):
+        rows.append(wide_sample(mechanics, motion, count, seed, threads))
+        if progress is not None:
+            progress(count)
+    logarithms, overturned = zip(*rows, strict=True)
+    return np.array(logarithms), np.array(overturned)
+
+
+def wide_sample(
+    mechanics: SampledBodies, motion: int, count: int, seed: int, threads: int | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return ln of the sampled factors and the outcomes of histories under one motion."""
+    draws = wide_draws(mechanics.widths, motion, count, seed)
+    overturned = mechanics.run(draws, motion, np.ones(count), threads).overturning
+    return np.log(mechanics.values(draws)["model_error"]), overturned
+
+
+def wide_draws(widths: Mapping[str, int], motion: int, count: int, seed: int) -> FloatArray:
+    """Return the sample points of a motion: other inputs of a history, and the same shapes in another order."""
+    size = sum(widths.values())
+    draws, shapes = scrambled_sobol(size, count, seed + 1 + motion), scrambled_sobol(size, count, seed)
+    order, column = np.random.default_rng([seed, motion]).permutation(count), 0
+    for name, width in widths.items():
+        if name not in OF_HISTORY:
+            draws[:, column : column + width] = shapes[order, column : column + width]
+        column += width
+    return draws

@@ -1,0 +1,206 @@
+"""Model error: similarity, hierarchy of tested bodies, posterior from invented tests, and negative controls."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.bodies.solid import box
+from rocking.decision.prediction._predict import sampled_bodies
+from rocking.decision.prediction.model_error import (
+    BETWEEN,
+    COMMON,
+    KEPT,
+    ORDERS,
+    BodyEvidence,
+    ModelError,
+    evidence,
+    hierarchy,
+    kept,
+    kept_error,
+    model_error_of,
+)
+from rocking.decision.prediction.recalibration import WIDE, BodyTests, wide_samples
+from rocking.errors import InvalidValueError
+from rocking.statistics.scores import Forecasts
+
+pytestmark = pytest.mark.verifies(room="studies")
+FIXED = {"restitution": 0.9, "friction": 0.6, "base": 0.0, "centre": 1.0, "azimuth": 0.0}
+PULSES = [rk.pulses.sine(a, t).sampled(0.005) for a, t in ((2.6, 0.5), (3.0, 0.9), (4.5, 0.7), (6.0, 0.4), (3.4, 1.3))]
+
+
+def _factors(uplift, barrier):
+    """Return a model error with nearly fixed factors."""
+    return ModelError((math.log(uplift), math.log(barrier)), ((1e-24, 0.0), (0.0, 1e-24)), "test")
+
+
+def _solid(size=1.0):
+    return rk.Solid(box(0.5 * size, 0.5 * size, 2.0 * size))
+
+
+def _outcomes(body, error, motions=PULSES, **inputs):
+    mechanics = sampled_bodies(body, motions, {**FIXED, **inputs, "model_error": error})
+    draws = np.full((1, sum(mechanics.widths.values())), 0.5)
+    return [mechanics.run(draws, k, np.ones(1), 1) for k in range(len(motions))]
+
+
+@pytest.mark.verifies("invariant", "the body of another size", room="studies", control="test_wrong_size_is_detected")
+@pytest.mark.parametrize("size", [0.5, 1.7])
+def test_barrier_alone_is_another_size(size):
+    """Equal uplift acceleration and a barrier per mass times s: the body s times larger."""
+    for factors, larger in zip(_outcomes(_solid(), _factors(1.0, size)), _outcomes(_solid(size), "off"), strict=True):
+        assert (factors.overturning, factors.uplift) == (larger.overturning, larger.uplift)
+        np.testing.assert_allclose(factors.sliding, larger.sliding, rtol=1e-3, atol=1e-5)
+
+
+@pytest.mark.verifies("negative control", room="studies")
+def test_wrong_size_is_detected():
+    """The peak tilt of the body 0.5 times as large is not that of a barrier times 1.7."""
+    factors, smaller = _outcomes(_solid(), _factors(1.0, 1.7)), _outcomes(_solid(0.5), "off")
+    assert any(abs(a.peak[0] - b.peak[0]) > 0.1 * b.peak[0] for a, b in zip(factors, smaller, strict=True))
+
+
+@pytest.mark.verifies("closed form", "uplift at g b/h times the factor", room="studies")
+@pytest.mark.parametrize("factor", [0.7, 1.3])
+def test_uplift_acceleration_times_the_factor(factor):
+    """A solid lifts above factor x g b/h, and not below."""
+    threshold = factor * rk.conventions.g * 0.25
+    for ratio, lifts in ((0.98, 0.0), (1.02, 1.0)):
+        motion = rk.pulses.sine(ratio * threshold, 0.8).sampled(0.005)
+        (outcome,) = _outcomes(_solid(), _factors(factor, 1.0), [motion], friction=2.0)
+        assert outcome.uplift[0] == lifts
+
+
+def test_off_has_the_same_samples_as_no_input():
+    """Without model error the input has no dimension, and the answer names it among the inputs not sampled."""
+    mechanics = sampled_bodies(_solid(), PULSES[:1], {"model_error": "off"})
+    assert "model_error" not in mechanics.widths
+    assert "model_error" in mechanics.not_sampled
+
+
+def test_row_in_the_contributions():
+    prediction = rk.predict(rk.Block(width=0.5, height=2.0), PULSES[:2], count=16, friction=0.6)
+    assert "model_error" in prediction.contributions
+    assert any("granite" in text or "prior" in text for text in prediction.assumed)
+    off = rk.predict(rk.Block(width=0.5, height=2.0), PULSES[:2], count=16, friction=0.6, model_error="off")
+    assert "model_error" not in off.contributions
+
+
+@pytest.mark.parametrize(
+    "stated", ["on", 3, {"mean": [0.0, 0.0]}, {"mean": [0.0, 9.0], "covariance": [[0.1, 0.0], [0.0, 0.1]]},
+               {"mean": [0.0, 0.0], "covariance": [[0.1, 0.2], [0.2, 0.1]]}],
+)  # fmt: skip
+def test_refused_model_errors(stated):
+    with pytest.raises(InvalidValueError):
+        model_error_of(stated, "3D")
+
+
+def test_file_of_an_update_is_read(tmp_path):
+    error = ModelError((0.1, -0.2), ((0.04, 0.01), (0.01, 0.09)), "7 tests")
+    error.save(tmp_path / "own.json")
+    assert model_error_of(str(tmp_path / "own.json"), "3D") == error
+
+
+def _body(mean, deviation=0.02, name="body"):
+    return BodyEvidence(name, "3D", 40, 20, np.array(mean), np.diag([deviation**2, (2.0 * deviation) ** 2]), 0.01)
+
+
+@pytest.mark.verifies(
+    "closed form", "moments of the half-normal prior", room="studies", control="test_many_specimens_do"
+)
+def test_one_specimen_does_not_shrink_the_variance_between_bodies():
+    """With one body, however exact, the variance between bodies keeps its prior: E[t2] + (1/(t2 + V) + 1/M2)^-1."""
+    deviations, weights = np.linspace(1e-4, 1.6, 4000), None
+    weights = np.exp(-0.5 * (deviations / BETWEEN) ** 2)
+    weights /= weights.sum()
+    variance = weights @ (deviations**2 + 1.0 / (1.0 / (deviations**2 + 1e-10) + COMMON**-2))
+    result = hierarchy([_body((0.0, 0.0), 1e-5)])
+    assert result.covariance[0, 0] == pytest.approx(variance, rel=0.05)  # grid of deviations
+    assert result.covariance[0, 0] > BETWEEN**2 * 0.9
+
+
+@pytest.mark.verifies("negative control", room="studies")
+def test_many_specimens_do():
+    """Thirty equal bodies leave little variance between bodies; thirty scattered bodies have theirs."""
+    equal = hierarchy([_body((0.3, 0.6))] * 30)
+    assert equal.covariance[0, 0] < 0.1 * BETWEEN**2
+    assert equal.mean[0] == pytest.approx(0.3, abs=0.02)
+    random = np.random.default_rng(5)
+    scattered = hierarchy([_body(0.4 * ORDERS * random.normal(size=2)) for _ in range(30)])
+    assert scattered.covariance[0, 0] == pytest.approx(0.16, rel=0.5)  # of 30 bodies
+
+
+def _invented(barrier, seed=3, count=128):
+    """Return tests of a block whose true uplift acceleration and barrier have factors, invented by seed."""
+    random = np.random.default_rng(seed)
+    motions = [
+        rk.pulses.sine(a, t).sampled(0.01)
+        for a, t in zip(random.uniform(2.2, 5.0, 60), random.uniform(0.4, 1.4, 60), strict=True)
+    ]
+    block = rk.Block(width=0.5, height=2.0)
+    inputs = {"restitution": (0.85, 0.95), "friction": (0.5, 0.8), "base": (0.0, 0.005), "centre": 1.0}
+    truth = sampled_bodies(block, motions, {**inputs, "model_error": _factors(math.sqrt(barrier), barrier)})
+    draws = random.random((60, sum(truth.widths.values())))
+    observed = np.array([truth.run(draws[k : k + 1], k, np.ones(1), 1).overturning[0] for k in range(60)])
+    wide = sampled_bodies(block, motions, {**inputs, "model_error": WIDE})
+    tests = BodyTests(*wide_samples(wide, count, seed, 1), observed, np.arange(60))
+    off = rk.predict(block, motions, **inputs, model_error="off", count=64, contributions=False, threads=1)
+    fractions = (off.chances["overturning"].per_motion * 64 + 0.5) / 65
+    return tests, observed, fractions
+
+
+@pytest.mark.verifies(
+    "repeated sampling", "an invented body with a barrier lowered by 30 %", room="studies",
+    control="test_calibration_without_the_factors",
+)  # fmt: skip
+@pytest.mark.parametrize("barrier", [0.7])
+def test_calibration_with_a_lowered_barrier(barrier):
+    tests, observed, fractions = _invented(barrier)
+    assert Forecasts(fractions, observed).calibration > 3.0  # without the factors: overconfident
+    prior = hierarchy([])
+    assert abs(Forecasts(tests.left_out(prior), observed).calibration) < 2.0
+    error = tests.error(prior)
+    ends = np.array(error.mean)[1] + np.array([-2.0, 2.0]) * math.sqrt(error.covariance[1][1])
+    assert ends[0] < math.log(barrier) < ends[1]
+    assert error.mean[1] < 0.0
+
+
+@pytest.mark.verifies("negative control", room="studies")
+def test_calibration_without_the_factors():
+    """A body without error: the probabilities are calibrated before, and the factors include one."""
+    tests, observed, fractions = _invented(1.0)
+    assert abs(Forecasts(fractions, observed).calibration) < 2.5
+    error = tests.error(hierarchy([]))
+    assert abs(error.mean[0]) < 2.0 * math.sqrt(error.covariance[0][0])
+
+
+def test_one_earthquake_counts_as_one_test():
+    """Copies of tests under one earthquake do not change the posterior."""
+    random = np.random.default_rng(1)
+    logarithms = random.normal(size=(6, 64, 2)) * [0.3, 0.6]
+    overturned = (logarithms[:, :, 0] < random.normal(size=(6, 1)) * 0.2) * 1.0
+    observed = (np.arange(6) % 2).astype(float)
+    once = BodyTests(logarithms, overturned, observed, np.arange(6))
+    copies = [np.repeat(values, 5, axis=0) for values in (logarithms, overturned, observed, np.arange(6))]
+    np.testing.assert_allclose(BodyTests(*copies).weights(None), once.weights(None), rtol=1e-9, atol=1e-15)
+
+
+def test_kept_evidence_is_numbers_about_tests_only():
+    """The kept file has posteriors, scores and reliability; no record, no single outcome."""
+    table = json.loads(KEPT.read_text("utf-8"))
+    assert KEPT.stat().st_size < 20_000
+    counts = [row["count"] for row in table["reliability"]]
+    assert sum(counts) == sum(body["tests"] for body in table["bodies"])
+    assert max(len(values) for body in table["bodies"] for values in body.values() if isinstance(values, list)) == 2
+    error = kept_error("3D")
+    assert error.covariance[0][0] > BETWEEN**2  # another body: at least the variance between bodies
+    assert "granite" in error.source
+
+
+@pytest.mark.parametrize("probability", [0.0, 0.2, 0.5, 0.95, 1.0])
+def test_evidence_is_the_row_of_the_probability(probability):
+    text = evidence(probability)
+    row = next(row for row in kept()["reliability"] if row["low"] <= probability <= row["high"])
+    assert f"of {row['count']} tests" in text
