@@ -88,6 +88,7 @@ def test_impacts(name: str) -> None:
         time += 2.0 * math.atanh(speed / (P * ALPHA)) / P
 
 
+@pytest.mark.slow
 @every_engine
 def test_peak_between_the_samples(name: str) -> None:
     """Let go from 0.15 nothing exceeds 0.15; pushed from rest the peak is alpha - sqrt(alpha^2 - (v / p)^2)."""
@@ -113,6 +114,7 @@ def test_no_uplift(name: str) -> None:
     assert (response.contact.friction_of_impacts, response.energy.closure) == (0.0, 0.0)
 
 
+@pytest.mark.slow
 @every_engine
 def test_uplift_under_a_ramp(name: str) -> None:
     """Ground that accelerates as c t lifts the body at t = g tan(alpha) / c, onto its left foot."""
@@ -150,6 +152,7 @@ def test_overturned_before_an_impact(name: str) -> None:
     assert 1.3 < abs(response.rotation[-1]) < 1.8, "followed until it lies"
 
 
+@pytest.mark.slow
 @every_engine
 def test_overturned_after_an_impact(name: str) -> None:
     """A weaker sine does it after one impact, to the other side; turned round it does so mirrored."""
@@ -211,6 +214,7 @@ def test_how_long_it_is_followed() -> None:
     assert endless.time[-1] == pytest.approx(300.0 / P, rel=1e-3)
 
 
+@pytest.mark.slow
 @every_engine
 def test_a_motion_that_was_cut_is_told(name: str) -> None:
     """A motion followed for 2 s only is said to be cut there, whatever came of it; a whole one is not."""
@@ -231,6 +235,7 @@ def test_a_motion_that_was_cut_is_told(name: str) -> None:
     assert "cut" not in lies.summary, "it lay before"
 
 
+@pytest.mark.slow
 def test_the_same_question_to_the_full_equations() -> None:
     """Where contact is not lost, feet that do not slide give the same history: body, coefficients by side, scale,
     start and gravity are those asked for. The friction is 10 if none is given."""
@@ -267,6 +272,7 @@ def fallen(side: int, engine: str = "auto") -> rk.Response:
     return rk.simulate(BODY, PUSH, "ked", scale=FALLS[side], engine=engine)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("side", FALLS)
 def test_side_is_against_the_ground(side: int, engine: str) -> None:

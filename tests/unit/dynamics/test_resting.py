@@ -69,6 +69,7 @@ def test_ground_that_falls_away() -> None:
     assert uplift(ground([[0.0, 0.0]], falling)) is None
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("push", [0.5, -0.5])
 def test_ground_that_falls_away_in_a_history(name: str, push: float) -> None:
@@ -141,6 +142,7 @@ def test_nothing_is_rest_whatever_the_rest_speed(speed: Any) -> None:
     assert comes_to_rest(body, lifts, 1, speed(none), 0, 0.0, 0.0) is False
 
 
+@pytest.mark.slow
 @every_engine
 @pytest.mark.parametrize("linear", [False, True])
 def test_let_go_beyond_the_top(name: str, linear: bool) -> None:
@@ -251,6 +253,7 @@ def end_of_flights(speed: float, moments: dict[int, np.ndarray], step: float) ->
     return math.inf
 
 
+@pytest.mark.slow
 def test_the_proof_of_rest_under_changing_moments() -> None:
     """The fastest body that is put to rest ends its flights while the ground still holds it, on random ground; how
     little is left of that time says that a bound of half the size would not hold."""

@@ -92,6 +92,7 @@ ENGINES = Path(__file__).parents[3] / "engine"
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
 
 
+@pytest.mark.slow
 def test_body_that_overturns_says_so_by_the_same_word_everywhere():
     """Rocking, with contact, in space and in batches: one enumeration, by identity and by code."""
     pulse = pulses.sine(amplitude=6.0, period=1.0)
@@ -104,6 +105,7 @@ def test_body_that_overturns_says_so_by_the_same_word_everywhere():
     assert [int(np.ravel(b.outcome)[0]) for b in batches] == [rk.Outcome.OVERTURNED.code] * 2
 
 
+@pytest.mark.slow
 def test_there_is_no_second_list():
     """No other enumeration of the package says how a history ends or whether it could be computed."""
     shared, found = {"OVERTURNED", "FAILED", "GOOD", "NOT_FINITE", "LOST_CONTACT"}, set()
@@ -171,6 +173,7 @@ def test_columns_are_those_of_the_dataset(name: str) -> None:
     assert set(found.data_vars) == set(mechanics_for(body, friction).columns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_options_of_other_mechanics_are_refused(name: str) -> None:
     """Of every option that a mechanics lacks the refusal states the value and the options that there are."""

@@ -74,6 +74,7 @@ def test_restitutions(door: Callable[..., Any], restitution: Any, message: str) 
         door(restitution=restitution)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [1, -1, 0.5, "1", None, [0], np.array([0, 0]), {}])
 def test_what_other_mechanics_do_not_know(value: Any) -> None:
     """Numbers of histories with friction and in space, bounces and starts without, are refused whatever they are."""
@@ -146,6 +147,7 @@ def test_the_last_sample_of_a_record() -> None:
     np.testing.assert_allclose(shown.ground_acceleration, flat.acceleration(shown.time), rtol=0.0, atol=1e-14)
 
 
+@pytest.mark.slow
 @built
 def test_error_estimate_at_the_shortest_step() -> None:
     """Where steps cannot be halved the reference engine stands in; a step near the limit is no exception."""
@@ -159,6 +161,7 @@ def test_error_estimate_at_the_shortest_step() -> None:
 # ---- orders of the fast engine --------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [4, 6])
 @pytest.mark.parametrize("name", ["auto", pytest.param("fast", marks=built)])
 @pytest.mark.filterwarnings("ignore::rocking.errors.SlowEngineWarning")

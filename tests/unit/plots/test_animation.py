@@ -204,6 +204,7 @@ def test_window_holds_the_body_all_the_time(rocked):
     assert scene_of(simulate(BLOCK, pulses.rectangular(2.6, 0.5), 0.9)).follows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", [HOLLOW, LOLLIPOP], ids=["hollow", "points"])
 def test_gif_has_its_frames(body, tmp_path):
     """At 20 frames a second and half speed a response of T seconds has ceil(40 T) + 1 frames of 50 ms."""
@@ -223,6 +224,7 @@ def test_gif_has_its_frames(body, tmp_path):
     assert steps == [(k + 1, count) for k in range(count)]
 
 
+@pytest.mark.slow
 def test_gif_moves_and_ends_at_the_end(tmp_path):
     """The first frames of a falling block differ from the last; 30 frames a second are frames of 30 ms."""
     response = simulate(BLOCK, pulses.sine(6.0, 0.8), 0.9)
@@ -237,6 +239,7 @@ def test_gif_moves_and_ends_at_the_end(tmp_path):
     assert np.abs(first - last).max() > 50.0
 
 
+@pytest.mark.slow
 def test_gif_follows_a_ground_that_runs_away(tmp_path):
     """Where the ground ends 4 m away, the body stays within the frame: its middle third is never empty."""
     response = simulate(BLOCK, pulses.rectangular(2.6, 0.5), 0.9)
@@ -291,6 +294,7 @@ def falling(body, side, **more):
     return free_rocking(body, rotation=side * 1.02 * alpha, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
 def test_the_body_falls_to_the_ground_with_its_energy(name, side):
@@ -375,6 +379,7 @@ def test_where_bodies_lie(rocked):
     assert DrawnShape.of(leans).lying == pytest.approx((-math.atan(2.0), 0.25 * math.pi), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_comparison_shows_each_response_to_its_end(rocked, tmp_path):
     """Equal responses look the same side by side; where one falls, its panel alone is another at the end."""
     fallen = simulate(BLOCK, pulses.sine(5.0, 0.8), 0.9)
@@ -397,6 +402,7 @@ def test_a_comparison_shows_each_response_to_its_end(rocked, tmp_path):
     assert lying < 0.7 * left  # what has fallen leaves the upper part of its panel
 
 
+@pytest.mark.slow
 def test_a_comparison_refuses(rocked, tmp_path):
     """One response alone, an ending that is no film, and more frames than a page wants to carry."""
     with pytest.raises(InvalidValueError, match="2 to 4"):

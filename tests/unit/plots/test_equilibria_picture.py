@@ -35,12 +35,14 @@ def test_another_pose_stands_in_the_middle():
     assert "centre 0.5 m high" in titles
 
 
+@pytest.mark.slow
 def test_rings_are_said():
     """A drum has circles of equilibria, which bear no marks."""
     figure = equilibria_picture(Solid(cylinder(1.0, 2.0)))
     assert "3 rings, not marked" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
+@pytest.mark.slow
 def test_the_standing_pose_is_not_covered():
     """Its mark lies over all others, and marks of many equilibria shrink; those of few keep their size."""
     few = equilibria_picture(Solid(box(1.0, 2.0, 3.0)))

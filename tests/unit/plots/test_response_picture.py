@@ -129,6 +129,7 @@ def test_ground_and_friction_of_a_body_at_rest():
     assert all("impacts" not in str(line.get_label()) for line in axes[1].lines)
 
 
+@pytest.mark.slow
 def test_titles_tell_outcome_restitution_and_engine():
     """Outcome in words, motion with its scale, label of the model and engine stand above the panels."""
     response = simulate(BLOCK, rk.pulses.sine(1.6, 0.8), "housner", scale=2.0, engine="reference")

@@ -17,6 +17,8 @@ from rocking.plots.style import PALE
 from rocking.studies.fragility import compare_measures, fragility_analysis
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity
 
+pytestmark = pytest.mark.slow
+
 G = 9.80665
 BLOCK = rk.Block(width=0.4, height=1.6)
 PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 1.4, 24)]

@@ -25,6 +25,8 @@ from rocking.plots import (
 )
 from rocking.studies import SyntheticSet, boundary, fragility_analysis, map_sensitivity, refined_map
 
+pytestmark = pytest.mark.slow
+
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
 AXES = ("frequency_ratio", np.linspace(0.5, 8.0, 16)), ("amplitude_ratio", np.linspace(1.0, 10.0, 13))
 

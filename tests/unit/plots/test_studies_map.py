@@ -16,6 +16,8 @@ from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND
 from rocking.studies import boundary, overturning_map
 from rocking.studies.boundaries import Polyline
 
+pytestmark = pytest.mark.slow
+
 BLOCK = rk.Block.from_angle(0.2, 1.0)
 PULSE = rk.pulses.sine(1.0, 1.0)
 X = ("frequency_ratio", np.linspace(0.5, 8.0, 60))

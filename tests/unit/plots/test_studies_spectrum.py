@@ -13,6 +13,8 @@ from rocking.plots import rocking_spectrum_picture, sensitivity_picture
 from rocking.plots.rocking_spectrum import fractiles
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity, sensitivity, spectrum_sensitivity
 
+pytestmark = pytest.mark.slow
+
 G = 9.80665
 PERIODS = np.geomspace(0.8, 12.0, 40)
 ANGLES = [0.15, 0.2, 0.3]

@@ -12,6 +12,8 @@ from rocking.errors import InvalidValueError
 from rocking.plots import transitions_picture
 from rocking.plots.overturning_map import CLASSES, FIRST, SECOND
 
+pytestmark = pytest.mark.slow
+
 G = 9.80665
 BLOCK, SINE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
 

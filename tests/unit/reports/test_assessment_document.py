@@ -18,6 +18,7 @@ def record(peak, period=0.8, name="sine"):
     return rk.GroundMotion(peak * np.sin(2.0 * math.pi * time / period), 0.01, name=name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("motions", "falls"),
     [

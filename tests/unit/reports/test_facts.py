@@ -33,6 +33,7 @@ POINTS = rk.MassPoints([(0.2, 1.0), (0.8, 2.0)], [10.0, 20.0], (0.0, 1.0))
 MOTION = rk.pulses.sine(amplitude=3.2, period=0.8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", [BLOCK, LEANING, POINTS])
 def test_everything_is_plain_json(body):
     """Body, outline, impact, stages and response of every kind of body are JSON without NaN."""
@@ -46,6 +47,7 @@ def test_everything_is_plain_json(body):
         json.dumps(each.plain(), allow_nan=False)
 
 
+@pytest.mark.slow
 def test_an_overturning_response_has_no_infinite_number():
     """Where the friction demand is infinite or another step changes the outcome, None stands."""
     with pytest.warns(rk.errors.PureRockingWarning, match="the contact force becomes tensile"):
@@ -89,6 +91,7 @@ def test_what_is_shown_of_a_record_and_a_pulse():
     assert math.isclose(exact["pgv"], 3.2 * 0.8 / math.pi, rel_tol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_verdict_names_who_says_what():
     """Two outcomes are a decision, one is none; who still rocks, and with whom the ground would pull, is named."""
     rests, cut, falls = (
@@ -112,6 +115,7 @@ def test_the_verdict_names_who_says_what():
     assert both.endswith("The contact force becomes tensile with b; the verdict assumes contact.")
 
 
+@pytest.mark.slow
 def test_curves_follow_the_formula_of_housner():
     """The curve of Housner is 1 - 3/2 sin(alpha)^2 at every slenderness, and zero where that is negative."""
     curve = next(one for one in curves_answer() if one["model"] == "housner")

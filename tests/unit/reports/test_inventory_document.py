@@ -43,6 +43,7 @@ def html(assessment):
     return page(assessment)
 
 
+@pytest.mark.slow
 def test_lights_are_letters_and_words(html):
     """Without styles and colours the page still says red, amber and green, and the worst stands first."""
     bare = re.sub(r"<style>.*?</style>|<[^>]+>", " ", html, flags=re.S)

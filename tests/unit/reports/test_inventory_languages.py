@@ -53,6 +53,7 @@ def texts(document):
     return json.dumps(document.plain(), ensure_ascii=False)
 
 
+@pytest.mark.slow
 def test_the_report_is_in_german(found, monkeypatch):
     """Not a stretch of other languages; with one German message lost there is one."""
     text = texts(inventory_document(found))
@@ -150,6 +151,7 @@ def test_reasons_of_the_reader_are_translated():
     assert foreign(said, "de") == []
 
 
+@pytest.mark.slow
 def test_every_reason_and_remark_of_the_reader_is_translated():
     """Rows with every slip that the reader names, in German and Italian: no stretch of the English words is left."""
     slips = (
@@ -187,6 +189,7 @@ LISTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", LANGUAGES)
 @pytest.mark.parametrize("listed", LISTS)
 def test_a_list_of_one_language_in_a_report_of_another(tmp_path, listed, code):

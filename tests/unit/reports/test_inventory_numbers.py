@@ -38,6 +38,7 @@ def found(hazard):
     return assess(parse_inventory(LIST, "liste.csv"), hazard)
 
 
+@pytest.mark.slow
 def test_json(found, tmp_path):
     """The number has a key of its own, for objects, refused rows and measures; lines that are no objects are named."""
     plain = json.loads(write_inventory_file(found, tmp_path / "x.json").read_text("utf-8"))
@@ -109,6 +110,7 @@ def test_a_light_is_written_once(found, tmp_path):
     assert re.search(r">(RED|ROT)<", html)
 
 
+@pytest.mark.slow
 def test_labelled_data(hazard, tmp_path):
     """The dataset has numbers, notes and remarks along its objects and refused rows, also after a file of netCDF."""
     xarray = pytest.importorskip("xarray")
@@ -123,6 +125,7 @@ def test_labelled_data(hazard, tmp_path):
             assert each["not_object"].values.tolist() == [5]
 
 
+@pytest.mark.slow
 def test_a_campaign(tmp_path):
     """Exported histories have the number and the note of each object."""
     xarray = pytest.importorskip("xarray")

@@ -97,6 +97,7 @@ def test_claims_need_no_labelled_arrays(monkeypatch):
     assert any("adapts better to large components" in claim.quote for claim in judged)
 
 
+@pytest.mark.slow
 def test_the_section_on_explanations():
     """Every row has the name, BIC and error of its explanation, best first; the verdict comes before."""
     found = explanation()

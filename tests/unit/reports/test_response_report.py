@@ -7,6 +7,8 @@ import pytest
 import rocking as rk
 from rocking.errors import RockingError
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("matplotlib")
 
 STATUE = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])

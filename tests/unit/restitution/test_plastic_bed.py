@@ -64,6 +64,7 @@ def landed(kappa, back, stretches):
         del left[0]
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew",
     "the equations of the bed solved in another way, by SciPy",
@@ -85,6 +86,7 @@ def test_gaps_matter():
     assert abs(gap - land(0.12, 1.2, np.array([[-1.2, 1.0]]))[1]) > 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("invariant", "the base in two and in a hundred pieces", within="1e-12")
 def test_a_cut_without_gap_changes_nothing():
     """A base cut in two or in a hundred pieces that touch is one base."""
@@ -95,6 +97,7 @@ def test_a_cut_without_gap_changes_nothing():
         assert cut == pytest.approx(whole, rel=0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_heavy_landings_end():
     """From needles to plates the integration ends, with a velocity between standing still and the one before."""
     for kappa in np.geomspace(1e-12, 10.0, 14).tolist():

@@ -286,6 +286,7 @@ def test_a_law_that_cannot_carry_the_weight() -> None:
             bed_impact(BLOCK, ContactBed.uniform(BLOCK, 2, law), angular_velocity=1.0)
 
 
+@pytest.mark.slow
 def test_without_the_fast_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reference serves where the extension was not built; asking for the fast one says what is missing."""
     monkeypatch.setattr(fast, "available", lambda: False)

@@ -91,6 +91,7 @@ def test_needs_solid_says_the_truth(name):
         assert (model.turned(bare) == model.turned(leaning(solid, LANDINGS["corner"]))).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_every_model_is_a_law_of_histories(name):
     """By name, short name and object: one law, one label, and a history with impacts."""

@@ -33,6 +33,7 @@ def test_a_model_is_called_with_its_ending_or_without():
         assert spatial_model(name).name == spatial_model(name.removesuffix("-3d")).name == name
 
 
+@pytest.mark.slow
 def test_corners_and_points_mean_the_same():
     """A point (x, y), a point (x, y, z) and a Corner give one result, also far from the origin."""
     there = impact_in_space(PRISM, **DIAGONAL, model="ked-3d").velocity
@@ -45,6 +46,7 @@ def test_corners_and_points_mean_the_same():
     assert result.velocity == pytest.approx(there, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_step_from_an_edge_begins_at_its_nearest_point():
     """From every edge of an uneven base onto every corner: as if it had stood on the nearest point of the edge."""
     corners = np.array([[-0.4, -0.3], [0.3, -0.35], [0.45, 0.15], [0.1, 0.4], [-0.35, 0.25]])
@@ -142,6 +144,7 @@ def shifted(solid, shift, **changes):
     return SpatialImpact(body, np.array([-1.0, 1.0, 0.0]), pivot, onto, **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", spatial_models())
 @pytest.mark.parametrize("height", [0.3, 4.0])
 def test_axes_may_begin_anywhere(name, height):
@@ -177,6 +180,7 @@ def test_a_body_that_leans_has_no_flags_and_no_units():
         assert np.isfinite(model.turned(impact)).all()
 
 
+@pytest.mark.slow
 def test_edges_by_number_and_direction():
     """Polygons count their edges, circles take directions; a triangle has no opposite edge."""
     assert edge_coefficient(PRISM, start=1, model="ked-3d") == pytest.approx(
@@ -229,6 +233,7 @@ def fallen(solid):
     return impact_in_space(solid, -start.direction, pivot=start, onto=solid.base.opposite(0), model="ked-3d")
 
 
+@pytest.mark.slow
 def test_energy_picture_names_its_units():
     """Units and a slice in J/m3 of one scale, the loss over the height in J/m; its area is what the impact costs."""
     result = fallen(STATUE)
@@ -243,6 +248,7 @@ def test_energy_picture_names_its_units():
     figure.savefig(io.BytesIO(), format="png", dpi=40)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "solid", [STATUE, Solid(cylinder(1.0, 2.0)), Solid(Polyhedron(box(1, 1, 4).vertices, box(1, 1, 4).faces))]
 )
@@ -255,6 +261,7 @@ def test_solid_picture_fills_its_frame(solid):
     assert np.ptp(points, axis=0)[1] >= 0.9 * np.ptp(solid.box, axis=0)[2]
 
 
+@pytest.mark.slow
 def test_slices():
     """One panel a slice; outside the body there is nothing, and a slice above it is refused."""
     figure = slices_picture(fallen(STATUE), np.array([0.2, 1.0]), divisions=6)
