@@ -59,7 +59,7 @@ struct Solution {
     Numbers normals;
     double shape[3];  // of the normal forces of more than three
     Vecs directions, pulls;  // of those that slide, of those that stick; zero for the others
-    bool exists = false, doomed = false;  // doomed: it violates a law, and the remaining values are not computed
+    bool exists = false;
 };
 
 struct Wrench {
@@ -269,36 +269,6 @@ inline bool solved(int n, double t[][kCorners + 1]) {
     return true;
 }
 
-// Effect of forces at a few vertices on their rates, in axes of the ground.
-struct Yields {
-    static constexpr std::size_t kMost = 4;
-    Points at;
-    Vec free[kMost];
-    Mat yields[kMost][kMost];  // columns: rate of one by a unit of force at another
-
-    Yields(const Problem& p, const Points& vertices) : at(vertices) {
-        const Mat &axes = p.axes, &soft = p.body->inverse, turns{axes * (soft * axes.a), axes * (soft * axes.b), axes * (soft * axes.c)};
-        const double light = 1.0 / p.body->mass;
-        Vec arms[kMost];
-        for (std::size_t j = 0; j < at.size(); ++j) free[j] = axes * p.rate(at[j], p.linear, p.angular), arms[j] = axes * p.body->points[at[j]];
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const Vec s = axes * p.place(at[k]), x = turns * Vec{0.0, s.z, -s.y}, y = turns * Vec{-s.z, 0.0, s.x}, z = turns * Vec{s.y, -s.x, 0.0};
-            for (std::size_t j = 0; j < at.size(); ++j) {
-                Mat& yield = yields[j][k] = {cross(x, arms[j]), cross(y, arms[j]), cross(z, arms[j])};
-                yield.a.x += light, yield.b.y += light, yield.c.z += light;
-            }
-        }
-    }
-    int slot(int i) const { return static_cast<int>(std::find(at.begin(), at.end(), i) - at.begin()); }
-};
-
-// Data that exclude a candidate without solution: forces at touching vertices, motion without sliding, and the violation limit.
-struct Aid {
-    const Yields* table;
-    const Solution* holding;
-    double limit;
-};
-
 struct Flat {
     double x = 0.0, y = 0.0;
 };
@@ -308,163 +278,26 @@ inline Flat unit(Flat a) {
     return size > 0.0 ? Flat{a.x / size, a.y / size} : Flat{};
 }
 
-// Contact for the directions of sliding: up to three vertices, one of which may stick, without the other values of the solution.
+// Contact for the directions of sliding.
 class Rubbing {
   public:
     Few<Flat> ways;  // by member, in axes of the ground
 
-    Rubbing(const Problem& p, const Aid& aid, Solution& s) : p_(p), s_(s), table_(aid.table), limit_(aid.limit), n_(s.contact.members.size()) {
-        const Points &members = s.contact.members, &stuck = s.contact.stuck;
+    Rubbing(const Problem& p, Solution& s) : p_(p), s_(s) {
         for (const Vec& d : s.directions) ways.push_back({dot(d, p.axes.a), dot(d, p.axes.b)});
-        if (n_ > 3 || stuck.size() > 1) table_ = nullptr;
-        for (std::size_t j = 0; table_ && j < n_; ++j) {
-            by_[j] = table_->slot(members[j]);
-            if (!stuck.empty() && members[j] == stuck[0]) one_ = by_[j];
-        }
     }
 
     // Normal forces and rates for `ways`.
     bool act() {
-        if (!table_) return write(), solve(p_, s_);
-        if (one_ >= 0) return n_ == 2 ? answered<2, 2>() : answered<3, 2>();
-        return n_ == 1 ? answered<1, 0>() : n_ == 2 ? answered<2, 0>() : answered<3, 0>();
+        for (std::size_t k = 0; k < ways.size(); ++k) s_.directions[k] = p_.ground(ways[k].x, ways[k].y);
+        return solve(p_, s_);
     }
-    double normal(int k) const { return table_ ? x_[k] : s_.normals[k]; }
-    Vec rate(int k) const { return table_ ? rate_of(by_[k]) : p_.axes * p_.rate(s_.contact.members[k], s_.linear, s_.angular); }
-
-    // The rest of the solution after `act`, unless it clearly breaks a law.
-    bool all() { return (s_.doomed = table_ && breaks()) || (write(), solve(p_, s_)); }
-
-    // Turns the direction of the only vertex that starts to slide: the other forces follow from its own, and leave one equation
-    // for its angle (Newton). False where that fails, or there is no table.
-    bool alone(int slot, double soft) {
-        if (!table_ || !(ways[slot].x != 0.0 || ways[slot].y != 0.0)) return false;
-        if (one_ >= 0) return n_ == 2 ? turned_alone<2, 2>(slot, soft) : turned_alone<3, 2>(slot, soft);
-        return n_ == 1 ? turned_alone<1, 0>(slot, soft) : n_ == 2 ? turned_alone<2, 0>(slot, soft) : turned_alone<3, 0>(slot, soft);
-    }
+    double normal(int k) const { return s_.normals[k]; }
+    Vec rate(int k) const { return p_.axes * p_.rate(s_.contact.members[k], s_.linear, s_.angular); }
 
   private:
-    template <int n, int rest>
-    bool turned_alone(int slot, double soft) {
-        constexpr int m = n - 1 + rest, room = m ? m : 1;
-        const auto component = [](Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-        int from[room], axis[room], row[room];  // other forces: point and direction; rates that they constrain
-        Flat pushes[room];
-        int count = 0;
-        for (int k = 0; k < n; ++k)
-            if (k != slot) from[count] = by_[k], axis[count] = 2, row[count] = 2, pushes[count++] = {-p_.friction * ways[k].x, -p_.friction * ways[k].y};
-        for (int k = 0; k < rest; ++k) from[count] = one_, axis[count] = row[count] = k, ++count;
-        const auto answer = [&](int i, int k) {  // rate of vertex i by one force
-            const Mat& by = table_->yields[i][from[k]];
-            return axis[k] == 0 ? by.a : axis[k] == 1 ? by.b : row_times({pushes[k].x, pushes[k].y, 1.0}, by);
-        };
-        const int here = by_[slot];
-        double t[room][room + 4];
-        for (int j = 0; j < m; ++j) {
-            for (int k = 0; k < m; ++k) t[j][k] = component(answer(from[j], k), row[j]);
-            const Mat& by = table_->yields[from[j]][here];
-            t[j][m] = -component(table_->free[from[j]], row[j]), t[j][m + 1] = -component(by.a, row[j]), t[j][m + 2] = -component(by.b, row[j]), t[j][m + 3] = -component(by.c, row[j]);
-        }
-        for (int k = 0; k < m; ++k) {
-            if (!(t[k][k] > 0.0)) return false;
-            const double over = 1.0 / t[k][k];
-            for (int c = k + 1; c < m + 4; ++c) t[k][c] *= over;
-            for (int j = 0; j < m; ++j)
-                if (j != k)
-                    for (int c = k + 1; c < m + 4; ++c) t[j][c] -= t[j][k] * t[k][c];
-        }
-        Vec u = table_->free[here];
-        Mat w = table_->yields[here][here];
-        for (int k = 0; k < m; ++k) {
-            const Vec moved = answer(here, k);
-            u = u + t[k][m] * moved, w.a = w.a + t[k][m + 1] * moved, w.b = w.b + t[k][m + 2] * moved, w.c = w.c + t[k][m + 3] * moved;
-        }
-        const double mu = p_.friction;
-        double r = 0.0, slope = 0.0, along = 0.0;
-        const auto across = [&](Flat d) {
-            const Vec by = w.c - mu * (d.x * w.a + d.y * w.b), turn = -mu * (d.x * w.b - d.y * w.a);  // rate by a unit of normal force; its slope
-            const double normal = -u.z / by.z, change = -normal * turn.z / by.z;
-            const Vec slip = u + normal * by, slips = change * by + normal * turn;
-            const double over = 1.0 / greater(soft * std::fabs(normal) + norm(slip), 1e-300);
-            along = (d.x * slip.x + d.y * slip.y) * over, r = (d.x * slip.y - d.y * slip.x) * over;
-            slope = (d.x * slips.y - d.y * slips.x) * over - along;
-            return by.z > 0.0;
-        };
-        Flat d = ways[slot];
-        if (!across(d)) return false;
-        for (int k = 0; k < kNewton; ++k) {
-            if (std::fabs(r) <= kStraight) {
-                if (!(along < -kStraight)) return ways[slot] = d, act();
-                d = {-d.x, -d.y};
-                if (!across(d)) return false;
-                continue;
-            }
-            const double before = std::fabs(r);
-            double step = lesser(greater(-r / slope, -0.5), 0.5);
-            if (!std::isfinite(step)) return false;
-            const Flat begun = d;
-            for (int tries = 0; tries < kTries; ++tries, step *= 0.5) {
-                d = unit(Flat{begun.x - step * begun.y, begun.y + step * begun.x});
-                if (!across(d)) return false;
-                if (std::fabs(r) < before) break;
-            }
-        }
-        return false;
-    }
-
-    void write() {
-        for (std::size_t k = 0; k < n_; ++k) s_.directions[k] = p_.ground(ways[k].x, ways[k].y);
-    }
-
-    template <int n, int rest>
-    bool answered() {
-        double t[n + rest][n + rest + 1], least[n + rest];
-        for (int k = 0; k < n; ++k) pushes_[k] = {-p_.friction * ways[k].x, -p_.friction * ways[k].y};
-        for (int j = 0; j < n; ++j) {
-            const Mat* yields = table_->yields[by_[j]];
-            for (int k = 0; k < n; ++k) {
-                const Mat& by = yields[by_[k]];
-                t[j][k] = pushes_[k].x * by.a.z + pushes_[k].y * by.b.z + by.c.z;
-            }
-            if (rest) t[j][n] = yields[one_].a.z, t[j][n + 1] = yields[one_].b.z;
-            t[j][n + rest] = -table_->free[by_[j]].z;
-        }
-        if (rest) {
-            const Mat* yields = table_->yields[one_];
-            for (int k = 0; k < n; ++k) {
-                const Mat& by = yields[by_[k]];
-                t[n][k] = pushes_[k].x * by.a.x + pushes_[k].y * by.b.x + by.c.x, t[n + 1][k] = pushes_[k].x * by.a.y + pushes_[k].y * by.b.y + by.c.y;
-            }
-            t[n][n] = yields[one_].a.x, t[n][n + 1] = yields[one_].b.x, t[n + 1][n] = yields[one_].a.y, t[n + 1][n + 1] = yields[one_].b.y;
-            t[n][n + 2] = -table_->free[one_].x, t[n + 1][n + 2] = -table_->free[one_].y;
-        }
-        for (int j = 0; j < n + rest; ++j) least[j] = kSingular * t[j][j];
-        return eliminated<n + rest>(t, least, x_);
-    }
-
-    Vec rate_of(int i) const {
-        Vec rate = table_->free[i];
-        for (std::size_t k = 0; k < n_; ++k) rate = rate + x_[k] * row_times({pushes_[k].x, pushes_[k].y, 1.0}, table_->yields[i][by_[k]]);
-        if (one_ >= 0) rate = rate + x_[n_] * table_->yields[i][one_].a + x_[n_ + 1] * table_->yields[i][one_].b;
-        return rate;
-    }
-
-    bool breaks() const {
-        const double slack = limit_ * p_.body->mass;
-        for (std::size_t k = 0; k < n_; ++k)
-            if (x_[k] < -slack || (by_[k] == one_ && std::hypot(x_[n_], x_[n_ + 1]) > p_.friction * x_[k] + slack * (1.0 + p_.friction))) return true;
-        for (int i = 0; i < static_cast<int>(table_->at.size()); ++i)
-            if (rate_of(i).z < -limit_) return true;
-        return false;
-    }
-
     const Problem& p_;
     Solution& s_;
-    const Yields* table_;
-    double limit_, x_[5];
-    std::size_t n_;
-    int one_ = -1, by_[3];
-    Flat pushes_[3];
 };
 
 // Turns the directions of vertices that start to slide into those of their accelerations (Newton).
@@ -490,7 +323,7 @@ inline bool turned(const Points& free, const Numbers& soft, Rubbing& rub) {
             bool with = true;
             for (int j = 0; j < n; ++j)
                 if (along[j] < -kStraight) rub.ways[free[j]] = {-rub.ways[free[j]].x, -rub.ways[free[j]].y}, with = false;
-            if (with) return rub.all();
+            if (with) return rub.act();
             if (!across(r)) return false;
             continue;
         }
@@ -567,24 +400,22 @@ inline bool turned_whole(const Problem& p, const Points& free, double still, Sol
 }
 
 // The same with the directions in which free vertices start to slide, by iteration. s.directions: of those that slide
-// already; still: rate below which friction alone has the direction.
-inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s) {
+// already; still: rate below which friction alone has the direction; pulls: of the sticking members, opposite to which they begin.
+inline bool sliding(const Problem& p, double still, const Vecs& pulls, Solution& s) {
     const Points& members = s.contact.members;
     Points free;
     for (std::size_t k = 0; k < members.size(); ++k)
         if (!(dot(s.directions[k], s.directions[k]) > 0.0) && !has(s.contact.stuck, members[k])) free.push_back(static_cast<int>(k));
     if (free.empty() || p.friction == 0.0) return solve(p, s);
-    if (aid.holding->exists)
-        for (int k : free) s.directions[k] = unit(-1.0 * aid.holding->pulls[k]);
+    for (int k : free) s.directions[k] = unit(-1.0 * pulls[k]);
     const std::size_t n = free.size();
     Numbers soft;
     for (int k : free) {
         const Mat& w = p.body->soft[members[k]];
         soft.push_back(greater(dot(p.axes.a, w * p.axes.a), dot(p.axes.b, w * p.axes.b)) * p.friction * static_cast<double>(n));
     }
-    Rubbing rub(p, aid, s);
+    Rubbing rub(p, s);
     const Few<Flat> begun = rub.ways;
-    if (n == 1 && rub.alone(free[0], soft[0])) return rub.all();
     if (n <= 2 && turned(free, soft, rub)) return true;
     rub.ways = begun;
     Few<Flat> after(n), moved(n), last(n);
@@ -603,7 +434,7 @@ inline bool sliding(const Problem& p, double still, const Aid& aid, Solution& s)
             change = greater(change, std::sqrt(moved[j].x * moved[j].x + moved[j].y * moved[j].y));
             along += moved[j].x * last[j].x + moved[j].y * last[j].y, square += last[j].x * last[j].x + last[j].y * last[j].y;
         }
-        if (change <= kStraight) return rub.all();
+        if (change <= kStraight) return rub.act();
         if (change <= nearly && n <= kCorners) {
             const Few<Flat> reached = rub.ways;
             for (std::size_t j = 0; j < n; ++j) rub.ways[free[j]] = after[j];
@@ -654,13 +485,12 @@ inline Points outline(const Problem& p, const Points& touching) {
 
 // Possible contacts of touching vertices: all, the edges of their border, single ones. staying: vertices that do not leave; a chord with
 // vertices beyond it is not an edge.
-inline std::vector<Points> faces(const Problem& p, const Points& touching, const Points& staying) {
+inline void add_faces(const Problem& p, const Points& touching, const Points& staying, std::vector<Points>& faces) {
     const Points border = outline(p, touching);
-    std::vector<Points> faces;
     const std::size_t n = border.size();
     faces.reserve(2 * n + 1);
     const bool all = staying.size() == touching.size();
-    std::vector<char> stays(n, 1);
+    Few<char> stays(n, 1);
     for (std::size_t k = 0; k < n && !all; ++k) stays[k] = has(staying, border[k]);
     if (n > 2 && std::find(stays.begin(), stays.end(), 0) == stays.end()) faces.push_back(border);
     if (n > 1)
@@ -668,9 +498,12 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching, const
             if (stays[k] && stays[(k + 1) % n]) faces.push_back({border[k], border[(k + 1) % n]});
     for (std::size_t k = 0; k < n; ++k)
         if (stays[k]) faces.push_back({border[k]});
+}
+inline std::vector<Points> faces(const Problem& p, const Points& touching) {
+    std::vector<Points> faces;
+    add_faces(p, touching, touching, faces);
     return faces;
 }
-inline std::vector<Points> faces(const Problem& p, const Points& touching) { return faces(p, touching, touching); }
 
 // Whether no gap closes.
 inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {
@@ -681,14 +514,19 @@ inline bool clear(const Problem& p, const Solution& s, const Points& touching, d
     return true;
 }
 
-// Whether no force pulls, no sticking one takes more friction than there is, and no gap closes.
-inline bool valid(const Problem& p, const Solution& s, const Points& touching, double slack) {
-    const double mass = p.body->mass, mu = p.friction;
+// Largest violation of a law, over the mass: the smallest slack with which the solution is valid.
+inline double excess(const Problem& p, const Solution& s, const Points& touching) {
+    const double light = 1.0 / p.body->mass, mu = p.friction;
+    const Points& members = s.contact.members;
+    double most = -kInfinite;
     for (std::size_t k = 0; k < s.normals.size(); ++k) {
-        if (s.normals[k] < -slack * mass) return false;
-        if (mu < kInfinite && norm(s.pulls[k]) > mu * s.normals[k] + slack * mass * (1.0 + mu) && has(s.contact.stuck, s.contact.members[k])) return false;
+        most = greater(most, -light * s.normals[k]);
+        if (mu < kInfinite && has(s.contact.stuck, members[k])) most = greater(most, light / (1.0 + mu) * (norm(s.pulls[k]) - mu * s.normals[k]));
     }
-    return clear(p, s, touching, slack);  // Eq. 251
+    if (members.size() > 2 && members.size() == touching.size()) return most;  // all of them stay
+    for (int i : touching)
+        if (!has(members, i)) most = greater(most, -dot(p.axes.c, p.rate(i, s.linear, s.angular)));
+    return most;  // Eq. 251
 }
 
 }  // namespace rocking::hull

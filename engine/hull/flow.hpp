@@ -3,7 +3,7 @@
 #pragma once
 #include <cstring>
 
-#include "contact.hpp"
+#include "trial.hpp"
 
 namespace rocking::hull {
 
@@ -45,16 +45,8 @@ class Flow {
         mode_ = &mode;
         const Contact& c = mode.contact;
         const std::size_t n = c.members.size(), stuck = c.stuck.size();
-        kind_ = n == 0 ? kFlight : n == 1 ? (stuck ? kStuckVertex : kSlidingVertex) : n == 2 && stuck == 2 ? kEdge : n <= 3 && !stuck ? kSliding : kAny;
-        if (kind_ == kEdge) {
-            const Vec first = b_.points[c.members[0]], arm = b_.points[c.members[1]] - first;
-            length_ = norm(arm), along_ = 1.0 / length_ * arm;
-            const Vec lever = cross(along_, first);
-            about_ = dot(along_, b_.inertia * along_) + b_.mass * dot(lever, lever);
-        }
-        if (kind_ == kSliding)
-            for (std::size_t j = 0; j < n; ++j)
-                for (std::size_t k = 0; k < n; ++k) yields_[j][k] = b_.yielding(c.members[j], b_.points[c.members[k]]);
+        kind_ = n == 0 ? kFlight : n <= 3 && !stuck ? kSliding : n == 1 ? kStuckVertex : n == 2 && stuck == 2 ? kEdge : kAny;
+        if (kind_ == kEdge) hinge_ = {b_, c.members[0], c.members[1]};
         solution_.contact = c, known_ = false;
     }
 
@@ -83,38 +75,38 @@ class Flow {
     double error = 0.0;
     bool found() const { return found_; }
 
-    static constexpr double last[6] = {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0};
+    // Weights of the stages; the last row is the error.
+    static constexpr double weights[8][7] = {{},
+                                             {1.0 / 5.0},
+                                             {3.0 / 40.0, 9.0 / 40.0},
+                                             {44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0},
+                                             {19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0},
+                                             {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
+                                             {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0},
+                                             {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0}};
 
     // Advances by a part of a step.
     const State& step(const State& state, const Field& field, double span, double fraction, double pace) {
-        static constexpr double node[7] = {0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
-        static constexpr double a[7][6] = {{},
-                                           {1.0 / 5.0},
-                                           {3.0 / 40.0, 9.0 / 40.0},
-                                           {44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0},
-                                           {19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0},
-                                           {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
-                                           {last[0], last[1], last[2], last[3], last[4], last[5]}};
-        static constexpr double off[7] = {71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
-        static constexpr int sample[7] = {0, -1, 1, 2, -1, -1, 3};
         const double h = fraction * span;
-        Rates* const k = rates_;
-        State at = state;
         found_ = true;
         // the first stage is known from a longer step from the same state, or from the last one
         bool first = known_ && std::memcmp(&samples[0], &state, sizeof state) == 0 && std::memcmp(&first_, &field.power[0], sizeof first_) == 0;
         if (!first && known_ && std::memcmp(&samples[3], &state, sizeof state) == 0 && largest(last_ - field.power[0]) <= 1e-13 * largest(last_)) {
-            k[0] = k[6], samples[0] = state, forces[0] = forces[3], axes[0] = axes[3];
+            rates_[0] = rates_[6], samples[0] = state, forces[0] = forces[3], axes[0] = axes[3];
             first = forces[0].found;
         }
         known_ = true, first_ = field.power[0], last_ = field.at(fraction);
-        for (int n = first; n < 7; ++n) {
-            if (n) at = moved(state, k, a[n], n, h);
-            const int keep = sample[n];
-            if (keep >= 0) samples[keep] = at;
-            rates(at, field.at(fraction * node[n]), k[n], keep >= 0 ? &forces[keep] : nullptr, keep >= 0 ? &axes[keep] : nullptr);
-        }
-        const State none{{}, {0.0}, {}, {}}, wrong = moved(none, k, off, 7, h);
+        if (!first) samples[0] = state, rates(state, first_, rates_[0], &forces[0], &axes[0]);
+        rates(moved<1>(state, h), field.at(0.2 * fraction), rates_[1], nullptr);
+        samples[1] = moved<2>(state, h);
+        rates(samples[1], field.at(0.3 * fraction), rates_[2], &forces[1], &axes[1]);
+        samples[2] = moved<3>(state, h);
+        rates(samples[2], field.at(0.8 * fraction), rates_[3], &forces[2], &axes[2]);
+        rates(moved<4>(state, h), field.at(8.0 / 9.0 * fraction), rates_[4], nullptr);
+        rates(moved<5>(state, h), last_, rates_[5], nullptr);
+        samples[3] = moved<6>(state, h);
+        rates(samples[3], last_, rates_[6], &forces[3], &axes[3]);
+        const State wrong = moved<7>({{}, {0.0}, {}, {}}, h);
         double turned = 0.0;
         for (double c : wrong.q) turned = greater(turned, std::fabs(c));
         error = greater(norm(wrong.place) / b_.size, 2.0 * turned);
@@ -135,7 +127,7 @@ class Flow {
         const State none{{}, {0.0}, {}, {}};
         static constexpr double unity = 1.0;
         course_[0] = samples[0];
-        course_[1] = moved(none, rates_, last, 6, span);
+        course_[1] = moved(none, rates_, weights[6], 6, span);
         course_[2] = added(moved(none, rates_, &unity, 1, span), -1.0, course_[1]);
         course_[3] = added(added(course_[1], -1.0, moved(none, rates_ + 6, &unity, 1, span)), -1.0, course_[2]);
         course_[4] = moved(none, rates_, weight, 7, span);
@@ -185,7 +177,27 @@ class Flow {
         return result;
     }
 
-    enum Kind { kFlight, kStuckVertex, kSlidingVertex, kEdge, kSliding, kAny };
+    enum Kind { kFlight, kStuckVertex, kEdge, kSliding, kAny };
+
+    // A state plus the rates of the first n stages.
+    template <int n>
+    State moved(const State& s, double h) const {
+        double c[n], total[kNumbersOfState];
+        const double *from = numbers(s), *k = numbers(rates_[0]);
+        for (int j = 0; j < n; ++j) c[j] = h * weights[n][j];
+        for (int i = 0; i < kNumbersOfState; ++i) {
+            double sum = from[i];
+            ROCKING_EACH_TERM
+            for (int j = 0; j < n; ++j)
+                if (weights[n][j] != 0.0) sum += c[j] * k[j * kNumbersOfState + i];
+            total[i] = sum;
+        }
+        State moved;
+        std::memcpy(&moved, total, sizeof total);
+        return moved;
+    }
+    template <class T>
+    static const double* numbers(const T& s) { return reinterpret_cast<const double*>(&s); }
 
     static State moved(const State& s, const Rates* k, const double* weights, int n, double h) {
         double numbers[kNumbersOfState], rate[kNumbersOfState];
@@ -213,91 +225,56 @@ class Flow {
             return true;
         }
         if (kind_ == kEdge) return edge(s, axes, linear, angular, f), true;
-        if (kind_ == kSliding) return sliding(s, axes, linear, angular, f);
+        if (kind_ == kSliding) return c.members.size() == 1 ? sliding<1>(s, axes, linear, angular, f) : c.members.size() == 2 ? sliding<2>(s, axes, linear, angular, f) : sliding<3>(s, axes, linear, angular, f);
         if (kind_ == kAny) return system(s, axes, linear, angular, f);
         const int i = c.members[0];
-        const Vec r = b_.points[i], up = axes.c, free = linear + cross(angular, r) + cross(s.spin, cross(s.spin, r));
-        Vec force;
-        if (kind_ == kStuckVertex) {
-            force = -1.0 * (b_.stiff[i] * free);
-            const double normal = dot(up, force);
-            set(f, normal, norm(force - normal * up));
-        } else {
-            const Vec push = up - mu_ * row_times(slip_direction(b_, s, axes, *mode_, 0), axes);
-            const double yields = dot(up, b_.soft[i] * push);
-            if (!(yields > 0.0)) return false;
-            const double normal = -dot(up, free) / yields;
-            force = normal * push;
-            set(f, normal, 0.0);
-        }
+        const Vec r = b_.points[i], up = axes.c, free = linear + cross(angular, r) + cross(s.spin, cross(s.spin, r)), force = -1.0 * (b_.stiff[i] * free);
+        const double normal = dot(up, force);
+        set(f, normal, norm(force - normal * up));
         linear = linear + 1.0 / b_.mass * force, angular = angular + b_.inverse * cross(r, force);
         return true;
     }
 
     // About an edge at rest only the turning along it is open; each end has the force across it that the moments ask for.
     void edge(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
-        const Vec e = along_, r = b_.points[mode_->contact.members[0]], w = s.spin, gyro = cross(w, b_.inertia * w);
-        const Vec swing = cross(w, cross(w, e)), beta = -1.0 * cross(e, swing), centripetal = cross(w, cross(w, r));
-        const Vec pull = cross(beta, r) + centripetal + linear;
-        const double alpha = -(dot(e, b_.inertia * beta + gyro) + b_.mass * dot(e, cross(r, pull))) / about_;
-        const Vec turn = alpha * e + beta, centre = -1.0 * (cross(turn, r) + centripetal);
-        if (f) {
-            const Vec force = b_.mass * (centre - linear), moment = b_.inertia * turn + gyro - cross(r, force), up = axes.c;
-            const Vec second = 1.0 / length_ * cross(moment, e), across = unit(cross(up, e)), first = force - second;
-            const double normal[2] = {dot(up, first), dot(up, second)}, side[2] = {dot(across, first), dot(across, second)}, total = dot(e, force);
-            f->normals.assign(normal, normal + 2), f->pulls.assign(2, 0.0);
-            if (mu_ < kInfinite) {
-                double room[2], weight[2];
-                for (int k = 0; k < 2; ++k) {
-                    weight[k] = greater(normal[k], 0.0);
-                    const double most = mu_ * weight[k];
-                    room[k] = std::sqrt(greater(most * most - side[k] * side[k], 0.0));  // Eq. 256
-                }
-                double* by = room[0] + room[1] > 0.0 ? room : weight;
-                if (!(by[0] + by[1] > 0.0)) by[0] = by[1] = 1.0;
-                for (int k = 0; k < 2; ++k) {
-                    const double along = by[k] / (by[0] + by[1]) * total;
-                    f->pulls[k] = std::sqrt(side[k] * side[k] + along * along);
-                }
-            }
-        }
-        linear = centre, angular = turn;
+        const Vec e = hinge_.along, w = s.spin;
+        const Vec gyro = cross(w, b_.inertia * w), field = linear;
+        hinge_.held(b_, gyro, w, linear, angular);
+        if (!f) return;
+        const auto [force, second] = hinge_.forces(b_, gyro, linear, angular, field);
+        const Vec up = axes.c, across = unit(cross(up, e)), first = force - second;
+        const double normal[2] = {dot(up, first), dot(up, second)}, side[2] = {dot(across, first), dot(across, second)}, total = dot(e, force);
+        f->normals.assign(normal, normal + 2), f->pulls.assign(2, 0.0);
+        if (mu_ == kInfinite) return;
+        double by[2];
+        share_along(normal, side, mu_, by);
+        for (int k = 0; k < 2; ++k) f->pulls[k] = std::sqrt(side[k] * side[k] + by[k] * total * by[k] * total);
     }
 
-    // Two or three vertices that all slide: Eq. 252 for their normal forces.
+    // Up to three vertices that all slide: Eq. 252 for their normal forces.
+    template <int n>
     bool sliding(const State& s, const Mat& axes, Vec& linear, Vec& angular, Forces* f) const {
-        const Points& members = mode_->contact.members;
-        const int n = static_cast<int>(members.size());
+        const int* members = mode_->contact.members.begin();
         const Vec up = axes.c, w = s.spin;
-        Vec push[3];
-        double t[3][4], least[3];
-        for (int k = 0; k < n; ++k) push[k] = up - mu_ * row_times(slip_direction(b_, s, axes, *mode_, k), axes);
-        for (int j = 0; j < n; ++j) {
-            const Vec r = b_.points[members[j]];
-            for (int k = 0; k < n; ++k) t[j][k] = dot(row_times(up, yields_[j][k]), push[k]);
-            t[j][3] = -dot(up, linear + cross(angular, r) + cross(w, cross(w, r)));
-            least[j] = kSingular * t[j][j];
-        }
+        const double light = 1.0 / b_.mass, lifts = dot(up, linear), swing = dot(up, w), square = dot(w, w);
+        Vec push[n], moment[n], lever[n];  // moments of the forces, angular accelerations by unit normal forces
+        double t[n][n + 1], threshold[n];
         for (int k = 0; k < n; ++k) {
-            if (!(t[k][k] > least[k])) return false;
-            const double over = 1.0 / t[k][k];
-            for (int j = k + 1; j < n; ++j) {
-                const double factor = t[j][k] * over;
-                for (int c = k + 1; c < 4; ++c)
-                    if (c < n || c == 3) t[j][c] -= factor * t[k][c];
-            }
+            const Vec r = b_.points[members[k]], arm = cross(r, up);
+            push[k] = up - mu_ * row_times(slip_direction(b_, s, axes, *mode_, k), axes);
+            moment[k] = cross(r, push[k]), lever[k] = b_.inverse * arm;
+            t[k][n] = -(lifts + dot(angular, arm) + swing * dot(w, r) - square * dot(up, r));
         }
-        double normal[3];
-        Vec force, moment;
-        for (int k = n - 1; k >= 0; --k) {
-            double total = t[k][3];
-            for (int c = k + 1; c < n; ++c) total -= t[k][c] * normal[c];
-            normal[k] = total / t[k][k];
-            const Vec vertex_force = normal[k] * push[k];
-            force = force + vertex_force, moment = moment + cross(b_.points[members[k]], vertex_force);
+        for (int j = 0; j < n; ++j) {
+            for (int k = 0; k < n; ++k) t[j][k] = light * dot(up, push[k]) + dot(lever[j], moment[k]);
+            threshold[j] = kSingular * t[j][j];
         }
+        double normal[n];
+        if (!eliminated<n>(t, threshold, normal)) return false;
+        Vec force, turn;
+        for (int k = 0; k < n; ++k) force = force + normal[k] * push[k], turn = turn + normal[k] * moment[k];
         if (f) f->normals.assign(normal, normal + n), f->pulls.assign(n, 0.0);
-        linear = linear + 1.0 / b_.mass * force, angular = angular + b_.inverse * moment;
+        linear = linear + light * force, angular = angular + b_.inverse * turn;
         return true;
     }
 
@@ -318,9 +295,8 @@ class Flow {
     }
 
     const Body& b_;
-    double mu_, length_ = 0.0, about_ = 0.0;
-    Vec along_;
-    Mat yields_[3][3];
+    double mu_;
+    Hinge hinge_;
     const Mode* mode_ = nullptr;
     Kind kind_ = kFlight;
     bool found_ = true, known_ = false, kept_ = false;

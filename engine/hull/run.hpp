@@ -1,8 +1,8 @@
 // One history: steps, events to rounding, changes of contact, impacts, rest.
 #pragma once
 #include <array>
-#include <optional>
 
+#include "candidates.hpp"
 #include "flow.hpp"
 #include "law.hpp"
 
@@ -607,112 +607,6 @@ class Run {
         return p;
     }
 
-    using Moving = Few<Placed>;
-    static const Vec* moving_of(const Moving& moving, int i) {
-        for (const auto& entry : moving)
-            if (entry.first == i) return &entry.second;
-        return nullptr;
-    }
-
-    // Candidates, solved on demand: sticking before sliding, larger faces before smaller ones, flight last.
-    class Candidates {
-      public:
-        // limit: violation of a law from which a candidate is of no use
-        Candidates(const Problem& p, const Points& touching, const Points& near, const Moving& moving, double still, double limit)
-            : p_(p), near_(near), moving_(moving), still_(still), limit_(limit), faces_(faces(p, touching, near)), holding_(faces_.size()) {
-            Few<Way> ways;
-            for (std::size_t f = 0; f < faces_.size(); ++f) {
-                const Points& members = faces_[f];
-                Points free;
-                for (int i : members)
-                    if (!moving_of(moving, i)) free.push_back(i);
-                const std::size_t n = free.size();
-                const auto add = [&](int stuck, std::size_t sticks) {
-                    // a fully sliding facet comes before edges and single vertices
-                    if (p.friction < kInfinite || sticks == members.size())
-                        ways.push_back({sticks == n ? 0 : members.size() > 2 && !sticks ? 1 : n - sticks + 1, ways.size(), static_cast<int>(f), stuck});
-                };
-                if (n == members.size() || n < 2) add(kAll, n);
-                if (n > 1 && members.size() <= kCorners)  // two sticking vertices of a facet make it rest; of an edge that leaves single ones
-                    for (int i : free) add(i, 1);
-                if (n > 0) add(kNobody, 0);
-            }
-            std::sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.rank != b.rank ? a.rank < b.rank : a.order < b.order; });
-            ways_ = std::move(ways), made_.reserve(ways_.size() + 1);
-        }
-
-        // Null after the last one.
-        const Solution* operator[](std::size_t k) {
-            while (made_.size() <= k && next_ <= ways_.size()) add();
-            return k < made_.size() ? &made_[k] : nullptr;
-        }
-
-        // Includes invalid candidates, from the start.
-        void all() { limit_ = kInfinite, next_ = 0, made_.clear(); }
-
-      private:
-        enum : int { kAll = -2, kNobody = -1 };
-        struct Way {
-            std::size_t rank, order;
-            int face, stuck;
-        };
-
-        void add() {
-            if (next_++ == ways_.size()) return begin({}, {}), finish(solve(p_, made_.back()));
-            const Way& way = ways_[next_ - 1];
-            const Points& members = faces_[way.face];
-            if (way.stuck == kAll) {
-                if (hold(way.face).exists) made_.push_back(hold(way.face));
-                return;
-            }
-            begin(members, way.stuck == kNobody ? Points{} : Points{way.stuck});
-            if (near_.size() <= Yields::kMost && !table_) table_.emplace(p_, near_);
-            finish(sliding(p_, still_, {table_ ? &*table_ : nullptr, &hold(way.face), limit_}, made_.back()));
-        }
-
-        void begin(const Points& members, const Points& stuck) { made_.emplace_back(), prepare(members, stuck, made_.back()); }
-        void finish(bool exists) {
-            if (!exists || made_.back().doomed) made_.pop_back();
-        }
-
-        void prepare(const Points& members, const Points& stuck, Solution& s) const {
-            s.contact = {members, stuck};
-            s.directions.assign(members.size(), Vec{});
-            for (std::size_t j = 0; j < members.size(); ++j) {
-                const Vec* d = moving_of(moving_, members[j]);
-                if (d && !has(stuck, members[j])) s.directions[j] = *d;
-            }
-        }
-
-        // A face whose vertices stick where they do not slide already.
-        const Solution& hold(int face) {
-            Held& held = holding_[face];
-            if (!held.known) {
-                Points free;
-                for (int i : faces_[face])
-                    if (!moving_of(moving_, i)) free.push_back(i);
-                prepare(faces_[face], free, held.solution);
-                held.known = true, solve(p_, held.solution);
-            }
-            return held.solution;
-        }
-        struct Held {
-            bool known = false;
-            Solution solution;
-        };
-
-        const Problem& p_;
-        const Points& near_;
-        const Moving& moving_;
-        double still_, limit_;
-        std::vector<Points> faces_;
-        std::vector<Held> holding_;
-        Few<Way> ways_;
-        std::vector<Solution> made_;
-        std::optional<Yields> table_;
-        std::size_t next_ = 0;
-    };
-
     // Replacement if no candidate satisfies all laws: no gap closes, and the tension is smallest.
     template <class Fits>
     static const Solution* least_pull(const Problem& p, Candidates& all, const Points& touching, double slack, Fits fits) {
@@ -751,8 +645,9 @@ class Run {
         const bool crowd = crowded();
         if (crowd && time_ > gathered_) return gather();
         Points near, still;
+        const Mat axes = frame(s_.q);
         for (int i : touching) {
-            const double leaves_at = velocity(i).z;
+            const double leaves_at = point_velocity(b_, s_, axes, i).z;
             const bool held = closed && has(*closed, i);
             if (held || leaves_at <= slow_) near.push_back(i);
             if (held || leaves_at <= kStrikes * speed_) still.push_back(i);
@@ -771,17 +666,18 @@ class Run {
                     const Vec v = velocity(i);
                     moving.push_back({i, row_times(unit({v.x, v.y, 0.0}), p.axes)});
                 }
-        Candidates candidates(p, touching, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
+        Candidates& candidates = holding_;
+        candidates.begin(p, touching, near, moving, 1e-5 * g_.gravity, 2.0 * kLadder.back() * g_.gravity);
         // an ended contact may continue if there is no other
         for (int pass = crowd ? 3 : 0; pass < (mu_ < kInfinite ? 3 : 1); ++pass) {
             if (pass && over_.empty()) break;
+            const auto fresh = [&](const Solution& s) {
+                const Contact& c = s.contact;
+                const auto ended = [&](const Over& o) { return pass < 2 && same(c.members, o.contact.members) && ((o.leaves && !pass) || same(c.stuck, o.contact.stuck)); };
+                return fits(s) && std::none_of(over_.begin(), over_.end(), ended);
+            };
             for (double slack : kLadder)
-                for (std::size_t k = 0; const Solution* candidate = candidates[k]; ++k) {
-                    const Contact& c = candidate->contact;
-                    const auto ended = [&](const Over& o) { return pass < 2 && same(c.members, o.contact.members) && ((o.leaves && !pass) || same(c.stuck, o.contact.stuck)); };
-                    if (!fits(*candidate) || std::any_of(over_.begin(), over_.end(), ended)) continue;
-                    if (valid(p, *candidate, near, slack * g_.gravity)) return take(p, *candidate, moving);
-                }
+                if (const Solution* candidate = candidates.first(slack * g_.gravity, fresh)) return take(p, *candidate, moving);
         }
         if (!moving.empty() && !mode_.pulled && !crowd) return shocked(near);
         const Solution* best = crowd ? nullptr : least_pull(p, candidates, near, 1e-9 * g_.gravity, fits);
@@ -859,7 +755,16 @@ class Run {
             s_.velocity = s_.velocity + 1.0 / b_.mass * (axes * push), s_.spin = s_.spin + b_.inverse * cross(b_.points[i], push);
             return;
         }
-        project(c, still.empty() ? c.stuck : still);
+        const Points& stuck = still.empty() ? c.stuck : still;
+        if (stuck.size() == members.size() && members.size() > 2) {
+            s_.velocity = s_.spin = {};
+        } else if (stuck.size() == members.size()) {
+            Vec linear = row_times(s_.velocity, axes), angular;
+            Hinge(b_, members[0], members[1]).held(b_, -1.0 * (b_.inertia * s_.spin), {}, linear, angular);
+            s_.velocity = axes * linear, s_.spin = angular;
+        } else {
+            project(c, stuck);
+        }
     }
 
     // Makes a contact stick, or keep its height, by an impact without friction.
@@ -909,8 +814,6 @@ class Run {
         const double fastest = norm(p.linear) + b_.size * norm(p.angular);
         const auto fits = [&](const Solution& s) { return 0.5 * (b_.mass * dot(s.linear, s.linear) + dot(s.angular, b_.inertia * s.angular)) <= before * (1.0 + 1e-12); };
         const Solution* chosen = nullptr;
-        std::vector<Candidates> tried;  // owner of the target of `found`
-        tried.reserve(2);
         Problem both[2] = {p, p};
         int last = 0;
         bool piled = false;
@@ -923,14 +826,9 @@ class Run {
                     const Vec at = law_.place(b_, nearest(b_, old, b_.points[i]), b_.points[i]), off = at - b_.points[i];
                     if (dot(off, off) > 0.0) now.places.push_back({i, at});
                 }
-            tried.emplace_back(now, touching, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
-            Candidates& all = tried.back();
-            for (int l = 0; l < 3 && !chosen; ++l)
-                for (std::size_t k = 0; const Solution* c = all[k]; ++k)
-                    if (fits(*c) && valid(now, *c, touching, kLadder[l] * fastest)) {
-                        chosen = c;
-                        break;
-                    }
+            Candidates& all = landing_[attempt];
+            all.begin(now, touching, touching, none, 0.0, 2.0 * kLadder.back() * fastest);
+            for (int l = 0; l < 3 && !chosen; ++l) chosen = all.first(kLadder[l] * fastest, fits);
             if (at_once_ > kPiled) {
                 chosen = nullptr, piled = true;
                 break;
@@ -940,7 +838,7 @@ class Run {
         }
         if (!chosen) {
             ++r_.held;
-            if (!piled) chosen = least_pull(both[last], tried.back(), touching, 1e-9 * fastest, fits);
+            if (!piled) chosen = least_pull(both[last], landing_[last], touching, 1e-9 * fastest, fits);
         }
         Points closed = touching;
         if (chosen) {
@@ -1030,6 +928,11 @@ class Run {
         Points near;
         touch(near, 10.0 * rest_);
         if (mode_.resting() || near.size() < 3 || ended_ != kGood) return;
+        const Mat now = frame(s_.q);
+        for (int i : near) {  // the energy that stopping one vertex takes is a lower limit; gaps contribute at most 10 of 30
+            const Vec v = point_velocity(b_, s_, now, i);
+            if (0.5 * v.z * v.z > 30.0 * weak_ * dot(now.c, b_.soft[i] * now.c)) return;
+        }
         const State state = s_;
         const Vec anchor = anchor_;
         const double lost = r_.lost, before = energy();
@@ -1070,6 +973,7 @@ class Run {
     bool across_ = false, bordered_ = false, fell_ = false, flew_ = false, slid_ = false, rocked_ = false;
     Status ended_ = kGood;
     std::vector<Over> over_;
+    Candidates holding_, landing_[2];  // for forces, for the impulses of one impact: kept for their storage
     Few<Side> sides_;
     Points touching_, near_;
     Vecs slides_;
