@@ -317,6 +317,7 @@ def record(seed=1, count=400, strength=4.0):
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.verifies("invariant", "a linear spring", within="1e-12")
 def test_a_fuse_that_never_yields_is_a_spring(engine):
+    """A fuse with a yield force that is never reached gives the rotations of a spring of its stiffness."""
     options = {"restitution": 0.93, "gravity": G, "duration": 4.0, "engine": engine}
     position = {"x": 0.3, "length": 0.5, "stiffness": 1e5}
     fuse, spring = (

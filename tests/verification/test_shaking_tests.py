@@ -23,7 +23,7 @@ def motions():
 
 
 @pytest.mark.verifies(
-    "measurement", "490 shaking-table tests of a granite rock", room="studies",
+    "measured", "490 shaking-table tests of a granite rock", room="studies",
     control="test_outcomes_of_other_tests_have_no_skill",
 )  # fmt: skip
 def test_kept_numbers_follow_from_the_tests(motions):
@@ -38,8 +38,9 @@ def test_kept_numbers_follow_from_the_tests(motions):
     assert [row["count"] for row in table["reliability"]] == [row["count"] for row in kept["reliability"]]
 
 
-@pytest.mark.verifies("regression", "the stored histories of three tests", room="studies")
+@pytest.mark.verifies("same bits", "the stored histories of three tests", room="studies")
 def test_stored_histories_are_reproduced(motions):
+    """Histories of three tests, computed again, are the stored ones."""
     samples = shaking_tests.stored()
     chosen = np.random.default_rng(11).choice(sorted(samples), SAMPLE, replace=False).tolist()
     for index, off, wide in shaking_tests.sampled(chosen, motions):
@@ -59,7 +60,7 @@ def test_outcomes_of_other_tests_have_no_skill(motions, monkeypatch):
     assert scores["calibration"] > 5.0
 
 
-@pytest.mark.verifies("measurement", "goals for the granite rock", room="studies")
+@pytest.mark.verifies("measured", "goals for the granite rock", room="studies")
 def test_predictions_of_the_granite_rock_are_calibrated():
     """Better than a logistic curve that is fitted to the other earthquakes; calibrated with the model error."""
     scores = json.loads(KEPT.read_text("utf-8"))["scores"]

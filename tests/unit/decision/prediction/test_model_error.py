@@ -157,6 +157,7 @@ def _invented(barrier, seed=3, count=128):
 )  # fmt: skip
 @pytest.mark.parametrize("barrier", [0.7])
 def test_calibration_with_a_lowered_barrier(barrier):
+    """Without the factors overconfident, with them calibrated; two standard deviations reach the true factor."""
     tests, observed, fractions = _invented(barrier)
     assert Forecasts(fractions, observed).calibration > 3.0  # without the factors: overconfident
     prior = hierarchy([])

@@ -284,7 +284,7 @@ def test_bodies_remain_in_their_pose():
     assert shapes.standing(base, shift) == pytest.approx([0.45, 0.45 * (1.0 - 0.02 / math.hypot(0.1, 0.2)), 1.0, 0.45])
 
 
-@pytest.mark.verifies("second engine", "finer steps and a later rest", control="a motion stronger by 30 %")
+@pytest.mark.verifies("second engine", "finer steps and a later rest", control="within")
 def test_coarse_settings_give_the_same_probability(monkeypatch):
     """Settings of a prediction change as many verdicts as a millionth of the motion does, and none in the mean."""
     given = {"restitution": None, "friction": (0.3, 0.8), "base": (-0.01, 0.0), "azimuth": (0.0, 6.0)}
