@@ -35,7 +35,7 @@ from benchmarks import table
 from benchmarks.mutant_tests import ROOT, Covering, record
 
 CORE = {
-    "bodies": ("bodies/*.py", "bodies/solid/*.py"),
+    "bodies": ("bodies/*.py", "bodies/solid/*.py", "bodies/solid/repair/*.py"),
     "restitution": ("restitution/*.py", "restitution/space/*.py"),
     "plane": ("dynamics/*.py",),
     "contact": ("dynamics/plane_frictional/*.py",),
@@ -46,7 +46,7 @@ CORE = {
     "fragility": ("statistics/*.py", "studies/fragility/*.py"),
     "evidence": ("evidence/*.py",),
     "hull": ("dynamics/frictional/*.py",),
-    "prediction": ("prediction/*.py",),
+    "prediction": ("decision/prediction/*.py",),
     "identification": ("identification/*.py", "identification/readers/*.py"),
     "code methods": ("decision/code_methods/*.py",),
     "equilibria": ("bodies/equilibria/*.py",),

@@ -45,8 +45,8 @@ class GltfFile:
         self.document["nodes"].append({"name": name, "mesh": 0, "translation": [0.0, 0.0, float(centre[2])]})
         corners = corners_of(solid) - centre
         self.extras: dict[str, Any] = {"height": float(centre[2]), "base": corners.tolist()}
-        if len(mended := _mended(solid)):
-            self.extras["mended"] = self._add((mended - centre).reshape(-1, 3).astype(np.float32))
+        if len(patches := _patches(solid)):
+            self.extras["mended"] = self._add((patches - centre).reshape(-1, 3).astype(np.float32))
 
     def add_equilibria(self, equilibria: Equilibria, pose: StablePose) -> None:
         """Add stable poses, saddles and summits, and the height of the centre of mass above each lowest point."""
@@ -143,10 +143,10 @@ def _triangles(solid: Solid) -> FloatArray:
     return np.concatenate(pieces)
 
 
-def _mended(solid: Solid) -> FloatArray:
+def _patches(solid: Solid) -> FloatArray:
     """Return the triangles of closed holes, in the frame of the body."""
     return np.concatenate([
-        placed_points(solid_part.shape.mended, solid_part.rotation, solid_part.translation)
+        placed_points(solid_part.shape.patches, solid_part.rotation, solid_part.translation)
         for solid_part in solid.local_parts if isinstance(solid_part.shape, Polyhedron)
     ] or [np.empty((0, 3, 3))])  # fmt: skip
 

@@ -14,14 +14,14 @@ from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.equilibria.poses import set_down
 from rocking.bodies.formats.words import MOST_VERTICES, checked_file
-from rocking.bodies.solid._changes import InnerParts, Repair, coordinates_text
-from rocking.bodies.solid._repair import Repaired, repaired
-from rocking.bodies.solid._skin import Surface
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
+from rocking.bodies.solid.repair.log import InnerParts, Repair
+from rocking.bodies.solid.repair.steps import RepairedSurface, repair_surface
+from rocking.bodies.solid.repair.wrap import SurfaceSource
 from rocking.bodies.solid.solid import Solid
 from rocking.bodies.solid.standing import settled, stands
-from rocking.bodies.solid.surfaces import vector
+from rocking.bodies.solid.surfaces import coordinates_text, vector
 from rocking.checks import length_unit
 from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install, located
@@ -44,10 +44,10 @@ def mesh_from_file(
     up: str | ArrayLike = "z",
     weld_tolerance: float | None = None,
     repair: Repair = "safe",
-    surface: Surface = "faces",
+    surface: SurfaceSource = "faces",
     wall: float | None = None,
     inner_parts: InnerParts = "refuse",
-) -> Repaired:
+) -> RepairedSurface:
     """Return the volume inside a mesh: welded, oriented, closed, centred, z up; with one sentence per doubt."""
     # without a weld tolerance equal vertices are merged, and for an open surface those within 1e-6 x its size
     path = Path(path)
@@ -62,9 +62,9 @@ def mesh_from_file(
         except OSError as error:
             raise BodyFileError("The file cannot be opened ({reason}).", reason=error.strerror) from error
         vertices, faces = _loaded(content, kind)
-        surface = checks.one_of("surface", surface, get_args(Surface))
+        surface = checks.one_of("surface", surface, get_args(SurfaceSource))
         surface = "wrap" if surface == "faces" and not len(faces) else surface
-        repaired_mesh = repaired(
+        repaired_mesh = repair_surface(
             (vertices * scale) @ turn.T, faces,
             weld_tolerance=weld_tolerance, repair=repair, surface=surface, wall=wall, inner_parts=inner_parts,
             describe=lambda point: coordinates_text(point @ turn / scale, units),

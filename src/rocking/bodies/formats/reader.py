@@ -21,8 +21,8 @@ from rocking.bodies.formats.words import Placement, read_text, readable, unit_to
 from rocking.bodies.region import Region
 from rocking.bodies.restrained import Restrained
 from rocking.bodies.section import Section
-from rocking.bodies.solid._changes import InnerParts, Repair
-from rocking.bodies.solid._skin import Surface
+from rocking.bodies.solid.repair.log import InnerParts, Repair
+from rocking.bodies.solid.repair.wrap import SurfaceSource
 from rocking.bodies.solid.solid import Solid
 from rocking.errors import BodyFileError, RockingError, located
 
@@ -34,7 +34,7 @@ class MeshOptions(TypedDict, total=False):
 
     up: str | ArrayLike | None
     repair: Repair
-    surface: Surface
+    surface: SurfaceSource
     wall: float | None
     inner_parts: InnerParts
     base_tolerance: float | None

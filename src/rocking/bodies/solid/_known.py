@@ -10,7 +10,7 @@ from rocking import checks
 from rocking.bodies.moments import SolidMoments
 from rocking.bodies.solid.part import Part, rotation_about
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.surfaces import vector
+from rocking.bodies.solid.surfaces import grid_points, vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 from rocking.messages import Message
@@ -166,9 +166,7 @@ def check_disjoint(parts: Sequence[Part]) -> None:
 
 
 def _check_pair(parts: Sequence[Part], pair: tuple[int, int], low: FloatArray, high: FloatArray) -> None:
-    positions = (np.arange(GRID) + 0.5) / GRID
-    grid = np.stack(np.meshgrid(positions, positions, positions, indexing="ij"), axis=-1).reshape(-1, 3)
-    points = low + (high - low) * grid
+    points = grid_points(low, high, GRID)
     common = points[parts[pair[0]].contains(points)]
     count = int(parts[pair[1]].contains(common).sum()) if len(common) else 0
     if count:

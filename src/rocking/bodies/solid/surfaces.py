@@ -261,3 +261,16 @@ def placed_points(points: FloatArray, rotation: FloatArray | None, translation: 
     """Return points after a rotation and then a translation [m]."""
     turned = points if rotation is None else applied(rotation, points)
     return turned if translation is None else turned + translation
+
+
+def coordinates_text(point: FloatArray, unit: str = "m") -> str:
+    """Return the coordinates of a point, as a text."""
+    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in point.tolist())}) {unit}"
+
+
+def grid_points(low: FloatArray, high: FloatArray, count: int) -> FloatArray:
+    """Return the middles of count x count x count equal cells of a box [m]; shape (count^3, 3)."""
+    positions = (np.arange(count) + 0.5) / count
+    grid = np.stack(np.meshgrid(positions, positions, positions, indexing="ij"), axis=-1).reshape(-1, 3)
+    points: FloatArray = low + (high - low) * grid
+    return points

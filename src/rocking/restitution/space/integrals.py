@@ -13,9 +13,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from rocking.bodies.solid import Corner, Edge, Part, Polyhedron, Prism, Solid
-from rocking.bodies.solid.polyhedron import directed_edges, edge_numbers
 from rocking.bodies.solid.sampling import Distance, samples
 from rocking.bodies.solid.surfaces import TriangleSurface, area_vectors, placed_points
+from rocking.bodies.solid.triangles import directed_edges, edge_numbers
 from rocking.conventions import FloatArray, IntArray
 from rocking.portable import applied, dot, gram, times
 from rocking.restitution.ked import edge_integrals, ring_integral

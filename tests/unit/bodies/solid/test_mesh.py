@@ -8,7 +8,8 @@ import pytest
 
 from rocking.bodies.formats.mesh import mesh_from_file, solid_from_mesh
 from rocking.bodies.solid import Polyhedron, box, rotation_about
-from rocking.bodies.solid._repair import WELD, repaired
+from rocking.bodies.solid.repair.merge import WELD
+from rocking.bodies.solid.repair.steps import repair_surface
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -68,7 +69,7 @@ def test_flipped_faces():
     """Faces that look the wrong way are turned back, and the sentence counts them."""
     faces = F.copy()
     faces[[3, 5, 8]] = faces[[3, 5, 8], ::-1]
-    done = repaired(V, faces)
+    done = repair_surface(V, faces)
     assert done.repairs == ("reversed 3 of 12 faces with an orientation opposite to their neighbours",)
     assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14, abs=0.0)
     # negative controls: as they are they are refused, and the bare sum is wrong
@@ -80,13 +81,13 @@ def test_flipped_faces():
 
 def test_inside_out():
     """A surface that is inside out as a whole is turned, and said to be."""
-    assert repaired(V, F[:, ::-1]).repairs == ("reversed 1 shell(s) with 12 faces",)
+    assert repair_surface(V, F[:, ::-1]).repairs == ("reversed 1 shell(s) with 12 faces",)
 
 
 def test_unwelded():
     """A soup of triangles is welded first; without welding nothing is closed, so that nothing is integrated."""
     vertices, faces = triangle_soup(V, F)
-    done = repaired(vertices, faces)
+    done = repair_surface(vertices, faces)
     assert len(done.shape.vertices) == 8
     with pytest.raises(GeometryError, match="36 edges have no neighbour"):
         Polyhedron(vertices, faces)
@@ -96,12 +97,12 @@ def test_nearly_equal_vertices():
     """Corners that rounding pulled apart are merged within 1e-6 of the size; wider gaps are refused."""
     vertices, faces = triangle_soup(V, F)
     noise = np.random.default_rng(1).normal(size=vertices.shape)
-    done = repaired(vertices + 1e-7 * noise, faces)
+    done = repair_surface(vertices + 1e-7 * noise, faces)
     assert "up to 4e-06 m" in done.repairs[0]
     assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-5)
     with pytest.raises(GeometryError, match="is not closed"):
-        repaired(vertices + 1e-3 * noise, faces)
-    assert repaired(vertices + 1e-4 * noise, faces, weld_tolerance=2e-3).shape.moments().mass == pytest.approx(
+        repair_surface(vertices + 1e-3 * noise, faces)
+    assert repair_surface(vertices + 1e-4 * noise, faces, weld_tolerance=2e-3).shape.moments().mass == pytest.approx(
         4.0, rel=1e-3
     )
 
@@ -119,21 +120,21 @@ def test_a_closed_surface_is_left_as_it_is():
             split += [[beside if i == place else number for i, number in enumerate(face)] for place in at]
         else:
             split.append(face)
-    done = repaired(vertices, np.array(split))
+    done = repair_surface(vertices, np.array(split))
     assert (done.repairs, len(done.shape.vertices)) == ((), 9)
-    soup = repaired(*triangle_soup(vertices, np.array(split)))
+    soup = repair_surface(*triangle_soup(vertices, np.array(split)))
     assert len(soup.shape.vertices) == 9
 
 
 def test_small_hole():
     """A hole of a thousandth of a sphere is closed, said with its bound, and refused where no repair is wanted."""
     vertices, faces = sphere()
-    whole = repaired(vertices, faces).shape.moments().mass
+    whole = repair_surface(vertices, faces).shape.moments().mass
     keep = np.ones(len(faces), dtype=bool)
     keep[7] = False
     with pytest.raises(GeometryError, match=r'1 hole\(s\): .*repair="safe" closes'):
-        repaired(vertices, faces[keep], repair="none")
-    done = repaired(*triangle_soup(vertices, faces[keep]))
+        repair_surface(vertices, faces[keep], repair="none")
+    done = repair_surface(*triangle_soup(vertices, faces[keep]))
     assert done.repairs[-1].startswith("closed 1 hole(s): 0.202 m wide (3 edges)")
     assert "% of the volume" in done.repairs[-1]
     assert done.shape.moments().mass == pytest.approx(
@@ -144,7 +145,7 @@ def test_small_hole():
 def test_duplicates_and_degenerates():
     """Doubled faces and faces without area disappear, and are counted."""
     faces = np.concatenate([F, F[:2], [[0, 0, 1]]])
-    done = repaired(V, faces)
+    done = repair_surface(V, faces)
     assert done.repairs == (
         "removed 1 degenerate faces",
         "removed 2 duplicate faces",
@@ -169,25 +170,25 @@ FOLDED = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
 def test_what_is_no_surface(vertices, faces, repair, words):
     """A hole is described, one of 12 % of the surface is not safe; sheets enclose nothing; no number is named."""
     with pytest.raises(GeometryError, match=words):
-        repaired(vertices, faces, repair=repair)
+        repair_surface(vertices, faces, repair=repair)
 
 
 @pytest.mark.slow
 def test_shells():
     """Prisms that share an edge add up, one inside another wound inward is a cavity, crossing ones are united."""
     other = np.concatenate([F, F + 8])
-    beside = repaired(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
+    beside = repair_surface(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
     assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13, abs=0.0)
     assert "2 separate shells, including 0 cavities" in beside.repairs[-1]
-    hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), np.concatenate([F, F[:, ::-1] + 8]))
+    hollow = repair_surface(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), np.concatenate([F, F[:, ::-1] + 8]))
     assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13, abs=0.0)
     assert "including 1 cavities" in hollow.repairs[-1]
     for shift, shared in (([0.5, 0.5, 0.0], 1.0), ([0.5, 0.5, 1.0], 0.75), ([0.3, 0.0, 2.0], 1.4)):
-        both = repaired(np.concatenate([V, V + shift]), other)
+        both = repair_surface(np.concatenate([V, V + shift]), other)
         assert both.shape.moments().mass == pytest.approx(8.0 - shared, rel=1e-9, abs=0.0)
         assert f"with a common volume of {shared:.3g} m3" in both.repairs[0]
     with pytest.raises(GeometryError, match='repair="none" allows none: united 2 intersecting shells'):
-        repaired(np.concatenate([V, V + np.array([0.5, 0.5, 1.0])]), other, repair="none")
+        repair_surface(np.concatenate([V, V + np.array([0.5, 0.5, 1.0])]), other, repair="none")
 
 
 def nested(*winding):
@@ -207,7 +208,7 @@ def enclosed(*signs):
 @pytest.mark.parametrize("outward", [1, -1], ids=["outward", "inward"])
 def test_shells_inside_shells(outward):
     """Four boxes one in the other, wound alternately, are a body, a cavity, a body and a cavity."""
-    done = repaired(*nested(*(outward * np.array([1, -1, 1, -1]))))
+    done = repair_surface(*nested(*(outward * np.array([1, -1, 1, -1]))))
     assert done.shape.moments().mass == pytest.approx(enclosed(1, -1, 1, -1), rel=1e-13, abs=0.0)
     assert "4 separate shells, including 2 cavities" in done.repairs[-1]
     assert (len(done.repairs) == 1) == (outward > 0)
@@ -224,18 +225,18 @@ def test_inner_parts_are_decided_by_the_user(outward):
     vertices, faces = nested(*(outward * np.ones(4, dtype=int)))
     for repair in ("none", "safe", "all"):
         with pytest.raises(GeometryError, match=r'a difference of 42\.2 %; use inner_parts="solid" or'):
-            repaired(*nested(outward, outward), repair=repair)
+            repair_surface(*nested(outward, outward), repair=repair)
     for inner, volume in (("solid", enclosed(1)), ("cavity", enclosed(1, -1, 1, -1))):
-        done = repaired(vertices, faces, inner_parts=inner)
+        done = repair_surface(vertices, faces, inner_parts=inner)
         assert done.shape.moments().mass == pytest.approx(volume, rel=1e-13, abs=0.0)
         stated = next(each for each in done.repairs if "inner_parts" in each)
         assert f'inner_parts="{inner}" applied' in stated
         assert f"{enclosed(1):.4g} m3 if solid and {enclosed(1, -1, 1, -1):.4g} m3 if hollow" in stated
     for inner, volume in (("solid", enclosed(1, -1, 1)), ("cavity", enclosed(1, -1, 1, -1))):
-        done = repaired(*nested(*(outward * np.array([1, -1, 1, 1]))), inner_parts=inner)
+        done = repair_surface(*nested(*(outward * np.array([1, -1, 1, 1]))), inner_parts=inner)
         assert done.shape.moments().mass == pytest.approx(volume, rel=1e-13, abs=0.0)
     with pytest.raises(InvalidValueError, match="inner_parts must be one of refuse, solid, cavity"):
-        repaired(V, F, inner_parts="hollow")
+        repair_surface(V, F, inner_parts="hollow")
 
 
 def test_a_small_inner_part_is_within_the_bound_of_safe_repairs():
@@ -245,7 +246,7 @@ def test_a_small_inner_part_is_within_the_bound_of_safe_repairs():
 
     def with_part(shift, repair="safe"):
         other = np.concatenate([V, middle + speck * (V - middle) + shift])
-        return repaired(other, np.concatenate([F, F + 8]), repair=repair)
+        return repair_surface(other, np.concatenate([F, F + 8]), repair=repair)
 
     done = with_part([0.02, 0.05, 0.1])
     assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
@@ -255,7 +256,7 @@ def test_a_small_inner_part_is_within_the_bound_of_safe_repairs():
         with_part([0.0, 0.0, 0.1], "none")
     larger = middle + 0.0101 ** (1.0 / 3.0) * (V - middle)
     with pytest.raises(GeometryError, match="inner_parts="):
-        repaired(np.concatenate([V, larger]), np.concatenate([F, F + 8]))
+        repair_surface(np.concatenate([V, larger]), np.concatenate([F, F + 8]))
 
 
 @pytest.mark.slow
@@ -264,12 +265,15 @@ def test_an_inner_part_through_the_wall_has_the_volume_of_the_solid_reading():
     inner = V * 0.5 + np.array([0.0, 0.0, 1.0])
     out = inner + np.array([0.251, 0.0, 0.0])
     both = np.concatenate([F, F + 8])
-    solid = repaired(np.concatenate([V, inner]), both, inner_parts="solid")
-    united = repaired(np.concatenate([V, out]), both)
+    solid = repair_surface(np.concatenate([V, inner]), both, inner_parts="solid")
+    united = repair_surface(np.concatenate([V, out]), both)
     assert united.shape.moments().mass == pytest.approx(4.0 + 0.001 * 0.5 * 2.0, rel=1e-9, abs=0.0)
     assert solid.shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
-    turned = repaired(np.concatenate([V, out, V * 0.2 + [-0.2, 0.0, 0.3]]), np.concatenate([both, F + 16])[:, ::-1],
-                      inner_parts="cavity")  # fmt: skip
+    turned = repair_surface(
+        np.concatenate([V, out, V * 0.2 + [-0.2, 0.0, 0.3]]),
+        np.concatenate([both, F + 16])[:, ::-1],
+        inner_parts="cavity",
+    )
     assert turned.shape.moments().mass == pytest.approx(4.001 - 0.032, rel=1e-9, abs=0.0)
 
 
@@ -277,8 +281,8 @@ def test_a_thin_wall_of_which_both_skins_look_outward():
     """A skin closely inside another one is a surface scanned twice, unless inner parts are stated to be cavities."""
     inside = V.mean(axis=0) + 0.999 * (V - V.mean(axis=0))
     both = np.concatenate([V, inside]), np.concatenate([F, F + 8])
-    assert repaired(*both).shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
-    hollow = repaired(*both, inner_parts="cavity").shape.moments().mass
+    assert repair_surface(*both).shape.moments().mass == pytest.approx(4.0, rel=1e-13, abs=0.0)
+    hollow = repair_surface(*both, inner_parts="cavity").shape.moments().mass
     assert hollow == pytest.approx(4.0 * (1.0 - 0.999**3), rel=1e-9, abs=0.0)
 
 
@@ -298,7 +302,7 @@ def test_one_sided_surface():
         faces += [(i, j, k), (j, m, k)]
     for repair in ("none", "safe", "all"):
         with pytest.raises(GeometryError):
-            repaired(vertices, np.array(faces), repair=repair)
+            repair_surface(vertices, np.array(faces), repair=repair)
 
 
 def test_dust():
@@ -307,7 +311,7 @@ def test_dust():
     vertices = (V[None] + shifts[:, None]).reshape(-1, 3)
     faces = (F[None] + 8 * np.arange(201)[:, None, None]).reshape(-1, 3)
     with pytest.raises(GeometryError, match="201 separate pieces"):
-        repaired(vertices, faces)
+        repair_surface(vertices, faces)
 
 
 @pytest.mark.verifies("invariant", "the same mesh at the origin", within="1e-9")
@@ -408,7 +412,7 @@ def test_a_tetrahedron_loses_its_doubled_face_alone():
     """Four faces are a body, and stay one when a fifth lies on one of them: volume abc / 6."""
     corners = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.4, 2.0, 0.0], [0.7, 0.5, 5.0]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 3, 0]])
-    done = repaired(corners, faces)
+    done = repair_surface(corners, faces)
     assert len(done.shape.faces) == 4
     assert done.shape.moments().mass == pytest.approx(3.0 * 2.0 * 5.0 / 6.0, rel=1e-14, abs=0.0)
     assert any("removed 1 duplicate face" in each for each in done.repairs)

@@ -10,9 +10,10 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.equilibria.poses import set_down
-from rocking.bodies.solid import _shells, box, extrusion, rotation_about
-from rocking.bodies.solid._changes import MOST_SHIFT, MOST_VOLUME
-from rocking.bodies.solid._repair import repaired
+from rocking.bodies.solid import box, extrusion, rotation_about
+from rocking.bodies.solid.repair import simplify
+from rocking.bodies.solid.repair.log import MOST_SHIFT, MOST_VOLUME
+from rocking.bodies.solid.repair.steps import repair_surface
 from rocking.bodies.solid.standing import settled
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
@@ -210,7 +211,7 @@ def test_refused_with_the_option_that_helps(scan, options, words, helps, tmp_pat
 def test_bounds_are_bounds():
     """Without the limit the sentences still bound what changed, a hole of a hand's width too."""
     for radius in (0.03, 0.06, 0.09, 0.12):
-        done = repaired(V, without(V[1000], radius), repair="all")
+        done = repair_surface(V, without(V[1000], radius), repair="all")
         volume, shift = stated(done.repairs)
         found = done.shape.moments()
         assert 0.0 < abs(found.mass - VOLUME) / VOLUME <= volume
@@ -249,9 +250,9 @@ def test_fewer_faces(monkeypatch):
     """A smooth scan of many faces gets fewer; hull and centre move by no more than is said."""
     vertices, sides, bottom = bad_scans.statue(120, 120)
     faces = np.concatenate([sides, bottom])
-    assert len(repaired(vertices, faces).shape.faces) == len(faces)
-    monkeypatch.setattr(_shells, "MOST_FACES", 20_000)
-    done = repaired(vertices, faces)
+    assert len(repair_surface(vertices, faces).shape.faces) == len(faces)
+    monkeypatch.setattr(simplify, "MOST_FACES", 20_000)
+    done = repair_surface(vertices, faces)
     words = next(sentence for sentence in done.repairs if sentence.startswith("simplified"))
     hull, shift = (float(x) / 1000.0 for x in re.findall(r"(?:at most|of the centre) ([\d.e-]+) mm", words)[:2])
     assert len(done.shape.faces) < 0.7 * len(faces)
@@ -264,7 +265,7 @@ def test_fewer_faces(monkeypatch):
     assert (beyond + outer.equations[:, 3]).max() <= 1.05 * hull
 
 
-ROCK = Path(__file__).parents[4] / "../shared/data/scans/granite_rock.obj"
+ROCK = Path(__file__).parents[5] / "../shared/data/scans/granite_rock.obj"
 
 
 @pytest.mark.skipif(not ROCK.exists(), reason="the scan of the rock is not beside the repository")

@@ -1,4 +1,4 @@
-"""Repairs of a surface, with bounds of their effect on volume and centre of mass."""
+"""Log of the repairs of a surface, with bounds of their effect on volume and centre of mass."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,12 +8,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies.moments import SolidMoments
+from rocking.bodies.solid.surfaces import coordinates_text
 from rocking.conventions import FloatArray, percent
 from rocking.errors import GeometryError
 from rocking.messages import Message, Option
 
 Repair = Literal["none", "safe", "all"]
-
 """Allowed repairs: merging of equal vertices only, repairs within the bounds below, all repairs."""
 
 InnerParts = Literal["refuse", "solid", "cavity"]
@@ -30,13 +30,8 @@ HELP = Message(
 )
 
 
-def coordinates_text(point: FloatArray, unit: str = "m") -> str:
-    """Return the coordinates of a point, as a text."""
-    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in point.tolist())}) {unit}"
-
-
 @dataclass
-class Changes:
+class RepairLog:
     """Repairs of a surface, in their order."""
 
     allowed: Repair = "safe"
@@ -45,7 +40,7 @@ class Changes:
     repairs: list[tuple[str, float, FloatArray | None]] = field(
         default_factory=list
     )  # sentence, volume [m3], location [m]
-    mended: list[FloatArray] = field(default_factory=list)  # faces in holes, shape (m, 3, 3) per hole [m]
+    patches: list[FloatArray] = field(default_factory=list)  # triangles in former holes, shape (m, 3, 3) per hole [m]
 
     def __post_init__(self) -> None:
         self.allowed = checks.one_of("repair", self.allowed, get_args(Repair))

@@ -5,18 +5,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.bodies.solid._changes import coordinates_text
-from rocking.bodies.solid.surfaces import area_vectors, boxes
+from rocking.bodies.solid.surfaces import area_vectors, boxes, coordinates_text
+from rocking.bodies.solid.triangles import largest_extent
+from rocking.bodies.solid.winding import winding
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
 
 DEPTH = 1e-6  # largest crossing length / size of touching faces [-]
 MOST_PAIRS = 20_000_000  # largest number of checked pairs of faces with overlapping boxes [-]
-_THINNEST = 1e-7
+PROBED = 500  # number of faces with a check of the winding number [-]
+_THINNEST = 1e-7  # smallest height / size of a checked triangle [-]
+_CHUNK = 200_000  # number of pairs of tree nodes that are compared together [-]
 
 
 @dataclass(frozen=True)
-class Piercing:
+class Crossings:
     """Crossing faces of a surface."""
 
     pairs: int  # number of crossing pairs
@@ -25,7 +28,7 @@ class Piercing:
     complete: bool  # True if every pair was checked
 
 
-def pierced(triangles: FloatArray) -> Piercing:
+def find_crossings(triangles: FloatArray) -> Crossings:
     """Return the crossing triangles; triangles with common corners or edges, and touching triangles do not cross."""
     # Two triangles cross if each has corners on both sides of the other's plane, and if their segments of the common
     # line of both planes overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
@@ -40,7 +43,7 @@ def pierced(triangles: FloatArray) -> Piercing:
     kept, normals = triangles[is_broad], doubled[is_broad] / length[is_broad, None]
     longest_line, location, count, tried = 0.0, np.zeros(3), 0, 0
     crossed = np.zeros(len(kept), dtype=bool)
-    pairs = meeting_boxes(low[is_broad], high[is_broad]) if len(kept) > 1 else ()
+    pairs = overlapping_boxes(low[is_broad], high[is_broad]) if len(kept) > 1 else ()
     for first, second in pairs:
         tried += len(first)
         if tried > MOST_PAIRS:
@@ -50,7 +53,7 @@ def pierced(triangles: FloatArray) -> Piercing:
         crossed[left[lengths > 0.0]] = crossed[right[lengths > 0.0]] = True
         if len(lengths) and lengths.max() > longest_line:
             longest_line, location = float(lengths.max()), locations[int(np.argmax(lengths))]
-    return Piercing(count, location, np.flatnonzero(is_broad)[crossed], tried <= MOST_PAIRS)
+    return Crossings(count, location, np.flatnonzero(is_broad)[crossed], tried <= MOST_PAIRS)
 
 
 def _lines(
@@ -90,10 +93,7 @@ def _within(corners: FloatArray, heights: FloatArray, along: FloatArray) -> tupl
     return first[rows, index], np.where(crosses, positions, -np.inf).max(axis=1), points[rows, index]
 
 
-_CHUNK = 200_000
-
-
-def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+def overlapping_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
     """Yield the pairs of overlapping boxes, in chunks."""
     # A binary tree divides the boxes at the median of their middles, along the longest side. The search compares the
     # tree with itself from the root, with bounded memory.
@@ -143,65 +143,8 @@ def _layers(order: IntArray, low: FloatArray, high: FloatArray) -> list[tuple[Fl
     return layers[::-1]
 
 
-_TILES = 24
-_MOST_PAIRS = 2_000_000
-
-
-def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
-    """Return True for points inside a closed, oriented surface, shape (n,)."""
-    # Upward faces above a point count +1, downward faces -1; the sum is 1 inside. Points and faces are sorted into
-    # tiles of the plan, so only the faces near the vertical line of a point are checked.
-    return winding(points, triangles) > 0.5
-
-
-def winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
-    """Return the winding number of a closed, oriented surface around each point."""
-    result = np.zeros(len(points))
-    if not len(points):
-        return result
-    # an irrational shift keeps vertical lines away from edges and vertices of regular meshes
-    low, high = boxes(triangles)
-    start = np.array([low[:, i].min() for i in range(3)])
-    extent = np.array([high[:, i].max() for i in range(3)]) - start
-    nudged = points + float(extent.max()) * 1e-10 * np.array([np.sqrt(2.0), np.sqrt(3.0), 0.0])
-    start, width = start[:2], np.maximum(extent[:2] / _TILES, 1e-300)
-    tile = np.floor((nudged[:, :2] - start) / width).astype(np.int64)
-    order = np.lexsort(tile.T)
-    cuts = np.flatnonzero(np.any(np.diff(tile[order], axis=0), axis=1)) + 1
-    column, strip = None, np.zeros(0, dtype=np.int64)
-    for members in np.split(order, cuts):
-        corner = start + tile[members[0]] * width
-        if tile[members[0], 1] != column:
-            column = tile[members[0], 1]
-            strip = np.flatnonzero((low[:, 1] <= corner[1] + width[1]) & (high[:, 1] >= corner[1]))
-        near = strip[(low[strip, 0] <= corner[0] + width[0]) & (high[strip, 0] >= corner[0])]
-        step = max(1, _MOST_PAIRS // max(1, len(near)))
-        for chunk in np.split(members, range(step, len(members), step)):
-            result[chunk] = _plumbed(nudged[chunk], triangles[near])
-    return result
-
-
-def _plumbed(points: FloatArray, triangles: FloatArray) -> FloatArray:
-    flat = triangles[None, :, :, :2] - points[:, None, None, :2]
-    x, y = flat[..., 0], flat[..., 1]
-    # weights of the corners: areas of the opposite triangles at the vertical line
-    corner_weights = np.stack(
-        [x[..., i - 2] * y[..., i - 1] - x[..., i - 1] * y[..., i - 2] for i in range(3)], axis=-1
-    )
-    twice = corner_weights.sum(axis=-1)
-    hit = ((corner_weights > 0.0).all(axis=-1) | (corner_weights < 0.0).all(axis=-1)) & (twice != 0.0)
-    height = np.einsum("pti,ti->pt", corner_weights, triangles[..., 2])
-    above = height > points[:, None, 2] * twice
-    above = np.where(twice > 0.0, above, ~above)
-    counts: FloatArray = np.where(hit & above, np.sign(twice), 0.0).sum(axis=1)
-    return counts
-
-
-PROBED = 500  # number of faces with a check of the winding number [-]
-
-
-def check_crossings(
-    triangles: FloatArray, describe: Callable[[FloatArray], str] = coordinates_text, piercing: Piercing | None = None
+def check_self_intersection(
+    triangles: FloatArray, describe: Callable[[FloatArray], str] = coordinates_text, crossings: Crossings | None = None
 ) -> bool:
     """Refuse a surface with self-intersections; return True if every pair of faces was checked."""
     # The check of pairs has a resolution of 1e-6 of the size. Near 500 faces, selected by area, the winding number must
@@ -210,11 +153,11 @@ def check_crossings(
     low, high = boxes(triangles)
     middle = 0.5 * np.array([low[:, i].min() + high[:, i].max() for i in range(3)])
     centred = triangles - middle
-    piercing = pierced(centred) if piercing is None else piercing
-    if piercing.pairs:
+    crossings = find_crossings(centred) if crossings is None else crossings
+    if crossings.pairs:
         raise GeometryError(
             "The surface intersects itself, mainly near {point}; {pairs} pair(s) of faces cross",
-            point=describe(middle + piercing.location), pairs=piercing.pairs,
+            point=describe(middle + crossings.location), pairs=crossings.pairs,
             hint="repair the mesh in its own program, for instance by a boolean union",
         )  # fmt: skip
     points = _beside(centred)
@@ -232,7 +175,7 @@ def check_crossings(
             point=describe(middle + points[worst]),
             hint="repair the mesh in its own program, for instance by a boolean union",
         )  # fmt: skip
-    return piercing.complete
+    return crossings.complete
 
 
 def _beside(triangles: FloatArray) -> FloatArray:
@@ -240,7 +183,7 @@ def _beside(triangles: FloatArray) -> FloatArray:
     generator = np.random.default_rng(0)
     vectors = area_vectors(triangles)
     areas = np.linalg.norm(vectors, axis=1)
-    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    size = largest_extent(triangles.reshape(-1, 3))
     usable = np.flatnonzero(areas > 1e-12 * size**2)
     count = min(PROBED, len(usable))
     chosen = generator.choice(usable, count, replace=False, p=areas[usable] / areas[usable].sum())

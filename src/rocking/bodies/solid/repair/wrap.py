@@ -4,32 +4,34 @@ from typing import Literal
 
 import numpy as np
 
-from rocking.bodies.solid._changes import Changes
-from rocking.bodies.solid._shells import connected
+from rocking.bodies.solid.repair.log import RepairLog
 from rocking.bodies.solid.surfaces import area_vectors
+from rocking.bodies.solid.triangles import box_diagonal, connected, largest_extent, oriented_along
 from rocking.conventions import BoolArray, FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 from rocking.messages import Message
 
-Surface = Literal["faces", "wrap", "hull"]
-
+SurfaceSource = Literal["faces", "wrap", "hull"]
 """Faces of a mesh, skin around its points, or convex hull of its points."""
 
 MOST_POINTS = 30_000  # largest number of points inside the convex hull; denser clouds are thinned [-]
+_STABLE = 0.01  # largest volume change of the skin for a ball larger by `_GROWTH` [-]
+_GROWTH = 1.5  # factor between the radii of tried balls [-]
+_COVERED = 0.95  # smallest fraction of points in the skin [-]
+_BOTTOM = 0.02  # largest height of the rim of an open bottom / height of the body [-]
+_EMPTY = 0.2  # smallest fraction of the plan without points at an open bottom [-]
+_SECTORS = 24  # number of sectors of the plan in which the rim has its lowest point [-]
+_JIGGLE = 1e-7  # random shift / size, against coplanar and cospherical points [-]
+_CRUMB = 1e-2  # largest volume of a removed separate group of cells / volume of the largest group [-]
+_OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])  # vertices of the face opposite to each vertex
 
-_STABLE, _GROWTH, _COVERED, _BOTTOM, _EMPTY, _SECTORS = 0.01, 1.5, 0.95, 0.02, 0.2, 24
-_JIGGLE, _CRUMB = 1e-7, 1e-2
-_OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
-
-def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatArray, IntArray]:
+def surface_around_points(points: FloatArray, surface: SurfaceSource, log: RepairLog) -> tuple[FloatArray, IntArray]:
     """Return a closed, oriented surface around points."""
-    points = points if surface == "hull" else _with_bottom(points, changes)
+    points = points if surface == "hull" else _with_bottom(points, log)
     hull = _hull(points)
     if surface == "hull":
-        changes.add_note(
-            Message("used the convex hull of {number} points; hollows are filled", {"number": len(points)})
-        )
+        log.add_note(Message("used the convex hull of {number} points; hollows are filled", {"number": len(points)}))
         return points, hull
     kept = _thinned(points, np.unique(hull))
     count, points = len(points), points[kept]
@@ -38,7 +40,7 @@ def skin(points: FloatArray, surface: Surface, changes: Changes) -> tuple[FloatA
     coarse = 2.0 * abs(volume - _wrapped(points[half])[1]) + wider - volume
     depth, area = _depth(points, faces)
     number = Message("{number} of {total}", {"number": len(kept), "total": count}) if len(kept) < count else len(kept)
-    changes.add_note(
+    log.add_note(
         Message(
             "used a skin around {number} points with a ball diameter of {diameter:.3g} mm; mean depth of the points "
             "below the skin {depth:.2g} mm, possible volume change with a larger ball and twice as many points {share}",
@@ -67,7 +69,7 @@ def _depth(points: FloatArray, faces: IntArray) -> tuple[float, float]:
     return float(depth.mean()), float(np.linalg.norm(vectors, axis=1).sum())
 
 
-def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
+def _with_bottom(points: FloatArray, log: RepairLog) -> FloatArray:
     """Return the points, with a horizontal grid at the lowest point in an empty bottom."""
     from scipy.spatial import Delaunay, QhullError, cKDTree
 
@@ -90,10 +92,10 @@ def _with_bottom(points: FloatArray, changes: Changes) -> FloatArray:
     lowest = np.full(_SECTORS, np.inf)
     np.minimum.at(lowest, sector, rim[:, 2] - low)
     depth = float(lowest[np.isfinite(lowest)].mean())
-    changes.add_repair(
+    log.add_repair(
         Message(
             "closed the open bottom, {width:.3g} m wide, by a horizontal face at its lowest point",
-            {"width": float(np.linalg.norm(np.ptp(plan, axis=0)))},
+            {"width": box_diagonal(plan)},
         ),
         depth * len(grid) * step**2,
         np.append(plan.mean(axis=0), low),
@@ -116,15 +118,12 @@ def _hull(points: FloatArray) -> IntArray:
         convex_hull = ConvexHull(points)
     except QhullError as error:
         raise GeometryError("The points are coplanar, collinear or equal, and enclose no volume.") from error
-    faces = convex_hull.simplices.astype(np.int64)
-    a, b, c = np.moveaxis(points[faces], 1, 0)
-    inward = (np.cross(b - a, c - a) * convex_hull.equations[:, :3]).sum(axis=1) < 0.0
-    return np.where(inward[:, None], faces[:, ::-1], faces)
+    return oriented_along(points, convex_hull.simplices.astype(np.int64), convex_hull.equations[:, :3])
 
 
 def _thinned(points: FloatArray, keep: IntArray) -> IntArray:
     """Return the indices of one point per grid cell, and of all points to keep."""
-    kept, cell = np.unique(points, axis=0, return_index=True)[1], 1e-3 * float(np.ptp(points, axis=0).max())
+    kept, cell = np.unique(points, axis=0, return_index=True)[1], 1e-3 * largest_extent(points)
     while len(kept) > MOST_POINTS:
         kept = np.unique(np.floor(points / cell), axis=0, return_index=True)[1]
         cell *= 1.2
@@ -139,7 +138,7 @@ def _wrapped(points: FloatArray) -> tuple[IntArray, float, float, float]:
     # with a volume change below 1 % for a radius larger by half.
     from scipy.spatial import Delaunay
 
-    size = float(np.ptp(points, axis=0).max())
+    size = largest_extent(points)
     # a small random shift avoids coplanar and cospherical points
     points = points + _JIGGLE * size * np.random.default_rng(0).uniform(-1.0, 1.0, points.shape)
     cells = Delaunay(points)
@@ -193,6 +192,4 @@ def _boundary(points: FloatArray, corners: IntArray, sides: IntArray, across: In
     other = np.where(across < 0, False, inside[across])
     cell, side = np.nonzero(inside[:, None] & ~other)
     faces = sides[cell, side]
-    a, b, c = np.moveaxis(points[faces], 1, 0)
-    inward = (np.cross(b - a, c - a) * (points[corners[cell, side]] - a)).sum(axis=1) > 0.0
-    return np.where(inward[:, None], faces[:, ::-1], faces)
+    return oriented_along(points, faces, points[faces[:, 0]] - points[corners[cell, side]])

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Polyhedron, Solid, SolidMoments, box, extrusion
 from rocking.bodies.solid._known import check_possible
-from rocking.bodies.solid._repair import repaired
-from rocking.bodies.solid._self_crossing import check_crossings, meeting_boxes, pierced
+from rocking.bodies.solid.repair.steps import repair_surface
+from rocking.bodies.solid.self_intersection import check_self_intersection, find_crossings, overlapping_boxes
 from rocking.errors import GeometryError
 
 pytestmark = pytest.mark.verifies(room="bodies")
@@ -81,7 +81,7 @@ def test_a_corner_pulled_through_the_wall():
     # its three faces carry 1/3 m3 along x for each metre
     sums = Polyhedron(pulled(), CUBE.faces, simple=True).moments()
     assert sums.mass == pytest.approx(1.0 - 1.7 / 3.0, rel=1e-12, abs=0.0)
-    for make in (Polyhedron, repaired):
+    for make in (Polyhedron, repair_surface):
         with pytest.raises(GeometryError, match="intersects itself"):
             make(pulled(), CUBE.faces)
 
@@ -142,30 +142,30 @@ def test_lobes_that_cross_along_edges_of_the_mesh():
     The reader merges the line, and finds two shells that touch there: 1.0 and 0.9 m3, both the right way round.
     """
     vertices, faces = tower([1.0, 0.5, 0.0, -0.45, -0.9])
-    assert pierced(vertices[faces]).pairs == 0
+    assert find_crossings(vertices[faces]).pairs == 0
     with pytest.raises(GeometryError, match="is -1, and must be 0 or 1"):
         Polyhedron(vertices, faces)
-    done = repaired(vertices, faces)
+    done = repair_surface(vertices, faces)
     assert done.shape.moments().mass == pytest.approx(1.9, rel=1e-12, abs=0.0)
     assert any("reversed" in words for words in done.repairs)
     # negative control: the same net that does not turn over
-    assert check_crossings(tower([1.0, 0.5, 0.1, 0.45, 0.9])[0][faces])
+    assert check_self_intersection(tower([1.0, 0.5, 0.1, 0.45, 0.9])[0][faces])
 
 
 def test_a_surface_twice():
     """A cube laid over itself crosses nowhere and encloses everything twice."""
     twice = np.concatenate([CUBE.corners, CUBE.corners])
     with pytest.raises(GeometryError, match="is 2, and must be 0 or 1"):
-        check_crossings(twice)
+        check_self_intersection(twice)
 
 
 def test_touching_is_not_crossing():
     """Boxes on, beside and corner to corner of each other touch; reaching 1e-3 into each other they cross."""
     for shift in ([0.3, 0.2, 1.0], [1.0, 0.3, 0.4], [1.0, 1.0, 0.5], [1.0, 1.0, 1.0], [0.0, 0.0, 1.0]):
         there = CUBE.corners + np.array(shift)
-        assert check_crossings(np.concatenate([CUBE.corners, there]))
+        assert check_self_intersection(np.concatenate([CUBE.corners, there]))
         with pytest.raises(GeometryError, match="itself"):
-            check_crossings(np.concatenate([CUBE.corners, there - 1e-3 * np.sign(shift)]))
+            check_self_intersection(np.concatenate([CUBE.corners, there - 1e-3 * np.sign(shift)]))
 
 
 @pytest.mark.verifies(
@@ -176,14 +176,14 @@ def test_touching_is_not_crossing():
 def test_shapes_that_only_bend():
     """Convex, concave, hollow and with a hole through it: accepted, with the volumes of the closed forms."""
     ring = trimesh.creation.torus(1.0, 0.3, major_sections=96, minor_sections=48)
-    done = repaired(np.array(ring.vertices), np.array(ring.faces)).shape
+    done = repair_surface(np.array(ring.vertices), np.array(ring.faces)).shape
     assert done.moments().mass == pytest.approx(2.0 * math.pi**2 * 0.09, rel=5e-3)
     angle = extrusion([(0, 0), (2, 0), (2, 0.3), (0.3, 0.3), (0.3, 2), (0, 2)], 1.0)
     assert Polyhedron(angle.vertices, angle.faces).moments().mass == pytest.approx(1.11, rel=1e-13, abs=0.0)
     frame = extrusion([(0, 0), (2, 0), (2, 2), (0, 2)], 1.0, ([(0.5, 0.5), (0.5, 1.5), (1.5, 1.5), (1.5, 0.5)],))
     assert Polyhedron(frame.vertices, frame.faces).moments().mass == pytest.approx(3.0, rel=1e-13, abs=0.0)
     hollow = np.concatenate([CUBE.corners, 0.5 * CUBE.corners[:, ::-1] + [0.0, 0.0, 0.25]])
-    assert check_crossings(hollow)
+    assert check_self_intersection(hollow)
 
 
 @pytest.mark.speed
@@ -196,7 +196,7 @@ def test_fifty_thousand_faces():
         trials = []
         for _ in range(3):
             start = time.process_time()
-            assert repaired(vertices, faces).repairs == ()
+            assert repair_surface(vertices, faces).repairs == ()
             trials.append(time.process_time() - start)
         seconds.append(min(trials))
     assert len(faces) == 50_000
@@ -206,7 +206,7 @@ def test_fifty_thousand_faces():
     vertex = int(np.argmax(vertices[:, 0]))
     inward[vertex, 0] -= 0.8
     with pytest.raises(GeometryError, match="intersects itself"):
-        check_crossings(inward[faces])
+        check_self_intersection(inward[faces])
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -215,7 +215,7 @@ def test_single_precision_is_no_crossing(seed):
     mesh = trimesh.creation.box((1.0, 0.7, 3.0)).subdivide().subdivide().subdivide()
     mesh.apply_transform(trimesh.transformations.random_rotation_matrix(np.random.default_rng(seed).random(3)))
     assert len(mesh.faces) == 768
-    assert check_crossings(np.array(mesh.vertices, dtype=np.float32).astype(np.float64)[mesh.faces])
+    assert check_self_intersection(np.array(mesh.vertices, dtype=np.float32).astype(np.float64)[mesh.faces])
 
 
 @pytest.mark.slow
@@ -225,7 +225,7 @@ def test_stars_are_never_refused(seed, rough):
     """Whatever the radii, a surface that is seen whole from its middle does not cross itself."""
     vertices, faces = ball(2)
     radii = 1.0 + rough * np.random.default_rng(seed).uniform(-1.0, 1.0, len(vertices))
-    assert check_crossings((vertices * radii[:, None])[faces])
+    assert check_self_intersection((vertices * radii[:, None])[faces])
 
 
 def edges_through_faces(vertices, faces, slack):
@@ -250,14 +250,14 @@ def test_crumpled_balls_against_every_pair(seed, rough):
     noisy = vertices + rough * np.random.default_rng(seed).normal(size=vertices.shape)
     plainly, nearly = (edges_through_faces(noisy, faces, slack) for slack in (-1e-4, 1e-4))
     assume(plainly == nearly)
-    assert (pierced(noisy[faces]).pairs > 0) == plainly
+    assert (find_crossings(noisy[faces]).pairs > 0) == plainly
 
 
 def test_the_noise_of_that_comparison_gives_both_answers():
     """Of 40 such balls some cross and some do not: the comparison says something."""
     vertices, faces = ball(1)
     noise = [np.random.default_rng(seed).normal(size=vertices.shape) for seed in range(20)]
-    found = [pierced((vertices + rough * each)[faces]).pairs > 0 for rough in (0.03, 0.25) for each in noise]
+    found = [find_crossings((vertices + rough * each)[faces]).pairs > 0 for rough in (0.03, 0.25) for each in noise]
     assert 10 <= sum(found) <= 30
 
 
@@ -270,7 +270,7 @@ def test_boxes_that_meet(count, seed):
     high = low + generator.uniform(0.0, 0.5, size=(count, 3))
     found = [
         (min(i, j), max(i, j))
-        for one, two in meeting_boxes(low, high)
+        for one, two in overlapping_boxes(low, high)
         for i, j in zip(one.tolist(), two.tolist(), strict=True)
     ]
     meet = (low[:, None] <= high).all(axis=2) & (low[None] <= high[:, None]).all(axis=2)
@@ -279,9 +279,9 @@ def test_boxes_that_meet(count, seed):
 
 def test_more_pairs_than_can_be_tried(monkeypatch):
     """Where too many faces lie side by side, the reader says that not all of them were tried."""
-    monkeypatch.setattr("rocking.bodies.solid._self_crossing.MOST_PAIRS", 100)
+    monkeypatch.setattr("rocking.bodies.solid.self_intersection.MOST_PAIRS", 100)
     vertices, faces = ball(3)
-    assert repaired(vertices, faces).repairs[-1].startswith("too many adjacent faces")
+    assert repair_surface(vertices, faces).repairs[-1].startswith("too many adjacent faces")
 
 
 @pytest.mark.parametrize(
@@ -298,4 +298,4 @@ def test_more_pairs_than_can_be_tried(monkeypatch):
 def test_numbers_of_vertices_that_are_not_there(vertices, faces, words):
     """Faces that name other vertices, or are none, are refused in a sentence."""
     with pytest.raises(GeometryError, match=words):
-        repaired(vertices, faces)
+        repair_surface(vertices, faces)
