@@ -7,6 +7,7 @@ ROCKING_CAMPAIGN=1 there are 60 rooms at each level and 100 sounds of each other
 
 import os
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from rocking.identification.readers import sound as sounds
 from rocking.identification.readers.recording import Recording
 from rocking.identification.readers.rocking_sequence import law_misfit, next_impact
 from rocking.identification.readers.sound import _onset_density, impacts_from_sound
+from rocking.identification.readers.sound_constants import SOUND
 
 pytestmark = [pytest.mark.slow, pytest.mark.verifies(room="evidence")]
 CAMPAIGN = os.environ.get("ROCKING_CAMPAIGN") == "1"
@@ -73,7 +75,7 @@ def test_last_impacts_among_echoes_are_found(seed, decibels, monkeypatch):
     """Every impact is found and none added; not so if how loud an impact is due to be is not asked for."""
     sound = rocking_sounds.rocking(seed, decibels)
     assert complete(heard(sound.samples).times, sound.times)
-    monkeypatch.setattr(sounds, "_FADES", 1e3)
+    monkeypatch.setattr(sounds, "SOUND", replace(SOUND, loudness_scatter=1e3))
     assert not complete(heard(sound.samples).times, sound.times)
 
 

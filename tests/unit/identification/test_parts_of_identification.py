@@ -241,11 +241,11 @@ def test_noise_is_not_like_the_sum_of_other_noise():
     """Correlations of independent noise are of 1 / sqrt(n), and of one click in all of them are 1."""
     random, rate, places = np.random.default_rng(6), 8000.0, np.array([1000, 3000, 5000, 7000])
     noise = random.normal(size=9000)
-    size = int(sound._LONG * rate) + int(sound._BEFORE * rate)
+    size = int(sound.SOUND.long_after * rate) + int(sound.SOUND.before * rate)
     assert np.abs(sound._matches(noise, rate, places, 0)[1]).max() < 5.0 / math.sqrt(size)
     click, alike = random.normal(size=size), np.zeros(9000)
     for k, place in enumerate(places):
-        alike[place - int(sound._BEFORE * rate) :][:size] = (1.0 + k) * click
+        alike[place - int(sound.SOUND.before * rate) :][:size] = (1.0 + k) * click
     np.testing.assert_allclose(sound._matches(alike, rate, places, 0)[1], 1.0, rtol=1e-9)
 
 

@@ -25,34 +25,7 @@ from rocking.identification.readers.rocking_sequence import (
     next_impact,
     rejection_reason,
 )
-
-_BEFORE, _AFTER, _LONG, _REACH = 0.004, 0.030, 0.060, 0.012
-_QUIET, _RINGING = 0.012, 0.100
-_SILENT, _FROM, _EARLIEST, _LATEST, _UNTIL, _RING = -0.026, -0.014, -0.010, 0.004, 0.006, 0.030
-"""Windows relative to the place of a click [s]: noise, analysis, possible onset, decay."""
-
-_PICK_STEP, _PAST, _FAILED = 9e-5, 6, 0.05
-"""Time step of onsets [s]; order of the prediction of noise; density of onsets if the prediction fails."""
-
-_RISES, _LOUD = (3e-4, 8e-4), np.geomspace(0.5, 500.0, 6)
-"""Duration of the push of an impact [s]; power of a click over the noise."""
-
-_ROUNDS, _PEAKS, _APART, _RIVAL, _FAR = 6, 10, 5e-4, 0.25, 2e-3
-_EQUALISED = 0.1
-_FARTHEST, _STEP, _NOISES = 0.010, 1e-5, 2.0
-_NUMBERS, _MOST_NUMBERS, _FAILS, _LOOSE = 25.0, 60.0, 10.0, 3e-3
-"""Smallest and largest number of independent values of a click; degrees of freedom of the misfit of the law; first
-tolerance of the tie between feet [s]."""
-
-_AGREED, _MOST = 30.0, 30.0
-"""Weight of agreeing modes, fitted to 207 rooms at 8 dB; largest misfit of the law."""
-
-_LEAST, _SEARCHED, _AROUND = 5, 0.15, 0.040
-_FADED, _FADES, _TAIL = 0.75, 0.25, 8.0
-"""Loudness of an impact over the last one on its foot, from 119 rooms, and its relative deviation; degrees of freedom
-of noise and echoes."""
-
-_BAND = (150.0, 9_000.0)
+from rocking.identification.readers.sound_constants import SOUND
 
 
 def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -61,7 +34,7 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
     # filters of minimum phase are causal; the mean spectrum of clicks becomes flat as far as possible
-    gains = (np.sqrt(clicks) / (noise + _EQUALISED * clicks), 1.0 / np.sqrt(noise))
+    gains = (np.sqrt(clicks) / (noise + SOUND.equalisation * clicks), 1.0 / np.sqrt(noise))
     sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
     return sharp, white
 
@@ -78,22 +51,24 @@ def onsets(
     all_places, certainties = _best_places(sharp, rate, times, orders)
     for here in _feet(orders):
         places = all_places[here]
-        likenesses[here] = _likeness(_cuts(sharp, rate, places, _BEFORE, _AFTER))
+        likenesses[here] = _likeness(_cuts(sharp, rate, places, SOUND.before, SOUND.after))
         after, share = _onset_density(white, rate, places)
         begun.append(share)
         onset_times[here] = (places + _subsample_offsets(sharp, rate, places)) / rate + after @ share
-        clicks.append(_mean(sharp, rate, places, _QUIET, _RINGING))
+        clicks.append(_mean(sharp, rate, places, SOUND.mode_noise, SOUND.mode_decay))
     if len(begun) < 2:
         return onset_times, certainties, float(np.median(likenesses)), 0.0
-    off = np.arange(-_FARTHEST, _FARTHEST, _STEP)
+    off = np.arange(-SOUND.largest_foot_lag, SOUND.largest_foot_lag, SOUND.foot_lag_step)
     first, second = begun
     step = after[1] - after[0]
     apart = float(after @ (second - first))
     ties = np.convolve(second, first[::-1]) / step
     picked = np.interp(off + apart, (np.arange(ties.size) - after.size + 1) * step, ties, left=0.0, right=0.0)
     law = law_misfit(onset_times + np.outer(off, orders % 2), orders)
-    likely = _AGREED * _agreement(clicks[0], clicks[1], rate, off + apart) - 0.5 * np.minimum(law - law.min(), _MOST)
-    likely += np.log(picked + _FAILED)
+    likely = SOUND.agreement_weight * _agreement(clicks[0], clicks[1], rate, off + apart) - 0.5 * np.minimum(
+        law - law.min(), SOUND.largest_law_misfit
+    )
+    likely += np.log(picked + SOUND.onset_failure)
     share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
     later = float(share @ off)  # the mean has the smallest square error among several likely ties
@@ -113,11 +88,13 @@ def revised(
 
     An impact is similar to earlier ones on its foot, nearly as loud, and near its expected time: see `_impact`.
     """
-    for order in range(_LEAST, int(orders[-1])):
+    for order in range(SOUND.first_revised, int(orders[-1])):
         times, orders, members = _with_missed_impact(sharp, rate, times, orders, members, order)
     # a missing audible impact is evidence against all later ones
     numbers = range(int(orders[-1]) + 1)
-    certainties = np.nan_to_num([_impact(sharp, rate, times, orders, n)[1] if n >= _LEAST else 0.0 for n in numbers])
+    certainties = np.nan_to_num(
+        [_impact(sharp, rate, times, orders, n)[1] if n >= SOUND.first_revised else 0.0 for n in numbers]
+    )
     last = numbers[-1] - int(np.cumsum(certainties)[::-1].argmax())
     kept = (orders <= last) & (certainties[orders] > MISSED)
     times, orders, members = times[kept], orders[kept], members[kept]
@@ -147,23 +124,25 @@ def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray,
     about, span = next_impact(times[orders < order], orders[orders < order], order)
     if np.isnan(about):
         return np.nan, np.nan
-    reach = _SEARCHED * span
+    reach = SOUND.search_range * span
     earlier = np.flatnonzero((orders < order) & (orders % 2 == order % 2))
-    begin, end, around = int(_BEFORE * rate), int(_AFTER * rate), max(_AROUND, reach)
+    begin, end, around = int(SOUND.before * rate), int(SOUND.after * rate), max(SOUND.noise_range, reach)
     first, last = max(int((about - around) * rate), begin), min(int((about + around) * rate), sharp.size - end)
     if earlier.size < 2 or last <= first or about - reach >= last / rate:
         return np.nan, np.nan
     places = _arrangements(sharp, rate, times[earlier])[0]
-    cuts = _cuts(sharp, rate, places, _BEFORE, _AFTER)
+    cuts = _cuts(sharp, rate, places, SOUND.before, SOUND.after)
     mean = cuts.mean(axis=0)
     match = np.correlate(sharp[first - begin : last + end], mean, "valid")
     noise = 1.4826 * float(np.median(np.abs(match))) + np.finfo(float).tiny
-    loud, expected = match / noise, _FADED * float(cuts[-1] @ mean) / noise
+    loud, expected = match / noise, SOUND.loudness_ratio * float(cuts[-1] @ mean) / noise
     off = (np.arange(first, first + match.size) / rate - about) / span
-    spread = 1.0 + (_FADES * expected) ** 2
-    likely = 0.5 * (_TAIL + 1.0) * np.log1p(loud**2 / _TAIL) - 0.5 * (loud - expected) ** 2 / spread  # Eq. 323
+    spread = 1.0 + (SOUND.loudness_scatter * expected) ** 2
+    likely = (
+        0.5 * (SOUND.noise_tail + 1.0) * np.log1p(loud**2 / SOUND.noise_tail) - 0.5 * (loud - expected) ** 2 / spread
+    )  # Eq. 323
     likely -= 0.5 * np.log(spread) + 0.5 * (off / SCATTER) ** 2 + np.log(np.sqrt(2.0 * np.pi) * SCATTER * span * rate)
-    likely[np.abs(off) > _SEARCHED] = -np.inf
+    likely[np.abs(off) > SOUND.search_range] = -np.inf
     peak = int(likely.argmax())
     # each of these impacts had a successor: Laplace's rule of succession
     sure = float(np.logaddexp.reduce(likely) + np.log(orders[orders < order].size + 1.0))
@@ -184,15 +163,15 @@ def _agreement(left: FloatArray, right: FloatArray, rate: float, lags: FloatArra
     has the phase of exp(-2 i w d) for any sign. Only the true lag d agrees with all modes.
     """
     size = next_fast_len(2 * left.size, real=True)
-    quiet = int(0.75 * _QUIET * rate)
+    quiet = int(0.75 * SOUND.mode_noise * rate)
     cross, weight = np.ones(size // 2 + 1, dtype=np.complex128), np.ones(size // 2 + 1)
     for click in (left, right):
         spectrum = rfft(click, size)
         cross = spectrum * np.conj(cross)
         noise = float((click[:quiet] ** 2).mean()) * click.size
-        weight *= np.maximum(np.abs(spectrum) ** 2 - _NOISES * noise, 0.0)
+        weight *= np.maximum(np.abs(spectrum) ** 2 - SOUND.subtracted_noise * noise, 0.0)
     frequency = np.arange(cross.size) * rate / size
-    inside = (frequency > _BAND[0]) & (frequency < _BAND[1]) & (weight > 0.0)
+    inside = (frequency > SOUND.mode_band[0]) & (frequency < SOUND.mode_band[1]) & (weight > 0.0)
     phase = 2.0 * np.angle(cross[inside]) + 4.0 * np.pi * np.outer(lags, frequency[inside])
     weight = weight[inside] ** 0.25
     return np.asarray(np.cos(phase) @ (weight / max(float(weight.sum()), np.finfo(float).tiny)))
@@ -210,27 +189,27 @@ def _best_places(sharp: FloatArray, rate: float, times: FloatArray, orders: IntA
         placed = places / rate
         for here in feet:
             placed[:, here] -= np.median(placed[:, here] - times[here], axis=1, keepdims=True)
-        misfit = law_misfit(placed, orders, _LOOSE)
-        return np.asarray(-0.5 * _FAILS * np.log1p(misfit / _FAILS))  # Eq. 317
+        misfit = law_misfit(placed, orders, SOUND.law_tolerance)
+        return np.asarray(-0.5 * SOUND.law_tail * np.log1p(misfit / SOUND.law_tail))  # Eq. 317
 
-    tried, alike, reach = [], [], int(_REACH * rate)
+    tried, alike, reach = [], [], int(SOUND.reach * rate)
     for rows in product(*(_arrangements(sharp, rate, times[here]) for here in feet)):
         tried.append(np.empty(times.size, dtype=np.int64))
         alike.append(0.0)
         for here, row in zip(feet, rows, strict=True):
             tried[-1][here] = row
-            alike[-1] += float(_lag_log_likelihood(_matches(sharp, rate, row, 0)[1], _NUMBERS).sum())
+            alike[-1] += float(_lag_log_likelihood(_matches(sharp, rate, row, 0)[1], SOUND.fewest_values).sum())
     places = tried[int(np.argmax(np.array(alike) + law(np.array(tried))))]
-    for _ in range(_ROUNDS):
+    for _ in range(SOUND.rounds):
         moves: list[tuple[int, int, float]] = [(0, 0, 0.0)]
         for here in feet:
             correlations = _matches(sharp, rate, places[here], reach)[1]
             clicks = _lag_log_likelihood(correlations, _independent_numbers(correlations))
             for which, row, clicked in zip(here, correlations, clicks, strict=True):
                 peaks = np.flatnonzero((row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:])) + 1
-                peaks = peaks[np.abs(peaks - reach) > _APART * rate]
+                peaks = peaks[np.abs(peaks - reach) > SOUND.peak_distance * rate]
                 gains = clicked - clicked[reach]
-                moves += [(which, k - reach, float(gains[k])) for k in peaks[np.argsort(-row[peaks])][:_PEAKS]]
+                moves += [(which, k - reach, float(gains[k])) for k in peaks[np.argsort(-row[peaks])][: SOUND.peaks]]
         moved = np.repeat(places[None], len(moves), axis=0)
         moved[np.arange(len(moves)), [move[0] for move in moves]] += [move[1] for move in moves]
         score = law(moved) + [move[2] for move in moves]
@@ -240,7 +219,7 @@ def _best_places(sharp: FloatArray, rate: float, times: FloatArray, orders: IntA
             break
     sure = np.full(times.size, np.inf)
     for (which, move, _), rival in zip(moves, score, strict=True):
-        if abs(move - moves[best][1]) > _FAR * rate:
+        if abs(move - moves[best][1]) > SOUND.rival_distance * rate:
             sure[which] = min(sure[which], score[best] - rival)
     return places, sure
 
@@ -253,7 +232,7 @@ def _lag_log_likelihood(correlations: FloatArray, numbers: FloatArray | float) -
 def _independent_numbers(correlations: FloatArray) -> FloatArray:
     """Return the number of independent values of a click, from its correlations away from the match, in rows."""
     squares = (correlations**2).mean(axis=1, keepdims=True)
-    return np.asarray(np.clip(1.0 / (squares + np.finfo(float).tiny), _NUMBERS, _MOST_NUMBERS))
+    return np.asarray(np.clip(1.0 / (squares + np.finfo(float).tiny), SOUND.fewest_values, SOUND.most_values))
 
 
 def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[IntArray]:
@@ -261,8 +240,8 @@ def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[Int
 
     Each other click is placed by the sum of louder ones, then all by the sum of all others.
     """
-    start, reach = np.rint(times * rate).astype(np.int64), int(_REACH * rate)
-    cuts = _cuts(sound, rate, start, _BEFORE, _LONG)
+    start, reach = np.rint(times * rate).astype(np.int64), int(SOUND.reach * rate)
+    cuts = _cuts(sound, rate, start, SOUND.before, SOUND.long_after)
     size = next_fast_len(cuts.shape[1] + 2 * reach + 1, real=True)
     spectrum, lags, here = rfft(cuts, size), np.arange(-2 * reach, 2 * reach + 1), np.arange(-reach, reach + 1)
     cross = np.array([irfft(np.conj(row) * spectrum, size)[:, lags] for row in spectrum])
@@ -272,7 +251,7 @@ def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[Int
     arrangements: dict[bytes, IntArray] = {}
     for first in order:
         lag, placed = np.zeros(start.size, dtype=np.int64), [first]
-        for turn in range(_ROUNDS):
+        for turn in range(SOUND.rounds):
             before = lag.copy()
             for row in order:
                 if turn == 0 and row == first:
@@ -284,16 +263,18 @@ def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[Int
             if turn and np.array_equal(before, lag):
                 break
         arrangements.setdefault(
-            np.rint((start + lag - np.median(start + lag)) / (_APART * rate)).tobytes(), start + lag
+            np.rint((start + lag - np.median(start + lag)) / (SOUND.peak_distance * rate)).tobytes(), start + lag
         )
     return list(arrangements.values())
 
 
 def _matches(sound: FloatArray, rate: float, places: IntArray, reach: int) -> tuple[FloatArray, FloatArray]:
     """Return the match of clicks with the sum of the others at lags within `reach`, and the correlations."""
-    cuts = _cuts(sound, rate, places, _BEFORE, _LONG)
+    cuts = _cuts(sound, rate, places, SOUND.before, SOUND.long_after)
     size = cuts.shape[1]
-    wide = _cuts(sound, rate, places, _BEFORE + reach / rate, _LONG + reach / rate)[:, : size + 2 * reach]
+    wide = _cuts(sound, rate, places, SOUND.before + reach / rate, SOUND.long_after + reach / rate)[
+        :, : size + 2 * reach
+    ]
     others = cuts.sum(axis=0) - cuts
     total = np.cumsum(np.pad(wide**2, ((0, 0), (1, 0))), axis=1)
     match = np.array([np.correlate(row, other, "valid") for row, other in zip(wide, others, strict=True)])
@@ -333,12 +314,15 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
     Their mean is noise first, then a random sound of their spectrum, which grows during the impact. The likelihood of
     these normal values prevents a late onset for low modes.
     """
-    step = max(1, round(_PICK_STEP * rate))
-    cuts = _cuts(white, rate, places, -_SILENT, _RING)
+    step = max(1, round(SOUND.onset_step * rate))
+    cuts = _cuts(white, rate, places, -SOUND.noise_start, SOUND.decay_end)
     cuts = cuts[:, : cuts.shape[1] // step * step].reshape(places.size, -1, step).mean(axis=2)
     rate /= step
-    quiet, first, last, until = (int((at - _SILENT) * rate) for at in (_FROM, _EARLIEST, _LATEST, _UNTIL))
-    before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: _PAST + 1]
+    quiet, first, last, until = (
+        int((at - SOUND.noise_start) * rate)
+        for at in (SOUND.analysis_start, SOUND.onset_earliest, SOUND.onset_latest, SOUND.analysis_end)
+    )
+    before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: SOUND.prediction_order + 1]
     before[0] = 1.000001 * before[0] + np.finfo(float).tiny
     # the predictable part of the noise is removed: echoes and hum
     cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), [1.0], cuts, axis=1)
@@ -353,7 +337,7 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
     late = np.arange(first, last) - quiet
     behind = np.array([np.pad(mean[begin:], (0, begin)) for begin in late.tolist()]).T
     likely = np.full(late.size, -np.inf)
-    for rise, loud in product(_RISES, _LOUD):
+    for rise, loud in product(SOUND.push_durations, SOUND.click_powers):
         grown = 0.5 - 0.5 * np.cos(np.pi * np.minimum((np.arange(mean.size) + 0.5) / (rise * rate), 1.0))
         root = cholesky(loud * np.outer(grown, grown) * alike / alike[0, 0] + np.eye(mean.size), lower=True)
         # a later onset has fewer values of the same covariance; the first part of the root applies
@@ -361,21 +345,7 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
         likely = np.logaddexp(likely, -cost[mean.size - late - 1, np.arange(late.size)])
     likely -= 0.5 * np.cumsum(mean**2)[late - 1]
     share = np.exp(likely - likely.max())
-    return (late + quiet) / rate + _SILENT, share / share.sum()
-
-
-_PIECES = 2000
-_UNHEARD = 3.0
-"""Contrast of an impact detected by its similarity only."""
-
-_TIED = 3e-4
-"""Standard deviation of the time between both feet that causes a doubt [s]."""
-
-_FEWEST, _LOST = 4, 1.0 / 3.0
-"""Smallest number of times; largest clipped fraction of a sound."""
-
-_ALIKE = 0.45
-"""Between the values of 80 rocking bodies (at least 0.69 at 8 dB) and of speech (at most 0.24)."""
+    return (late + quiet) / rate + SOUND.noise_start, share / share.sum()
 
 
 def impacts_from_sound(recording: Recording) -> ImpactTimes:
@@ -389,27 +359,28 @@ def impacts_from_sound(recording: Recording) -> ImpactTimes:
             "fewer than three clicks are above the noise; record closer to the body or in a quieter room"
         )
     lost = float(((channel >= 0.999 * channel.max()) | (channel <= 0.999 * channel.min())).mean())
-    if lost > _LOST:
+    if lost > SOUND.largest_clipped:
         raise recording.error(
             "{clipped:.0f} % of the sound is clipped, at most {limit:.0f} % is allowed; record at a lower level",
-            clipped=100.0 * lost, limit=100.0 * _LOST,
+            clipped=100.0 * lost, limit=100.0 * SOUND.largest_clipped,
         )  # fmt: skip
     rate, rough, orders, members = recording.rate, clicks.times[sequence.members], sequence.orders, sequence.members
     sharp, white = sharpened(clicks.sound, rate, rough)
     times, chosen, alike, tied = onsets(sharp, white, rate, rough, orders)
     grows = bool(np.all(np.diff(times) > 0.0))
-    lawful = times if grows and chosen.min() > _RIVAL else rough
+    lawful = times if grows and chosen.min() > SOUND.rival_margin else rough
     reason = rejection_reason(lawful, sequence, clicks.contrasts, clicks.strengths)
-    if not reason and alike < _ALIKE:
-        reason = f"the clicks are not similar (median correlation {alike:.2f}; at least {_ALIKE} is required)"
+    if not reason and alike < SOUND.smallest_similarity:
+        limit = SOUND.smallest_similarity
+        reason = f"the clicks are not similar (median correlation {alike:.2f}; at least {limit} is required)"
     if reason:
         raise recording.error("not the sound of a rocking body: {reason}", reason=reason)
     heard = rough = times if grows else rough
     rough, orders, members = revised(sharp, rate, rough, orders, members)
     if not np.array_equal(rough, heard):
         times, chosen, _, tied = onsets(sharp, white, rate, rough, orders)
-    is_timed = chosen > _RIVAL
-    if is_timed.sum() < _FEWEST:
+    is_timed = chosen > SOUND.rival_margin
+    if is_timed.sum() < SOUND.fewest_times:
         raise recording.error(
             "only {count} of {clicks} clicks have a certain time", count=int(is_timed.sum()), clicks=is_timed.size,
             hint="record closer to the body",
@@ -422,17 +393,17 @@ def impacts_from_sound(recording: Recording) -> ImpactTimes:
     )
     if np.any(np.diff(times) <= 0.0):
         times = rough
-    contrasts = np.where(members < 0, _UNHEARD, clicks.contrasts[members])
+    contrasts = np.where(members < 0, SOUND.revised_contrast, clicks.contrasts[members])
     probabilities = 1.0 / (1.0 + np.exp(-_evidence(contrasts) - 2.0))
     doubts = _doubts(recording, contrasts, orders, times)
-    if tied > _TIED:
+    if tied > SOUND.doubtful_foot_lag:
         doubts += (f"the time between impacts on both feet has an uncertainty of {1e3 * tied:.1f} ms",)
     return ImpactTimes(times, None, np.clip(probabilities, 0.01, 1.0), recording.name, doubts, _loudness(channel, rate))
 
 
 def _loudness(channel: FloatArray, rate: float) -> FloatArray:
     """Return times and largest amplitudes of segments of a sound, for pictures."""
-    step = max(1, channel.size // _PIECES)
+    step = max(1, channel.size // SOUND.picture_pieces)
     loud = np.abs(channel[: channel.size // step * step]).reshape(-1, step).max(axis=1)
     return np.column_stack([(np.arange(loud.size) + 0.5) * step / rate, loud])
 
@@ -440,9 +411,9 @@ def _loudness(channel: FloatArray, rate: float) -> FloatArray:
 def _evidence(contrasts: FloatArray) -> FloatArray:
     """Return the log likelihood ratio of impact and noise from contrasts.
 
-    Contrasts of noise and echoes decrease with the power -5; a contrast of 3.2 is neutral.
+    Contrasts of noise and echoes decrease with a power; a neutral contrast has the ratio 1.
     """
-    return np.clip(5.0 * np.log(contrasts / 3.2), -4.0, 4.0)
+    return np.clip(SOUND.contrast_power * np.log(contrasts / SOUND.neutral_contrast), -4.0, 4.0)
 
 
 def _doubts(recording: Recording, contrasts: FloatArray, orders: IntArray, times: FloatArray) -> tuple[str, ...]:
@@ -452,7 +423,7 @@ def _doubts(recording: Recording, contrasts: FloatArray, orders: IntArray, times
         doubts.append(f"an impact seems to be missing between {times[before]:.3f} and {times[before + 1]:.3f} s")
     if recording.clipped:
         doubts.append(f"the sound is clipped {recording.clipped} times; record at a lower level")
-    faint = contrasts < 3.2
+    faint = contrasts < SOUND.neutral_contrast
     if faint.any():
         doubts.append(f"{int(faint.sum())} of {faint.size} impacts are hardly above noise and echoes")
     return tuple(doubts)
