@@ -60,8 +60,9 @@ class Pushover:
         return Answer({
             "curves": AnswerRows({name: getattr(self, name) for name in names}),
             "restraints": AnswerRows({
-                "restraint": [item.name for item in self.body.restraints], "dissipated_energy": self.dissipated,
-                "largest_force": self.force.max(axis=0), "smallest_force": self.force.min(axis=0),
+                "restraint": [item.name for item in self.body.restraints], "dissipated_energy": self.dissipated.tolist(),
+                "largest_force": self.force.max(axis=0).tolist(),
+                "smallest_force": self.force.min(axis=0).tolist(),
             }),
         })  # fmt: skip
 

@@ -356,15 +356,17 @@ class RestrainedReference:
         until = self.count if uplift is None else uplift[0]
         while self.stretch < until:
             self._move(1.0)
-        if uplift is None:
-            return None
-        self.side = uplift[2]
-        self._move(uplift[1])
+        return None if uplift is None else self._lift(uplift[1], uplift[2])
+
+    def _lift(self, tau: float, side: int) -> None:
+        """Lift off at an instant of the stretch."""
+        self.side = side
+        self._move(tau)
         if self.ended:
             return None
         self.out.uplifts += 1
         self._note(EventKind.UPLIFT)
-        return self._head(self.side)
+        return self._head(side)
 
     def _holding(self) -> RestoringMoments:
         """Return the restoring moments with those of restraints in their present state."""

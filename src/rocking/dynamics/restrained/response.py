@@ -181,7 +181,7 @@ class RestrainedResponse(ResponseBase):
     def restraints(self) -> AnswerRows:
         """Extremes, yielding, residual state and energy of each restraint."""
         pairs = list(zip(self.body.restraints, self.trajectory.devices, strict=True))
-        columns = {
+        columns: dict[str, list[Any]] = {
             "restraint": [item.name for item, _ in pairs], "restraint_kind": [item.kind for item, _ in pairs],
             **{name: [device.summary[name] for _, device in pairs] for name in RESTRAINT_RESULTS},
             "residual_force": [device.law.residual_force for _, device in pairs],
