@@ -10,6 +10,7 @@ from rocking.decision.prediction.model_error import KEPT
 
 SAMPLE = 3
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(
         not (shaking_tests.DATA / "shaking_tests").is_dir(), reason="the shaking-table tests are not beside the project"
     ),

@@ -100,6 +100,7 @@ def test_page_is_told_in_words(rocked):
     assert any(a.get("name") == "viewport" for _, a in made.seen)
 
 
+@pytest.mark.slow
 def test_name_of_a_motion_cannot_become_markup():
     """A motion called like a script, or with a dollar sign, is shown as it is called and runs nothing."""
     name = "</script><script>alert(1)</script> $data & 'x'"
@@ -187,6 +188,7 @@ def test_body_turns_about_the_foot_it_stands_on(theta):
     assert shape.turned(np.array([[0.0, 1.0]]), theta)[0, 0] * theta > 0.0
 
 
+@pytest.mark.slow
 def test_window_holds_the_body_all_the_time(rocked):
     """Every corner at every instant lies inside the window; where the ground runs away the window goes with it."""
     others = simulate(BLOCK, pulses.sine(6.0, 0.8), 0.9), free_rocking(HOLLOW, 0.2), free_rocking(LOLLIPOP, 0.1)

@@ -16,6 +16,7 @@ def marks(figure):
     return dict(zip(("summit", "saddle", "stable"), offsets[-3:], strict=True))
 
 
+@pytest.mark.slow
 def test_every_equilibrium_is_marked_where_it_is():
     """Of a box: its own pose in the middle, the opposite one at half a turn, saddles over its edges."""
     found = marks(equilibria_picture(Solid(box(1.0, 2.0, 3.0))))
@@ -26,6 +27,7 @@ def test_every_equilibrium_is_marked_where_it_is():
     assert np.abs(np.cos(lowest[:, 0])) == pytest.approx([1.0, 1.0], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_another_pose_stands_in_the_middle():
     """The map is that around the pose, and the panels say its height and the nearest edge of its support."""
     solid = Solid(box(1.0, 2.0, 3.0))

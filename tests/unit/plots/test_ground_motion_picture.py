@@ -13,6 +13,8 @@ from rocking.motions import GroundMotion, peak_ground_displacement, peak_ground_
 from rocking.plots import ground_motion_picture
 from rocking.plots.labels import fine_samples, traces
 
+pytestmark = pytest.mark.slow
+
 G = 9.80665
 AMPLITUDE, PERIOD = 3.0, 0.8
 W = 2.0 * math.pi / PERIOD

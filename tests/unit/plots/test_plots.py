@@ -17,6 +17,8 @@ from rocking.plots.paper_figures import paper_figures
 from rocking.plots.style import COLORS, LINES
 from rocking.restitution import Ked, energy_balance, models
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", paper_figures())

@@ -164,6 +164,7 @@ def test_small_rocking_fills_its_panel():
     assert "far outside" in axes.get_title(loc="right")
 
 
+@pytest.mark.slow
 def test_lost_contact_is_told():
     """A jerk downwards of 2 g takes the ground away, and the friction panel says so."""
     with pytest.warns(PureRockingWarning, match="the contact force becomes tensile"):
@@ -192,6 +193,7 @@ def _cases():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", _cases())
 def test_no_text_over_text(case):
     """At 1200 pixels no two words touch, and none leaves the page."""
@@ -250,6 +252,7 @@ def test_a_body_that_lies_within_the_first_step() -> None:
 SLENDER = Block(width=1.0, height=4.0).with_feet(0.1, 1)
 
 
+@pytest.mark.slow
 def test_map_shows_four_regimes_and_the_closed_form():
     """Cells of an image hold regimes by complementarity; the curve is friction_demand, 1 % off is told apart."""
     (axes,) = regime_map_picture(SLENDER, cells=20).axes
@@ -276,6 +279,7 @@ def test_map_refuses_what_it_cannot_draw(options, words):
         regime_map_picture(SLENDER, **options)
 
 
+@pytest.mark.slow
 def test_response_is_drawn_over_its_regimes():
     """The curves are the samples, and the bands cover the time axis once."""
     response = rk.simulate(Block(width=1.2, height=2.0), rk.pulses.sine(amplitude=9.0, period=0.9), None, friction=0.62)
@@ -343,6 +347,7 @@ PICTURES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", PICTURES)
 def test_pictures_of_all_kinds_are_written_the_same_every_time(kind, tmp_path):
     """Drawn and written twice, a file is the same byte by byte, with 300 dots in an inch."""

@@ -60,6 +60,7 @@ def opened(path):
     return told, told["extras"]["rocking"], array
 
 
+@pytest.mark.slow
 def test_another_program_reads_the_same_body(solid, tmp_path):
     """Volume and centre by trimesh, which knows nothing of ours; y is up, and with z up it would lie."""
     GltfFile(solid).write(tmp_path / "body.glb")
@@ -73,6 +74,7 @@ def test_another_program_reads_the_same_body(solid, tmp_path):
     assert abs(wrong.centre[2] - wrong.ground - height) > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("up", ["z", (-1.0, 0.0, 0.0)])
 def test_faces_that_close_holes_are_told(tmp_path, up):
     """Of a block without half of its top, and of one without its bottom: area and plane of what was closed; of a whole
@@ -115,6 +117,7 @@ def test_the_file_stands_again_in_each_pose(solid, scan, tmp_path):
     assert min(np.diff(sorted(heights))) > 1e-4
 
 
+@pytest.mark.slow
 def test_colours_are_those_of_the_height(solid, tmp_path):
     """Brightness follows the height of the centre over the point that is below, from all pairs of points."""
     found = solid.equilibria()
@@ -193,6 +196,7 @@ def test_the_page_holds_the_poses_of_the_response():
     assert "src=" not in text.replace("script-src", "").replace("style-src", "").replace("default-src", "")
 
 
+@pytest.mark.slow
 def test_the_film(tmp_path):
     """A film has a frame for each step, and the body moves in it."""
     path = RESPONSE.animate(tmp_path / "film.gif", fps=5.0)
@@ -206,6 +210,7 @@ def test_the_film(tmp_path):
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.4, 0.0), (0.6, 1.5), (0.1, 1.5)], 2000.0)], depth=0.8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("response", "turns"),
     [
@@ -228,6 +233,7 @@ def test_what_is_drawn_stands_on_the_ground(response, turns):
     assert turns == 0.0 or np.abs(wrong).max() > 1e-3 * scene.reach
 
 
+@pytest.mark.slow
 def test_every_response_has_an_animation(tmp_path):
     """Rocking on a flat base, and sliding in the plane: a page that says what moves it, and a film; mass points not."""
     space = rk.simulate(STATUE, PULSE, "housner")

@@ -151,6 +151,7 @@ def _invented(barrier, seed=3, count=128):
     return tests, observed, fractions
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "repeated sampling", "an invented body with a barrier lowered by 30 %", room="studies",
     control="test_calibration_without_the_factors",

@@ -42,6 +42,7 @@ def test_uplift_of_a_plane_body(level, offset):
             assert plain == float(threshold * factor > GRAVITY * 0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "made-up bodies on slopes, simulated one by one", control="within")
 def test_without_the_slope_a_prediction_is_too_sure():
     """Bodies on shelves of hidden slope: with the slope sampled the probabilities are calibrated, without it not."""
