@@ -162,9 +162,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     if restitution is None or (isinstance(restitution, str) and restitution in MEASURED):
         for name in conventions.COMPARED_RESTITUTIONS:
             try:
-                other_mechanics = _mechanics(
-                    body, motions, {**inputs, "restitution": name}, gravity, normal_restitution, normal_restitution_law
-                )
+                other_mechanics = mechanics.with_restitution(name)
             except RockingError:
                 continue  # the model does not apply to this body
             other_results = _counted(

@@ -2,9 +2,12 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar
+
+from typing import Any, Self
 
 import numpy as np
 
@@ -226,6 +229,18 @@ class SampledBodies(ABC):
         self.inputs["model_error"] = Uncertain(error.text, error.factors)
         if self.stated.get("model_error") is None:
             self.assumed["model_error"] = with_reason(error.text, error.source)
+
+    @abstractmethod
+    def _set_restitution(self, stated: Any) -> None:
+        """Set the law of impacts, and the distribution of its parameter as the first input."""
+
+    def with_restitution(self, stated: Any) -> Self:
+        """Return a copy with another restitution; shapes are shared."""
+        other = copy(self)
+        other.inputs = {name: uncertain for name, uncertain in self.inputs.items() if name != "restitution"}
+        other.assumed = dict(self.assumed)
+        other._set_restitution(stated)
+        return other
 
     @property
     def widths(self) -> dict[str, int]:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from copy import copy
 from types import MappingProxyType
 from typing import Any
 
@@ -102,14 +101,6 @@ class SampledInSpace(SampledBodies):
         })  # fmt: skip
         self._set_restitution(inputs.get("restitution"))
         self._set_model_error()
-
-    def with_restitution(self, stated: Any) -> "SampledInSpace":
-        """Return a copy with another restitution."""
-        other = copy(self)
-        other.inputs = {name: uncertain for name, uncertain in self.inputs.items() if name != "restitution"}
-        other.assumed = dict(self.assumed)
-        other._set_restitution(stated)
-        return other
 
     def law(self, level: float) -> Any:
         """Return the restitution at a probability of its distribution, as for `simulate`."""

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.bodies.solid import Solid, box
 from rocking.decision.prediction import predict
+from rocking.decision.prediction._predict import _mechanics
 from rocking.decision.prediction.placement import SHELF
 from rocking.errors import RockingError
 from rocking.statistics.scores import Forecasts
@@ -90,3 +92,20 @@ def test_the_headline_names_its_condition():
     assert any(sentence.startswith("The azimuth was sampled") for sentence in found.sentences)
     stated = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x}, azimuth=0.1, count=4, **OPTIONS)
     assert not any(sentence.startswith("The azimuth was sampled") for sentence in stated.sentences)
+
+
+@pytest.mark.verifies("computed anew", "bodies that are sampled again", within="0")
+@pytest.mark.parametrize("body", [rk.Block(width=0.5, height=2.0), Solid(box(0.5, 0.7, 2.0))])
+def test_another_restitution_leaves_the_bodies(body):
+    """Bodies with another restitution are those of a prediction with this restitution, to the bit."""
+    motion = rk.pulses.sine(3.0, 0.8)
+    first, other, new = (
+        _mechanics(body, motion, {"restitution": name}, GRAVITY, 0.0, "newton") for name in ("measured", "ked", "ked")
+    )
+    draws = np.random.default_rng(3).random((8, sum(new.widths.values())))
+    found, anew = (each.run(draws, 0, np.ones(8), 1) for each in (first.with_restitution("ked"), other))
+    np.testing.assert_array_equal(found.peak, anew.peak)
+    assert first.with_restitution("ked").inputs["restitution"].text == new.inputs["restitution"].text
+    # negative control: the restitution before
+    levels = np.random.default_rng(3).random((8, sum(first.widths.values())))
+    assert (first.run(levels, 0, np.ones(8), 1).peak != anew.peak).any()
