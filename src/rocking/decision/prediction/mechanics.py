@@ -5,9 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, ClassVar
-
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
