@@ -80,7 +80,6 @@ def test_two_workers_share_one_chunk(tmp_path: Path) -> None:
     assert spent[1] / spent[2] > 1.5  # 1.9 on a quiet machine; a busy one delays what is beside the motions
 
 
-@pytest.mark.slow
 @pytest.mark.verifies("damage", "kill -9 of one of two workers, and a serial run")
 def test_one_of_two_workers_is_killed_half_way(tmp_path: Path, two: Any) -> None:
     """kill -9 of a worker at half of the histories: it ends by itself, with the bytes of a serial run."""

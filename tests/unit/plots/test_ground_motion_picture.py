@@ -85,7 +85,6 @@ def test_spectrum_ends_in_the_peak_acceleration():
     assert jump == pytest.approx(2.0 / G * (1.0 + math.exp(-0.05 * math.pi / math.sqrt(1.0 - 0.05**2))), rel=1e-3)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "motion", [_made_up(), _made_up(30, vertical=False), pulses.cosine(1.0, 0.5), pulses.ricker(1e-3, 40.0)]
 )

@@ -20,7 +20,6 @@ from rocking.restitution import Ked, energy_balance, models
 pytestmark = pytest.mark.slow
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", paper_figures())
 def test_every_axis_is_labelled_with_its_unit(name):
     """Each visible axis of each figure of the report has a label that ends in a unit."""
@@ -67,7 +66,6 @@ def test_figure_2_prints_the_shares():
     assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "body",
     [
@@ -96,7 +94,6 @@ def drawn_at(axes, rows, marker):
     return [x for line in lines for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True) if y in values]
 
 
-@pytest.mark.slow
 def test_each_foot_at_its_own_slenderness():
     """Coefficients onto a foot stand over h/b of that foot, 3 and 1.5 for this triangle, and say which foot it is."""
     body = rk.Section.from_points([(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)])
@@ -112,7 +109,6 @@ def test_each_foot_at_its_own_slenderness():
     assert "on the right foot" in alone.axes[1].get_title(loc="left")
 
 
-@pytest.mark.slow
 def test_files_come_out_the_same(tmp_path):
     """Two savings give identical bytes; the SVG is XML and refers to nothing outside."""
     for kind in ("png", "svg", "pdf"):
@@ -148,7 +144,6 @@ def size_of(png):
     return int.from_bytes(png[16:20]), int.from_bytes(png[20:24])
 
 
-@pytest.mark.slow
 def test_a_notebook_is_given_an_image(picture):
     """IPython's own formatter makes a PNG of a picture; of a bare figure without pyplot it makes none."""
     formatters = pytest.importorskip("IPython.core.formatters")
@@ -160,7 +155,6 @@ def test_a_notebook_is_given_an_image(picture):
     assert list(formatters.DisplayFormatter().format(Figure())[0]) == ["text/plain"]
 
 
-@pytest.mark.slow
 def test_a_picture_goes_through_pickle(picture):
     """Other processes may draw it: the copy is an image of the same size."""
     copy = pickle.loads(pickle.dumps(picture))

@@ -60,7 +60,6 @@ def _bars(axes):
     return found
 
 
-@pytest.mark.slow
 def test_points_and_intervals(stripes, picture):
     """Points are counts over trials; intervals are those of Clopper and Pearson, from the beta distribution."""
     upper, lower = picture.axes
@@ -187,7 +186,6 @@ def test_incremental_without_overturning():
     assert not any("resurrection" in word for word in words)
 
 
-@pytest.mark.slow
 def test_measures(clouded):
     """Dots are the scores in their order; p-values stand on a log axis beside the line of 0.05."""
     draw = np.random.default_rng(1)
@@ -225,7 +223,6 @@ def _shaded(axes):
     return [patch for patch in axes.patches if patch.get_facecolor() == to_rgba(PALE)]
 
 
-@pytest.mark.slow
 def test_what_cannot_be_lifted_is_shaded():
     """The shade ends at g b / h = g / 4 and holds no motion that rocked; it is named."""
     found = fragility_analysis(BLOCK, TWELVE, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
@@ -237,7 +234,6 @@ def test_what_cannot_be_lifted_is_shaded():
     assert found.counts["rocking"][found.levels < 0.25 * G].tolist() == [0, 0]
 
 
-@pytest.mark.slow
 def test_nothing_is_shaded_where_nothing_is_certain():
     """Levels that all lift the body, and a measure that decides nothing, give no shade."""
     above = fragility_analysis(BLOCK, TWELVE, [3.0, 4.0, 5.0, 6.0], 0.9)
@@ -248,7 +244,6 @@ def test_nothing_is_shaded_where_nothing_is_certain():
         assert list(upper.texts) == []
 
 
-@pytest.mark.slow
 def test_levels_below_uplift_alone():
     """Where no level lifts the body all is shaded, there is no curve, and the words say why."""
     figure = fragility_picture(fragility_analysis(BLOCK, TWELVE, [0.5, 1.0, 2.0], 0.9))
@@ -259,7 +254,6 @@ def test_levels_below_uplift_alone():
     FigureCanvasAgg(figure).draw()
 
 
-@pytest.mark.slow
 def test_few_motions_have_no_band():
     """Four motions get no band, which would be too narrow; twelve get one."""
     for count, bands in ((4, 0.0), (12, 0.1)):
@@ -302,7 +296,6 @@ def test_lanes_are_the_closed_form(closed_form):
     assert cross.get_ydata()[0] / unit == pytest.approx(ends[0, 0], rel=1e-12, abs=0.0)
 
 
-@pytest.mark.slow
 def test_every_motion_has_a_lane_of_its_own():
     """Lanes stand beside one another by first crossing, inside the panel; no lane without overturning."""
     found = fragility_analysis(BLOCK, TWELVE, np.arange(2.0, 9.1, 0.5), 0.9, analysis="incremental")
@@ -329,7 +322,6 @@ def test_words_of_the_incremental_picture_do_not_overlap(closed_form):
         assert figure.bbox.x0 <= part.x0 < part.x1 <= figure.bbox.x1
 
 
-@pytest.mark.slow
 def test_units_of_sensitivity():
     """Medians have their unit, the lowest map of differences its own axis."""
     found = fragility_sensitivity(BLOCK, TWELVE, np.arange(2.0, 14.1, 2.0), [0.95, 0.8], repetitions=0)
