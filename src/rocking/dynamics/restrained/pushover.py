@@ -60,7 +60,8 @@ class Pushover:
         return Answer({
             "curves": AnswerRows({name: getattr(self, name) for name in names}),
             "restraints": AnswerRows({
-                "restraint": [item.name for item in self.body.restraints], "dissipated_energy": self.dissipated.tolist(),
+                "restraint": [item.name for item in self.body.restraints],
+                "dissipated_energy": self.dissipated.tolist(),
                 "largest_force": self.force.max(axis=0).tolist(),
                 "smallest_force": self.force.min(axis=0).tolist(),
             }),
