@@ -41,7 +41,7 @@ print(f"{fell.sum():.0f} of {fell.size} overturned")
 # Both are fitted to the outcomes under all other motions. The prediction is not fitted.
 
 known = {"friction": (0.1, 0.8), "base": (0.0, 0.02), "restitution": (0.85, 0.93), "centre": 1.0}
-known |= {"offset": 0.0, "level": 0.0}
+known |= {"offset": 0.0, "level": 0.0, "model_error": "off"}
 foreseen = rk.predict(body, motions, **known, count=32, contributions=False)
 pga, pgv = [motion.peak for motion in motions], [peak_ground_velocity(motion) for motion in motions]
 said = foreseen.chances["overturning"].per_motion

@@ -15,7 +15,10 @@ from rocking.statistics.scores import Forecasts
 
 pytestmark = pytest.mark.verifies(room="studies")
 GRAVITY = rk.conventions.g
-FIXED = {"restitution": 0.9, "friction": 5.0, "base": 0.0, "centre": 1.0, "offset": 0.0, "polarity": 1.0}
+FIXED = {
+    "restitution": 0.9, "friction": 5.0, "base": 0.0, "centre": 1.0, "offset": 0.0, "polarity": 1.0,
+    "model_error": "off",
+}  # fmt: skip
 OPTIONS = {"contributions": False, "threads": 1}
 
 
