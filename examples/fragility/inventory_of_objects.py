@@ -10,7 +10,7 @@ from pathlib import Path
 import rocking as rk
 from rocking.decision.inventory import assess, read_inventory
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
-from rocking.decision.inventory.table import advice, model_note, sentence
+from rocking.decision.inventory.ranking import advice, model_note, sentence
 from rocking.plots import inventory_picture, write
 from rocking.reports.inventory_folder import write_inventory
 

@@ -12,8 +12,8 @@ from rocking.decision.inventory import InventoryObject, Thresholds, assess
 from rocking.decision.inventory.draws import Draws, restitutions, slenderest
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.decision.inventory.lights import Light
-from rocking.decision.inventory.plan import Planner, _Subject
-from rocking.decision.inventory.table import advice, plan_words
+from rocking.decision.inventory.ranking import advice, plan_words
+from rocking.decision.inventory.retrofits import Planner, _Subject
 from rocking.decision.remedies import changed
 from rocking.evidence import restitution_distribution
 from rocking.language import language

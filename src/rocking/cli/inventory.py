@@ -158,18 +158,18 @@ class InventoryAnswer:
 
     def answer(self) -> Answer:
         """Return the ranked list, the plan of measures, and the basis of the assessment."""
-        from rocking.decision.inventory.table import answer_of
+        from rocking.decision.inventory.ranking import answer_of
 
         return answer_of(self.assessment)
 
     def show(self, page: Page) -> None:
-        from rocking.decision.inventory import table
+        from rocking.decision.inventory import ranking
         from rocking.decision.inventory.lights import LIGHT_MARKS
         from rocking.dynamics.settings import NEVER_SLIDES
         from rocking.restitution.headline import headline
 
         assessment = self.assessment
-        say, hazard, verdicts = table.words_of(assessment), assessment.hazard, assessment.verdicts
+        say, hazard, verdicts = ranking.words_of(assessment), assessment.hazard, assessment.verdicts
         page.line(f"{assessment.source}: {hazard.words(say.code)}, {say(hazard.source)}")
         numbers = {light: sum(verdict.light is light for verdict in verdicts) for light in LIGHT_MARKS}
         counts = [f"{say(LIGHT_MARKS[light])} {number}" for light, number in numbers.items()]
@@ -184,7 +184,7 @@ class InventoryAnswer:
         page.line("\n".join(dict.fromkeys(models)))
         if assessment.ignored:
             page.line(say("Columns that were not read: {columns}", columns=", ".join(assessment.ignored)))
-        for text in (table.untranslated(assessment), table.sliding(assessment)):
+        for text in (ranking.untranslated(assessment), ranking.sliding(assessment)):
             if text:
                 page.line(text)
         if not self.details:
@@ -194,7 +194,7 @@ class InventoryAnswer:
         """Write one line per object, with the other models if they differ, and the advice with details."""
         from rich.text import Text
 
-        from rocking.decision.inventory import table
+        from rocking.decision.inventory import ranking
         from rocking.decision.inventory.lights import LIGHT_MARKS
 
         assessment = self.assessment
@@ -202,10 +202,10 @@ class InventoryAnswer:
         for rank, verdict in enumerate(assessment.verdicts[:count], start=1):
             line = Text(f"{rank:3}  ")
             line.append(f"{say(LIGHT_MARKS[verdict.light]):<7}", style=_STYLES[verdict.light.name])
-            line.append(f"  {table.named(verdict, say)}: {table.sentence(verdict, assessment)}")
+            line.append(f"  {ranking.named(verdict, say)}: {ranking.sentence(verdict, assessment)}")
             page.rich(line)
             names = ("advice", "model_note", "noted") if self.details else ("model_note",)
-            if notes := " ".join(filter(None, (getattr(table, name)(verdict, assessment) for name in names))):
+            if notes := " ".join(filter(None, (getattr(ranking, name)(verdict, assessment) for name in names))):
                 page.line(f"{'':12} {notes}", "dim")
         if (remaining := len(assessment.verdicts) - count) > 0:
             page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
@@ -217,21 +217,21 @@ class InventoryAnswer:
 
     def _show_plan(self, page: Page, say: Any) -> None:
         """Write the first objects of the plan of measures."""
-        from rocking.decision.inventory import table
+        from rocking.decision.inventory import ranking
 
         plan = self.assessment.plan
         count = len(plan) if self.details else _MOST_PLANNED
         if plan:
             page.line(f"\n{say('First measures, one per object is sufficient:')}")
         for k, entry in enumerate(plan[:count], start=1):
-            page.line(f"{k:3}  {table.plan_words(entry, say)}")
+            page.line(f"{k:3}  {ranking.plan_words(entry, say)}")
         if (remaining := len(plan) - count) > 0:
             page.line(f"     {say('and {count} object more', 'and {count} objects more', count=remaining)}")
 
     def _show_details(self, page: Page, say: Any) -> None:
         """Write the definitions of the ratings, the sources, and the lines and statements of the list."""
         from rocking.cli.study import source_lines
-        from rocking.decision.inventory import table
+        from rocking.decision.inventory import ranking
         from rocking.decision.inventory.lights import LIGHT_MARKS
         from rocking.motions.summary import summaries_of
 
@@ -240,8 +240,8 @@ class InventoryAnswer:
             page.line(f"{say(LIGHT_MARKS[light])}: {text}")
         page.line(assessment.thresholds.conventions(say.code)[0])
         page.facts([] if assessment.hazard.synthetic else source_lines(summaries_of(assessment.hazard.motions)))
-        if others := table.passed_over(assessment):
+        if others := ranking.passed_over(assessment):
             lines = "; ".join(f"{', '.join(map(str, rows))} ({reason})" for reason, rows in others)
             page.line(say("Lines that are not objects: {lines}", lines=lines))
-        if text := table.stated(assessment):
+        if text := ranking.stated(assessment):
             page.line(text)

@@ -6,7 +6,7 @@ from rocking import checks
 from rocking.conventions import g
 from rocking.decision.inventory.assessment import Assessment, Verdict
 from rocking.decision.inventory.lights import LIGHT_LETTERS, LIGHT_NAMES, Light
-from rocking.decision.inventory.table import words_of
+from rocking.decision.inventory.ranking import words_of
 from rocking.errors import InvalidValueError
 from rocking.language import Language
 from rocking.plots.labels import plain, wrapped

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from rocking.conventions import g
 from rocking.decision.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.decision.inventory.lights import LIGHT_MARKS, Light
-from rocking.decision.inventory.table import (
+from rocking.decision.inventory.ranking import (
     DIRECTION_NAMES,
     PLAN_NOTE,
     advice,

@@ -10,7 +10,7 @@ from typing import Any
 
 from rocking.decision.inventory.assessment import Assessment
 from rocking.decision.inventory.lights import LIGHT_NAMES, Light
-from rocking.decision.inventory.table import (
+from rocking.decision.inventory.ranking import (
     COLUMNS,
     PLAN_NOTE,
     answer_of,

@@ -9,7 +9,7 @@ import pytest
 
 from rocking.decision.inventory import Thresholds, assess, parse_inventory
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
-from rocking.decision.inventory.table import as_csv
+from rocking.decision.inventory.ranking import as_csv
 from rocking.errors import MissingExtraError, RockingError
 from rocking.reports.document import render_html
 from rocking.reports.inventory_document import inventory_document

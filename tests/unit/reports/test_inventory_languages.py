@@ -10,7 +10,7 @@ import pytest
 from rocking.decision.inventory import Inventory, InventoryObject, assess, parse_inventory
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.decision.inventory.objects import NotAssessed
-from rocking.decision.inventory.table import answer_of
+from rocking.decision.inventory.ranking import answer_of
 from rocking.language import LANGUAGES, language, page_words
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import thumbnails, write_inventory, write_inventory_file

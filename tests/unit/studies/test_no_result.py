@@ -7,7 +7,7 @@ import rocking as rk
 from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.decision.inventory import InventoryObject, assess
 from rocking.decision.inventory.hazard import Hazard
-from rocking.decision.inventory.table import sentence
+from rocking.decision.inventory.ranking import sentence
 from rocking.dynamics.parameters import cut_words
 from rocking.dynamics.rolling.batch import SpatialBatch
 from rocking.outcome import Outcome, Status, contact_words, overturned

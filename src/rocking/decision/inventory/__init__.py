@@ -3,8 +3,8 @@
 from rocking.decision.inventory._inventory import inventory
 from rocking.decision.inventory.assessment import assess
 from rocking.decision.inventory.lights import Thresholds
+from rocking.decision.inventory.lists.reader import Inventory, parse_inventory, read_inventory
 from rocking.decision.inventory.objects import InventoryObject
-from rocking.decision.inventory.reading import Inventory, parse_inventory, read_inventory
 
 __all__ = [
     "Inventory",

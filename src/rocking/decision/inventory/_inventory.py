@@ -10,9 +10,9 @@ from rocking.conventions import g
 from rocking.decision.inventory.assessment import Assessment, assess
 from rocking.decision.inventory.hazard import COUNT, FAMILY, SEED, Hazard, IntensityLevel
 from rocking.decision.inventory.lights import Light, Thresholds
+from rocking.decision.inventory.lists.reader import Inventory, read_inventory
 from rocking.decision.inventory.objects import DIRECTIONS, InventoryObject
-from rocking.decision.inventory.reading import Inventory, read_inventory
-from rocking.decision.inventory.table import advice, plan_words, remarks, sentence, words_of
+from rocking.decision.inventory.ranking import advice, plan_words, remarks, sentence, words_of
 from rocking.errors import InvalidValueError, extra
 from rocking.messages import plain_texts
 from rocking.motions.motion import GroundMotion

@@ -14,9 +14,9 @@ from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION, Floa
 from rocking.decision.inventory.draws import STRATA, Draws, restitutions, slenderest
 from rocking.decision.inventory.hazard import SEED, Hazard
 from rocking.decision.inventory.lights import Light, Thresholds
+from rocking.decision.inventory.lists.reader import Inventory
 from rocking.decision.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
-from rocking.decision.inventory.plan import PlanEntry, Planner
-from rocking.decision.inventory.reading import Inventory
+from rocking.decision.inventory.retrofits import PlanEntry, Planner
 from rocking.decision.inventory.space import SpatialObject
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.parameters import RockingParameters, sides_of

@@ -13,8 +13,8 @@ import numpy as np
 from rocking import checks
 from rocking.answers import Answer
 from rocking.conventions import FloatArray, percent
-from rocking.decision.inventory.cells import DecimalMark
-from rocking.decision.inventory.sheets import MOST_BYTES, rows_of
+from rocking.decision.inventory.lists.cells import DecimalMark
+from rocking.decision.inventory.lists.sheets import MOST_BYTES, rows_of
 from rocking.errors import InvalidValueError
 from rocking.statistics.counts import MIN_CLUSTERS
 from rocking.statistics.scores import REPETITIONS, Forecasts, Score, logistic_left_out

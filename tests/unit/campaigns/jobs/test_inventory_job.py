@@ -9,7 +9,7 @@ from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
 from rocking.decision.inventory import Thresholds, assess, read_inventory
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
-from rocking.decision.inventory.table import answer_of
+from rocking.decision.inventory.ranking import answer_of
 from rocking.errors import InvalidValueError
 from rocking.motions.formats import read_motion
 

@@ -10,11 +10,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rocking.decision.inventory import InventoryObject, Thresholds, assess, parse_inventory, table
+from rocking.decision.inventory import InventoryObject, Thresholds, assess, parse_inventory, ranking
 from rocking.decision.inventory import assessment as module
 from rocking.decision.inventory.hazard import Hazard, IntensityLevel
 from rocking.decision.inventory.lights import Light
-from rocking.decision.inventory.table import COLUMNS, answer_of, as_csv, rows
+from rocking.decision.inventory.ranking import COLUMNS, answer_of, as_csv, rows
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions import GroundMotion
@@ -61,11 +61,11 @@ def test_counts_by_hand():
     assert (verdict.light, wide.overturned_share) == (Light.RED, 0.3)
     # Clopper & Pearson for 3 of 10, as tables print it
     assert verdict.interval == pytest.approx((0.0667, 0.6525), abs=5e-5)
-    assert table.sentence(verdict, found) == (
+    assert ranking.sentence(verdict, found) == (
         "No uplift below 0.25 g; at PGA 0.5 g it rocks, and overturns in 3 of 10 records."
     )
     # b / h = a / g along the width needs a base of 0.5 m * 2
-    assert "its width is 50 cm; 101 cm prevent uplift" in table.advice(verdict, found)  # 100 cm is the limit itself
+    assert "its width is 50 cm; 101 cm prevent uplift" in ranking.advice(verdict, found)  # 100 cm is the limit itself
 
 
 def test_the_median_of_two_motions_is_their_mean():
@@ -101,8 +101,8 @@ def test_what_is_never_lifted_is_green():
     hazard = Hazard.of_records([rectangle(1.0, 0.24 * G)])
     (verdict,) = (found := assess([COLUMN], hazard)).verdicts
     assert (verdict.light, verdict.worse.lifted, verdict.worse.high_rotation) == (Light.GREEN, 0, 0.0)
-    assert table.sentence(verdict, found).endswith("at PGA 0.24 g no uplift in the one record.")
-    assert table.advice(verdict, found).startswith("No measure")
+    assert ranking.sentence(verdict, found).endswith("at PGA 0.24 g no uplift in the one record.")
+    assert ranking.advice(verdict, found).startswith("No measure")
 
 
 def test_share_lifted_grows_with_the_level(quakes):
@@ -160,9 +160,11 @@ def test_model_of_impact_is_flagged(quakes):
     flagged = [each for each in found.verdicts if each.model_decides]
     assert flagged
     for verdict in found.verdicts:
-        note = table.model_note(verdict, found)
+        note = ranking.model_note(verdict, found)
         assert bool(note) == (any(each.light is not verdict.light for each in verdict.worse_compared))
-    assert table.model_note(flagged[0], found).startswith("The rating depends on the restitution model: housner gives")
+    assert ranking.model_note(flagged[0], found).startswith(
+        "The rating depends on the restitution model: housner gives"
+    )
     assert assess(items[:1], quakes, restitution="housner").comparisons == ("ked",)
     usual = assess(items[:1], quakes)
     assert (usual.restitution, usual.comparisons) == ("calibrated", ("housner", "ked"))
@@ -186,7 +188,7 @@ def test_failed_motions_are_said_and_forbid_green(monkeypatch, quakes):
     found = assess([chest, COLUMN], quakes)
     (verdict,) = found.verdicts
     assert (verdict.light, verdict.worse.failed, verdict.worse.count) == (Light.AMBER, 1, 59)
-    assert "1 of 60 motions could not be computed" in table.sentence(verdict, found)
+    assert "1 of 60 motions could not be computed" in ranking.sentence(verdict, found)
     assert "no motion could be computed" in str(found.not_assessed[0].reason)
     json.dumps(answer_of(found).plain(), allow_nan=False)
 
@@ -271,7 +273,7 @@ def test_advice_does_not_call_a_base_a_width(quakes):
     """Where the base is narrower than the body, it is the base that is 8 cm; where it is not, the width is."""
     objects = [InventoryObject(name="urn", width=0.3, depth=0.4, height=1.0, base_width=0.08, base_depth=0.3)]
     objects.append(InventoryObject(name="stele", width=0.08, depth=0.4, height=1.0))
-    told = {v.item.name: table.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
+    told = {v.item.name: ranking.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
     assert "its base is 8 cm along the width; " in told["urn"]
     assert "its width is 8 cm; " in told["stele"]
 
@@ -338,6 +340,6 @@ def test_a_plan_that_ends_where_it_just_lifts(quakes):
     assert entry.wider is not None
     wider = InventoryObject(name="wider", width=0.3 + 2.0 * entry.wider, depth=0.3 + 2.0 * entry.wider, height=1.2)
     assert assess([wider], few).verdicts[0].light is Light.GREEN
-    needed = int(re.search(r"; (\d+) cm prevent uplift", table.advice(found.verdicts[0], found))[1])
+    needed = int(re.search(r"; (\d+) cm prevent uplift", ranking.advice(found.verdicts[0], found))[1])
     still = InventoryObject(name="still", width=needed / 100.0, depth=needed / 100.0, height=1.2)
     assert assess([still], few).verdicts[0].worse.lifted == 0

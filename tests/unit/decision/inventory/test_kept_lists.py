@@ -8,9 +8,9 @@ import pytest
 from unit.decision.inventory.kept_lists import LISTS, write
 
 from rocking.decision.inventory import parse_inventory, read_inventory
-from rocking.decision.inventory.columns import header_of
-from rocking.decision.inventory.headers import find_header
-from rocking.decision.inventory.sheets import Sheet
+from rocking.decision.inventory.lists.columns import header_of
+from rocking.decision.inventory.lists.header import find_header
+from rocking.decision.inventory.lists.sheets import Sheet
 from rocking.errors import InvalidValueError
 
 FORMS = [("xlsx", ""), ("ods", ""), ("csv", "utf-8-sig"), ("csv", "utf-8"), ("csv", "cp1252")]

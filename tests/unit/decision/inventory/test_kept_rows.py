@@ -12,8 +12,8 @@ from openpyxl import Workbook
 from unit.decision.inventory.test_lists import open_document
 
 from rocking.decision.inventory import InventoryObject, parse_inventory, read_inventory
-from rocking.decision.inventory.cells import DecimalMark, measure, parts
-from rocking.decision.inventory.columns import WORDS
+from rocking.decision.inventory.lists.cells import DecimalMark, measure, parts
+from rocking.decision.inventory.lists.columns import WORDS
 from rocking.errors import InvalidValueError
 
 H_B_T = ("height", "width", "depth")

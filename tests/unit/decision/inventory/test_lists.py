@@ -16,8 +16,8 @@ from unit.decision.inventory.museum_list import write_museum_list
 
 import rocking as rk
 from rocking.decision.inventory import InventoryObject, parse_inventory, read_inventory
-from rocking.decision.inventory.cells import ABOUT, DecimalMark, measure, parts
-from rocking.decision.inventory.columns import WORDS, header_of
+from rocking.decision.inventory.lists.cells import ABOUT, DecimalMark, measure, parts
+from rocking.decision.inventory.lists.columns import WORDS, header_of
 from rocking.errors import InvalidValueError, RockingError
 
 HEADS = {

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rocking.bodies import Block
 from rocking.decision.inventory import InventoryObject, parse_inventory, read_inventory
-from rocking.decision.inventory.cells import DecimalMark
+from rocking.decision.inventory.lists.cells import DecimalMark
 from rocking.decision.inventory.objects import DIRECTIONS
 from rocking.errors import InvalidValueError
 

@@ -9,10 +9,10 @@ from typing import Any
 
 from rocking.bodies import Block, Body, Section, Solid
 from rocking.bodies.formats import read_body
-from rocking.decision.inventory.cells import CellMeasure, is_missing
-from rocking.decision.inventory.columns import SIZES, WORDS, plain, stem_of, words_of
-from rocking.decision.inventory.headers import LocatedHeader, text_of
-from rocking.decision.inventory.sheets import Cell, Row, Sheet
+from rocking.decision.inventory.lists.cells import CellMeasure, is_missing
+from rocking.decision.inventory.lists.columns import MEASURED, WORDS, plain, stem_of, words_of
+from rocking.decision.inventory.lists.header import LocatedHeader
+from rocking.decision.inventory.lists.sheets import Cell, Row, Sheet, text_of, text_of_row
 from rocking.errors import InvalidValueError
 from rocking.messages import Amount, Message
 
@@ -41,13 +41,12 @@ class RowKinds:
     def __init__(self, sheet: Sheet, location: LocatedHeader, rows: Sequence[Row]) -> None:
         self.sheet, self.header = sheet, location.header
         self.titles = [{plain(level) for level in levels} for levels in location.titles]
-        self.above = {plain(_row_text(cells)) for _, cells in sheet.rows[: location.first]}
+        self.above = {plain(text_of_row(cells)) for _, cells in sheet.rows[: location.first]}
         measured = [row for row in rows if self._is_measured(row[1]) and not self._is_sum_or_title(row[1])]
         self.last = measured[-1][0] if measured else 0
-        self.number_patterns = {_number_pattern(self._text(cells, "number")) for _, cells in measured} - {""}
-        self.numbered = bool(measured) and sum(bool(self._text(cells, "number")) for _, cells in measured) > 0.8 * len(
-            measured
-        )
+        numbers = [self.header.text(cells, "number") for _, cells in measured]
+        self.number_patterns = {_number_pattern(number) for number in numbers} - {""}
+        self.numbered = bool(measured) and sum(map(bool, numbers)) > 0.8 * len(measured)
         lines = [sheet.rows[location.end - 1][0], *(line for line, _ in rows)]
         self.after_gap = {line for previous, line in itertools.pairwise(lines) if line > previous + 1}
 
@@ -63,7 +62,7 @@ class RowKinds:
             return None
         if len(texts) == 1 and _begins_with(first, _HEADINGS) and line < self.last:
             return _HEADING
-        number = self._text(cells, "number")
+        number = self.header.text(cells, "number")
         if (
             number
             and _number_pattern(number) in self.number_patterns
@@ -75,8 +74,8 @@ class RowKinds:
     def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> Message | None:
         """Return the reason why a row without sizes and regular number is no object; None if it may be an object."""
         first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
-        stems, alone = {self._stem(k) for k in texts}, len(texts) == 1
-        if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in _row_text(cells):
+        stems, alone = {self.header.stem(k) for k in texts}, len(texts) == 1
+        if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in text_of_row(cells):
             return _REMARK
         if not stems & {"name", "number"}:
             return Message("no name, number or size")
@@ -97,33 +96,21 @@ class RowKinds:
         if any(text[:1].isdigit() for text in texts.values()) and self._is_measured(cells):
             return False  # most rows
         repeated = sum(self._is_title(k, text) for k, text in texts.items())
-        return repeated >= 0.7 * len(texts) or plain(_row_text(cells)) in self.above
+        return repeated >= 0.7 * len(texts) or plain(text_of_row(cells)) in self.above
 
     def _is_title(self, column: int, text: str) -> bool:
-        stem = self._stem(column)
+        stem = self.header.stem(column)
         return column < len(self.titles) and (
             text in self.titles[column] or bool(stem and stem == stem_of(text, self.header.language))
         )
 
-    def _stem(self, index: int) -> str:
-        column = self.header.columns[index] if index < len(self.header.columns) else None
-        return column.stem if column else ""
-
-    def _text(self, cells: Sequence[Cell], stem: str) -> str:
-        return next((text_of(cell) for k, cell in enumerate(cells) if self._stem(k) == stem), "")
-
     def _is_measured(self, cells: Sequence[Cell]) -> bool:
-        return any(self._stem(k) in {*SIZES, "size", "body_file"} and text_of(cell) for k, cell in enumerate(cells))
+        return any(self.header.stem(k) in MEASURED and text_of(cell) for k, cell in enumerate(cells))
 
 
 def _texts(cells: Sequence[Cell]) -> dict[int, str]:
     """Return the plain text of the non-empty cells by column index."""
     return {k: plain(text) or text for k, cell in enumerate(cells) if (text := text_of(cell))}
-
-
-def _row_text(cells: Sequence[Cell]) -> str:
-    """Return the texts of a row in one line."""
-    return " ".join(filter(None, map(text_of, cells)))
 
 
 def _begins_with(text: str, beginnings: Collection[str]) -> bool:

@@ -15,6 +15,7 @@ from typing import Any
 
 from rocking.conventions import LENGTH_UNITS
 from rocking.decision.inventory import objects
+from rocking.decision.inventory.lists.sheets import Cell, text_of
 from rocking.errors import InvalidValueError
 
 WORDS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("header_words.toml").read_text("utf-8"))
@@ -31,7 +32,11 @@ FACTORS = LENGTH_UNITS | WEIGHTS
 TEXTS = ("name", "note", "body_file", "units", "shape", "consequence", "photo", "number")
 """Columns with text cells."""
 
+MEASURED = {*SIZES, "size", "body_file"}
+"""Columns with the size of an object."""
+
 _MEASURES = (*LENGTHS, "weight")
+_WITH_UNIT = {*_MEASURES, "size"}
 _FIELDS = {"weight": ("mass",), "base": ("base_width", "base_depth"), "base_diameter": ("base_width", "base_depth")}
 # by the titles of a group and of its column
 _IN_GROUP = {
@@ -111,6 +116,15 @@ class Header:
     language: str
     titles: tuple[str, ...]  # of all columns
 
+    def stem(self, index: int) -> str:
+        """Return the quantity of a column; empty if ignored or beyond the last one."""
+        column = self.columns[index] if index < len(self.columns) else None
+        return column.stem if column else ""
+
+    def text(self, cells: Sequence[Cell], stem: str) -> str:
+        """Return the text of a row in the column of a quantity; empty without such a column."""
+        return next((text_of(cell) for k, cell in enumerate(cells) if self.stem(k) == stem), "")
+
     @property
     def fields(self) -> set[str]:
         """Quantities and fields of the columns."""
@@ -144,7 +158,7 @@ def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
     kept, unit = _bare(words)
     bare = [word for word in kept if word not in _FILLERS]
     stem = fields.get(" ".join(kept)) or fields.get(" ".join(bare), "")
-    return (stem, unit) if stem in {*_MEASURES, "size"} or not unit else ("", "")
+    return (stem, unit) if stem in _WITH_UNIT or not unit else ("", "")
 
 
 def _stem(title: str, language: str) -> tuple[str, str]:
@@ -158,7 +172,7 @@ def _stem(title: str, language: str) -> tuple[str, str]:
         return "number", ""  # N. d'inv., Inv.-Nr. alt
     bare = re.sub(r"\([^()]*\)|\[[^\[\]]*\]", " ", title)
     stem = _stem(bare, language)[0] if plain(bare) != plain(title) else ""
-    return ("", "") if stem in {*_MEASURES, "size"} else (stem, "")  # brackets may contain the part of the object
+    return ("", "") if stem in _WITH_UNIT else (stem, "")  # brackets may contain the part of the object
 
 
 def stem_of(title: str, language: str) -> str:
@@ -179,7 +193,7 @@ def _translated(title: str) -> tuple[str, str]:
     if len(fields) != 1:
         return "", ""
     (stem,) = fields
-    return (stem, unit) if stem in {*_MEASURES, "size"} or not unit else ("", "")
+    return (stem, unit) if stem in _WITH_UNIT or not unit else ("", "")
 
 
 def _phrased(words: Sequence[str]) -> set[str]:
@@ -393,7 +407,7 @@ def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn 
     stem = both or stem
     if not stem:
         return None
-    if stem not in {*_MEASURES, "size"}:
+    if stem not in _WITH_UNIT:
         return InventoryColumn(stem, (stem,), 1.0, title)
     if not both and stem != "weight" and any(level.is_other or level.is_doubtful for level in levels):
         return None

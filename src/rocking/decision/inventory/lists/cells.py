@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from rocking import checks
 from rocking.conventions import LENGTH_UNITS
-from rocking.decision.inventory.columns import FACTORS, UNITS, WORDS, order_of, plain, side_of, words_of
-from rocking.decision.inventory.sheets import Cell, Shown
+from rocking.decision.inventory.lists.columns import FACTORS, UNITS, WORDS, order_of, plain, side_of, words_of
+from rocking.decision.inventory.lists.sheets import Cell, Shown
 from rocking.errors import InvalidValueError
 from rocking.messages import Message
 

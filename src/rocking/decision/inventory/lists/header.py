@@ -4,7 +4,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rocking.decision.inventory.columns import (
+from rocking.decision.inventory.lists.columns import (
+    MEASURED,
     SIZES,
     UNITS,
     Header,
@@ -14,7 +15,7 @@ from rocking.decision.inventory.columns import (
     order_of,
     plain,
 )  # fmt: skip
-from rocking.decision.inventory.sheets import Cell, Sheet
+from rocking.decision.inventory.lists.sheets import Cell, Sheet, text_of
 
 _HIGHEST = 50  # largest number of rows above the header
 _TALLEST = 4
@@ -117,11 +118,7 @@ def _is_of_units(row: Sequence[str]) -> bool:
 
 def _count_measures(header: Header, sheet: Sheet, end: int) -> int:
     """Return the number of sizes in the rows below a header; 0 if two columns have the same size."""
-    columns = [
-        (k, column)
-        for k, column in enumerate(header.columns)
-        if column and column.stem in {*SIZES, "size", "body_file"}
-    ]
+    columns = [(k, column) for k, column in enumerate(header.columns) if column and column.stem in MEASURED]
     fields = [field for _, column in columns if column.stem in SIZES for field in column.fields]
     if len(set(fields)) < len(fields):
         return 0
@@ -135,14 +132,3 @@ def _count_sizes(column: InventoryColumn, cell: Cell) -> int:
         return 3 if text_of(cell) else 0
     numbers = len(re.findall(r"\d+(?:[.,]\d+)?", text_of(cell)))
     return 3 * (numbers > 1) if column.stem == "size" else min(numbers, 1)
-
-
-def text_of(cell: Cell) -> str:
-    """Return the text of a cell.
-
-    >>> text_of(12.0), text_of(" a ")
-    ('12', 'a')
-    """
-    if isinstance(cell, str):
-        return cell.strip()
-    return str(int(cell)) if cell == int(cell) else repr(cell)

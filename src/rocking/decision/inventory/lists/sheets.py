@@ -7,7 +7,7 @@ import itertools
 import re
 import warnings
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sized
 from dataclasses import dataclass, field
 from datetime import date, time
 from typing import Any
@@ -241,7 +241,7 @@ def _spans(merged: _Merged) -> dict[tuple[int, int], int]:
     }  # fmt: skip
 
 
-def _check_number(rows: list[Row], source: str) -> None:
+def _check_number(rows: Sized, source: str) -> None:
     if len(rows) > MOST_ROWS:
         raise InvalidValueError("a list must have at most {limit} rows", limit=MOST_ROWS).at(source)
 
@@ -298,10 +298,25 @@ def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]
             if rows or any(cell.strip() for cell in cells):
                 rows.append((line, cells))
             line = reader.line_num + 1
-            if len(rows) > MOST_ROWS:
-                raise InvalidValueError("a list must have at most {limit} rows", limit=MOST_ROWS).at(source)
+            _check_number(rows, source)
     except csv.Error as error:
         raise InvalidValueError(
             "not a table, line {line}: {reason}", line=line, reason=str(error), hint="Check for an open quotation mark."
         ).at(source) from error
     return rows
+
+
+def text_of(cell: Cell) -> str:
+    """Return the text of a cell.
+
+    >>> text_of(12.0), text_of(" a ")
+    ('12', 'a')
+    """
+    if isinstance(cell, str):
+        return cell.strip()
+    return str(int(cell)) if cell == int(cell) else repr(cell)
+
+
+def text_of_row(cells: Iterable[Cell], separator: str = " ") -> str:
+    """Return the texts of the non-empty cells of a row in one line."""
+    return separator.join(filter(None, map(text_of, cells)))

@@ -10,7 +10,7 @@ from rocking.conventions import g
 from rocking.decision.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.decision.inventory.lights import LIGHT_NAMES, Light
 from rocking.decision.inventory.objects import NotAssessed
-from rocking.decision.inventory.plan import PlanEntry
+from rocking.decision.inventory.retrofits import PlanEntry
 from rocking.decision.remedies import rounded_up
 from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.language import Language, language

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rocking import language as languages
 from rocking.conventions import LENGTH_UNITS
-from rocking.decision.inventory.cells import DecimalMark, count_of, is_missing, measure, parts
-from rocking.decision.inventory.columns import (
+from rocking.decision.inventory.lists.cells import DecimalMark, count_of, is_missing, measure, parts
+from rocking.decision.inventory.lists.columns import (
     FACTORS,
     LENGTHS,
     SIZES,
@@ -25,11 +25,9 @@ from rocking.decision.inventory.columns import (
     stem_of,
     words_of,
 )  # fmt: skip
-from rocking.decision.inventory.headers import LocatedHeader, find_header, text_of
-from rocking.decision.inventory.objects import SIZES as SIDES
-from rocking.decision.inventory.objects import InventoryObject, NotAssessed
-from rocking.decision.inventory.rows import FIELD_NAMES, RowKinds, RowValues, body_of, ignored_remark
-from rocking.decision.inventory.sheets import (
+from rocking.decision.inventory.lists.header import LocatedHeader, find_header
+from rocking.decision.inventory.lists.rows import FIELD_NAMES, RowKinds, RowValues, body_of, ignored_remark
+from rocking.decision.inventory.lists.sheets import (
     ENCODINGS,
     MOST_BYTES,
     Cell,
@@ -39,8 +37,12 @@ from rocking.decision.inventory.sheets import (
     rows_of,
     sheets_in,
     tables_of,
+    text_of,
+    text_of_row,
     texts_in,
 )  # fmt: skip
+from rocking.decision.inventory.objects import SIZES as SIDES
+from rocking.decision.inventory.objects import InventoryObject, NotAssessed
 from rocking.errors import InvalidValueError, RockingError
 from rocking.messages import Message
 
@@ -250,7 +252,9 @@ class _Reader:
         self.rows = [row for row, reason in zip(below, reasons, strict=True) if not reason]
         above = [(*row, Message("above the header")) for row in self.sheet.rows[: self.location.first]]
         others = [(*row, reason) for row, reason in zip(below, reasons, strict=True) if reason]
-        not_objects = tuple(NotAssessed(line, _text_of_row(cells), reason) for line, cells, reason in [*above, *others])
+        not_objects = tuple(
+            NotAssessed(line, f"{text_of_row(cells, ' | '):.100}", reason) for line, cells, reason in [*above, *others]
+        )
         stated = self._take_stated(not_objects)
         self._check_units()
         wordless = [title for k, title in enumerate(titles) if not any(map(str.isdigit, "".join(self._column(k))))]
@@ -268,7 +272,7 @@ class _Reader:
             try:
                 objects.append(self._object(line, row))
             except RockingError as error:
-                number, name, note = (self._text(row, stem) for stem in ("number", "name", "note"))
+                number, name, note = (self.header.text(row, stem) for stem in ("number", "name", "note"))
                 refused.append(NotAssessed(line, name or number, error.sentence, number, note))
         if not objects and not refused:
             raise InvalidValueError("an inventory needs at least one row below its header").at(source)
@@ -285,22 +289,18 @@ class _Reader:
             for cell in cells
         )
 
-    def _text(self, row: Sequence[Cell], stem: str) -> str:
-        pairs = zip(self.header.columns, row, strict=False)
-        return next((text_of(cell) for column, cell in pairs if column and column.stem == stem), "")
-
     def _take_stated(self, lines: Sequence[NotAssessed]) -> tuple[Message, ...]:
         """Use units and an order from lines outside the table, such as ``Alle Maße in cm (H x B x T)``."""
         columns, messages = list(self.header.columns), []
         unit_of, order = _stated(lines, self.header.language)
         for kind, stems in ((LENGTH_UNITS, {*LENGTHS, "size"}), (WEIGHTS, {"weight"})):
-            bare = [k for k, column in enumerate(columns) if column and column.stem in stems and column.factor is None]
+            bare = [(k, c) for k, c in enumerate(columns) if c and c.stem in stems and c.factor is None]
             stated = {unit: line for unit, line in unit_of.items() if unit in kind}
             if len(stated) == 1 and bare and "units" not in self.header.fields:
                 ((unit, line),) = stated.items()
                 messages.append(Message("line {line} of the list states the unit {unit}", {"line": line, "unit": unit}))
-                for k in bare:
-                    columns[k] = replace(_known(columns[k]), factor=FACTORS[unit])
+                for k, unitless in bare:
+                    columns[k] = replace(unitless, factor=FACTORS[unit])
         for k, column in enumerate(columns):
             if column and column.stem == "size" and not column.fields and len(order) == 1:
                 ((sides, line),) = order.items()
@@ -340,7 +340,7 @@ class _Reader:
                 hint=comma if len(row) > len(columns) else separator,
             )
         values = RowValues(row=line)
-        unit = UNITS.get(plain(self._text(row, "units")), "")
+        unit = UNITS.get(plain(self.header.text(row, "units")), "")
         for column, cell in zip(columns, row, strict=True):
             if column and text_of(cell):
                 self._read(values, column, cell, column.factor or LENGTH_UNITS.get(unit))
@@ -420,16 +420,6 @@ class _Reader:
             except InvalidValueError as error:
                 del fields[name]
                 remarks.append(ignored_remark(FIELD_NAMES[name.replace("mass", "weight"),], error.sentence))
-
-
-def _text_of_row(cells: Sequence[Cell]) -> str:
-    """Return the shortened text of a row."""
-    return f"{' | '.join(filter(None, map(text_of, cells))):.100}"
-
-
-def _known(column: InventoryColumn | None) -> InventoryColumn:
-    assert column is not None
-    return column
 
 
 def _stated(lines: Sequence[NotAssessed], language: str) -> tuple[dict[str, int], dict[tuple[str, ...], int]]:
