@@ -108,7 +108,7 @@ def stages_answer(body: Body, foot: Foot, angular_velocity: float = 1.0) -> Answ
     points = _arrow_feet(body)
     fields = balance.velocities(points[:, 0], points[:, 1])
     stages = [
-        {"name": name, "words": STAGE_WORDS[name], "energy": energy, "share": balance.shares[name],
+        {"name": name, "description": STAGE_WORDS[name], "energy": energy, "share": balance.shares[name],
          "velocity": fields[name]}
         for name, energy in balance.totals.items()
     ]  # fmt: skip

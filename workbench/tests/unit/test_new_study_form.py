@@ -18,5 +18,5 @@ def test_one_file_has_a_form(added):
     info = _constant.__wrapped__()
     kind = {"name": "polarity", "table": "polarity", "has_body": True, "has_motions": True}
     assert kind in info["study_kinds"]
-    facts = {"unit": "-", "words": "scale factor of both polarities", "kind": "number", "usual": "1.0", "gt": 0.0}
+    facts = {"unit": "-", "description": "scale factor of both polarities", "kind": "number", "usual": "1.0", "gt": 0.0}
     assert info["keys"]["polarity"] == {"factor": {**facts, "needed": False, "choices": []}}
