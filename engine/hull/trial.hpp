@@ -102,7 +102,7 @@ inline void share_along(const double* normal, const double* side, double frictio
     by[0] /= total, by[1] /= total;
 }
 
-// All members stick. False if this needs the general problem: impulses beside their vertices, or more than two vertices in motion.
+// All members stick. False if this needs the general problem: impulses away from their vertices, or more than two vertices in motion.
 inline bool stick(const Problem& p, const Yields& table, Trial& t) {
     if (!p.places.empty()) return false;
     for (int k = 0; k < t.n; ++k) t.ways[k] = {};
@@ -148,13 +148,13 @@ inline bool stick(const Problem& p, const Yields& table, Trial& t) {
     return true;
 }
 
-// What is known of a trial after its solution.
+// Result of a trial after its solution.
 enum class Verdict { kSolved, kExcluded, kUnsolved };
 
 // Directions of the members that begin to slide, and the forces; one of the others may stick.
 class Sliding {
   public:
-    // one: the member that sticks, or -1; free: those whose direction is not known; soft: their compliance to friction; limit: of the violation of a law
+    // one: the member that sticks, or -1. free: members with unknown direction. soft: their compliance to friction. limit: of the violation of a law.
     Sliding(const Problem& p, const Yields& table, Trial& t, int one, const int* free, int count, const double* soft, double limit)
         : p_(p), table_(table), t_(t), one_(one), count_(count), limit_(limit) {
         std::copy(free, free + count, free_), std::copy(soft, soft + count, soft_);

@@ -509,7 +509,8 @@ def test_basins_cell_for_cell(case):
     assert fraction == pytest.approx(1.0 - counts[0] / 1e4)
     assert low < fraction < high
     assert math.isnan(box_dimension(np.ones((64, 64))))
-    assert 1.0 < box_dimension(kinds.reshape(100, 100)) < 2.0
+    # a smooth boundary has dimension 1; boxes of 2 cells and more on 100 x 100 cells estimate it within 3 %
+    assert 0.97 < box_dimension(kinds.reshape(100, 100)) < 2.0
 
 
 FIRST_OVERTURNING = {(4, "housner"): (1.04, 1.05), (4, "ked"): (1.02, 1.03), (8, "ked"): (1.0, 1.01)}

@@ -159,7 +159,7 @@ def test_studies_let_solids_hop() -> None:
     assert [mechanics_of(each).name for each in found] == ["plane", "contact", "hull", "hull"]
     assert [each.friction for each in found] == [np.inf, 0.4, NEVER_SLIDES, 0.4]
     assert ["friction" in each.stated for each in found] == [False, True, True, True]
-    space = MECHANICS[2]
+    (space,) = (mechanics for mechanics in MECHANICS if mechanics.name == "space")
     with pytest.raises(InvalidValueError, match="studies do not take a body in space without friction"):
         space.rows([], ConstantRestitution(), space.settings(), "auto")
 

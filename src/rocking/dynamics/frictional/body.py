@@ -27,7 +27,7 @@ class HullBody:
     (8, 6, True)
     """
 
-    vertices: FloatArray  # points of the body; points inside the hull or a facet are ignored [m]; shape (k, 3)
+    vertices: FloatArray  # points of the body, those inside the hull or a facet are ignored [m]; shape (k, 3)
     mass: float  # [kg]
     centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
     inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)

@@ -68,7 +68,7 @@ class SoundConstants:
     push_durations: tuple[float, ...] = (
         3e-4,
         8e-4,
-    )  # w: durations of the impact [s]; short and long share the probability
+    )  # w: durations of the impact [s], equally probable
     click_powers: tuple[float, ...] = tuple(
         np.geomspace(0.5, 500.0, 6).tolist()
     )  # click / noise [-]; -3 to 27 dB by 6 dB

@@ -247,6 +247,7 @@ def test_ked_and_housner_stand_beside_what_was_measured():
         "offset": 0.0,
         "level": 0.0,
         "polarity": 1.0,
+        "model_error": "off",
     }  # nothing is left to draw
     fixed = predict(BLOCK, motions, **known, count=16, contributions=False)
     for name, chance in fixed.beside.items():
