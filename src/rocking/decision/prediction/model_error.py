@@ -179,7 +179,7 @@ def hierarchy(bodies: Sequence[BodyEvidence]) -> FurtherBody:
     """
     weights, means, covariances = [], [], []
     for deviation in DEVIATIONS.tolist():
-        between = deviation**2 * np.diag(ORDERS**2)
+        between = deviation**2 * np.diag(ORDERS**2)  # Eq. 357
         precisions = [np.linalg.inv(between + body.covariance) for body in bodies]
         information, moment = _sums(precisions, bodies)
         restricted = 0.0
