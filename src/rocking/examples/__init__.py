@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 from rocking import checks
-from rocking.bodies import Body, Solid
+from rocking.bodies import Body, Restrained, Solid
 from rocking.errors import InvalidValueError
 from rocking.examples import table
 from rocking.examples.catalogue import Catalogue, catalogue
@@ -45,7 +45,9 @@ def body(name: str) -> Body | Solid:
     from rocking.bodies.formats import read_body
 
     example = _of(name, "body")
-    return read_body(path(example.name), **example.options)
+    example_body = read_body(path(example.name), **example.options)
+    assert not isinstance(example_body, Restrained)  # no example has restraints
+    return example_body
 
 
 @overload

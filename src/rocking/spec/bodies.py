@@ -19,11 +19,16 @@ _OUTSIDE = ("units", "name", "note", "restraint")
 
 def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     """Return the 2D body of a table."""
-    body = any_body_of(table, inputs)
-    if isinstance(body, Restrained):
-        raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
+    body = without_restraints(any_body_of(table, inputs))
     if not isinstance(body, Body):
         raise InvalidValueError("This is a 3D body; a 2D body is needed.")
+    return body
+
+
+def without_restraints(body: Body | Restrained | Solid) -> Body | Solid:
+    """Return a body without restraints; a body with restraints is refused."""
+    if isinstance(body, Restrained):
+        raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
     return body
 
 

@@ -12,7 +12,7 @@ from rocking.decision.prediction import Prediction, predict
 from rocking.decision.prediction.mechanics import COMPLEMENTARITY, MEASURED
 from rocking.decision.prediction.model_error import OFF
 from rocking.errors import InvalidValueError, located
-from rocking.spec.bodies import any_body_of
+from rocking.spec.bodies import any_body_of, without_restraints
 from rocking.spec.construction import components_of, motion_of, motions_of, restitutions_of
 from rocking.spec.reading import InputFiles
 
@@ -33,7 +33,7 @@ class PredictionProblem:
     def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
         """Return the problem of an input file; inputs: the files that it may name."""
         with located("body"):
-            body = any_body_of(document.body, inputs)
+            body = without_restraints(any_body_of(document.body, inputs))
         motions: Any
         if document.motion is None:
             motions = motions_of(document.motions, inputs, paired=True)

@@ -13,7 +13,7 @@ from rocking.dynamics.mechanics import mechanics_of, study_settings
 from rocking.dynamics.parameters import sides_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, located
-from rocking.spec.bodies import body_for_motion
+from rocking.spec.bodies import body_for_motion, without_restraints
 from rocking.spec.construction import motions_of, restitutions_of
 from rocking.spec.reading import InputFiles
 from rocking.studies.axis import friction_beside
@@ -52,7 +52,7 @@ class StudyProblem:
         bodies = []
         for k, table in enumerate(document.bodies):
             with located("body" if len(document.bodies) == 1 else f"body[{k}]"):
-                bodies.append(body_for_motion(table, inputs, in_space=turned))
+                bodies.append(without_restraints(body_for_motion(table, inputs, in_space=turned)))
         with located("settings"):
             kinds = {isinstance(body, Body) for body in bodies}
             if len(kinds) > 1:

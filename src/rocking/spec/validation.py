@@ -24,7 +24,7 @@ from rocking.motions.integrals import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pipeline import processed
 from rocking.spec.array_file import SUFFIX, ArrayFile
-from rocking.spec.bodies import any_body_of
+from rocking.spec.bodies import any_body_of, without_restraints
 from rocking.spec.construction import doubted_once, motion_of
 from rocking.spec.prediction import options_of
 from rocking.spec.reading import InputFiles, checked, tables_in
@@ -168,7 +168,7 @@ class ValidationProblem:
     def of(cls, document: "ValidationDocument", files: tuple[Path, Path], inputs: InputFiles) -> "ValidationProblem":
         """Return the problem of a folder; files: its body file, and its table of outcomes."""
         with located("body"):
-            body = any_body_of(document.body, inputs)
+            body = without_restraints(any_body_of(document.body, inputs))
         if document.predict.pga is not None:
             raise InvalidValueError("predict.pga is not allowed in a validation. Use the scale column of the outcomes.")
         outcomes = Outcomes.read(files[1])

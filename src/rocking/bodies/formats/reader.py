@@ -218,7 +218,7 @@ def describes_solid(path: str | Path) -> bool:
         return False
 
 
-def _toml(request: Request) -> Body | Solid:
+def _toml(request: Request) -> Body | Restrained | Solid:
     with located(request.path.name, "file"):
         solid = "solid" in parsed_toml(read_text(request.path, LARGEST_TOML))
     return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
@@ -278,7 +278,7 @@ def _mesh(request: Request) -> Solid:
     return solid
 
 
-PLANE: dict[str, Callable[[Request], Body]] = {
+PLANE: dict[str, Callable[[Request], Body | Restrained]] = {
     ".toml": partial(_stated, read=body_from_toml),
     ".wkt": partial(_text, read=regions_from_wkt),
     **dict.fromkeys((".geojson", ".json"), partial(_text, read=regions_from_geojson)),
@@ -286,7 +286,7 @@ PLANE: dict[str, Callable[[Request], Body]] = {
 }
 """Readers of 2D bodies by extension; a new format is one line here, or in `FORMATS` for 3D bodies."""
 
-FORMATS: dict[str, Callable[[Request], Body | Solid]] = {
+FORMATS: dict[str, Callable[[Request], Body | Restrained | Solid]] = {
     **PLANE,
     ".toml": _toml,
     **dict.fromkeys([f".{kind}" for kind in MESH_FORMATS], _mesh),
