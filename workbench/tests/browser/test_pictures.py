@@ -255,7 +255,7 @@ def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Call
     assert turn_of(lead.get("transform", "")) == pytest.approx(degrees, abs=0.2)
 
 
-STATIC = Path(str(files("rocking"))) / "app" / "static"
+STATIC = Path(str(files("rocking_workbench"))) / "static"
 ASKED = re.compile(r"picture/|\.png\b|export\.\$\{\w+\}.*(svg|png)|drawing/picture-tools")
 OF_THE_SERVER = {
     "views/studies-counts.js",

@@ -18,7 +18,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 expect = playwright.expect
 
 PHONE, WIDE = {"width": 360, "height": 740}, {"width": 1360, "height": 900}
-STATIC = Path(str(files("rocking"))) / "app" / "static"
+STATIC = Path(str(files("rocking_workbench"))) / "static"
 STEPS = [
     "body",
     "impact",
