@@ -401,7 +401,7 @@ LARGE_MAP = """async (count) => {
     ["/views/studies-layers.js", "/views/studies-map.js", "/parts/preact.js"].map((each) => import(each)));
   const many = (value) => Array.from({ length: count }, (_, k) => value(k));
   const grid = (value) => many((iy) => many((ix) => value(ix, iy)));
-  const axis = { values: many((k) => 1 + k), unit: "1", words: "a" };
+  const axis = { values: many((k) => 1 + k), unit: "1", description: "a" };
   const fell = (ix, iy) => ix > iy;
   const found = {
     x: axis, y: axis, restitutions: ["ked"], contours: [[]],
