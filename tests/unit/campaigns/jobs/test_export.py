@@ -169,7 +169,7 @@ def test_fragility(finished, tmp_path, end, text):
         ("r.pdf", "histories", {}, r"histories can be written as \.nc, \.parquet, \.csv, \.mat, \.xlsx, got '\.pdf'"),
         ("r", "histories", {}, "got 'no ending'"),
         ("r.xml", "histories", {}, "NRML"),
-        ("r.nc", "maps", {}, "what must be one of histories, fragility, .*, minima, .*got 'maps'"),
+        ("r.nc", "maps", {}, "table must be one of histories, fragility, .*, minima, .*got 'maps'"),
         ("r.nc", "fragility", {}, 'a campaign of kind "histories" has no fragility'),
         ("r.nc", "histories", {"restitution": "ked"}, "restitution applies to fragility"),
         ("none/r.nc", "histories", {}, "no folder"),

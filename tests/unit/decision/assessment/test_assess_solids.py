@@ -48,7 +48,10 @@ def test_uplift_under_vertical_motion():
     reach, height = moved.standing.edge_distance, TOWER.centre[2]
     limit = f"{reach / height:.3g} g"
     assert moved.uplift_factors[0] == pytest.approx(9.80665 * reach / (6.0 * height + 2.0 * reach), rel=2e-3)  # samples
-    assert f"Without vertical acceleration, uplift begins at {limit}; with that of level" in moved.governing_factors[0]
+    assert (
+        f"Without vertical acceleration, uplift begins at {limit}. With the vertical acceleration of level"
+        in moved.governing_factors[0]
+    )
     assert f"Uplift begins at {limit}, at" in alone.governing_factors[0]
 
 
