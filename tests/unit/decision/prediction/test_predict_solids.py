@@ -100,7 +100,7 @@ def test_azimuth_turns_the_body():
     two = SampledInSpace(solid, turned, KNOWN, rk.conventions.g)
     wrong = SampledInSpace(solid, motion, KNOWN, rk.conventions.g)
     peaks = [each.run(np.empty((1, 0)), 0, np.ones(1), 1).peak[0] for each in (one, two, wrong)]
-    assert peaks[0] == pytest.approx(peaks[1], rel=1e-4)  # chaotic growth of rounding
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)  # step error 1e-6, and its growth over the impacts
     assert abs(peaks[2] / peaks[0] - 1.0) > 0.01
 
 
