@@ -136,8 +136,8 @@ def test_the_cascade_in_one_call():
     """The branches of one call, and the orbits of a branch at a value, from below its fold to beyond its end."""
     system = system_of(4, 1.2, 2.0, 0.5, linear=True)
     options = {"limits": (0.05, 2.6), "restitution": 0.5, "doublings": 3, "points": 16, "linear": True}
-    found = rk.periodic_orbits(system.body, system.excitation, **options)
-    values = found["amplitude_ratio"].values[found["branch_point"].values > 1]
+    branches = rk.periodic_orbits(system.body, system.excitation, **options)
+    values = branches["amplitude_ratio"].values[branches["branch_point"].values > 1]
     cascade = (1.827271179103310924, 2.312850976204278652, 2.394371332179993847, 2.411422145578383563)
     assert values == pytest.approx(cascade, abs=1e-9)
     branch = continue_orbit(symmetric_orbit(system), (0.0, 2.0), increasing=False)

@@ -38,9 +38,9 @@ def fetch() -> str:
     ).returncode:
         return release
     (archive,) = folder.glob("*.tgz")
-    found = hashlib.sha512(archive.read_bytes()).hexdigest()
-    if found != digest:
-        sys.exit(f"{release} has the hash {found}, {LOCK.name} says {digest}")
+    hash_of_file = hashlib.sha512(archive.read_bytes()).hexdigest()
+    if hash_of_file != digest:
+        sys.exit(f"{release} has the hash {hash_of_file}, {LOCK.name} says {digest}")
     with tarfile.open(archive) as held:
         held.extractall(folder, filter="data")
     (folder / "lock").write_text(words, "utf-8")
@@ -120,10 +120,10 @@ def faults(project: Path) -> list[str]:
         check=False,
     )
     lines = run.stdout.splitlines()
-    found = [line for line in lines if re.match(r"\S+\(\d+,\d+\): error TS", line)]
-    if run.returncode and not found:
+    errors = [line for line in lines if re.match(r"\S+\(\d+,\d+\): error TS", line)]
+    if run.returncode and not errors:
         sys.exit(run.stdout + run.stderr)
-    return found
+    return errors
 
 
 def absent() -> str:
@@ -140,8 +140,8 @@ def main() -> int:
         return int(watched)
     declare()
     waiting = [line for line in WAITING.read_text("utf-8").split("\n") if line and not line.startswith("#")]
-    found = faults(PROJECT)
-    told = [line for line in found if not any(f"static/{each}" in line for each in waiting)]
+    errors = faults(PROJECT)
+    told = [line for line in errors if not any(f"static/{each}" in line for each in waiting)]
     print(
         *told,
         f"{len(told)} faults in the types of the page's scripts; not asked yet: {', '.join(waiting) or 'none'}",

@@ -55,11 +55,11 @@ def test_a_diagram_compares_models_and_sweeps():
                                               ("frequency", [2.0, 3.0]), ("restitution", [0.7, 0.9])])  # fmt: skip
 def test_axes_of_diagrams(axis, values):
     """A value of an axis is the system with this value: the same attractor as of the body itself."""
-    given = motion(1.2)
+    excitation = motion(1.2)
     states = [[5.9, 1.1]]
     options = {"starts": states, "cycles": (100, 4), "exponents": False}
-    found = rk.bifurcation(BLOCK, given, axis, values, "housner", **options).isel(period_number=-1)
-    value, restitution, body, own = values[1], "housner", BLOCK, given
+    found = rk.bifurcation(BLOCK, excitation, axis, values, "housner", **options).isel(period_number=-1)
+    value, restitution, body, own = values[1], "housner", BLOCK, excitation
     if axis == "slenderness":
         angle, size = np.arctan(1.0 / value), 2.0 * BLOCK.semi_diagonal
         body = rk.Block(width=size * np.sin(angle), height=size * np.cos(angle))
@@ -102,13 +102,13 @@ def test_branches_of_orbits():
 def test_basins_paths_and_erosion():
     """Counts of the reference, cell for cell; a path is a row of the basin; larger amplitudes leave fewer states."""
     slender = rk.Block(width=1.0, height=4.0)
-    given = motion(1.5, 3.0, slender)
-    whole = rk.basin(slender, given, "housner")
+    excitation = motion(1.5, 3.0, slender)
+    whole = rk.basin(slender, excitation, "housner")
     counts = np.bincount(whole["final_state"].values.ravel(), minlength=4)
     assert counts.tolist() == [6334, 106, 3560, 0]
-    path = rk.basin(slender, given, "housner", speeds=whole["speed_ratio"].values[30:31])
+    path = rk.basin(slender, excitation, "housner", speeds=whole["speed_ratio"].values[30:31])
     assert (path["final_state"].values[0, :, 0] == whole["final_state"].values[0, :, 30]).all()
-    eroded = rk.basin(slender, given, ["housner", "ked"], amplitudes=[0.5, 2.0], phases=20, speeds=20, check=False)
+    eroded = rk.basin(slender, excitation, ["housner", "ked"], amplitudes=[0.5, 2.0], phases=20, speeds=20, check=False)
     safe = (eroded["outcome"] != 2).mean(dim=("ground_phase", "speed_ratio"))
     assert (np.diff(safe.values, axis=1) < 0.0).all()
 
@@ -128,20 +128,20 @@ def test_rows_do_not_depend_on_how_they_are_cut():
 
 def test_what_cannot_be_computed_is_refused():
     """Values name their parameter."""
-    given = motion(1.2)
+    excitation = motion(1.2)
     for name, call in {
-        "axis": lambda: rk.bifurcation(BLOCK, given, "mass", [1.0]),
-        "values": lambda: rk.bifurcation(BLOCK, given, "amplitude", [2.0, 1.0]),
-        "sweeps": lambda: rk.bifurcation(BLOCK, given, "amplitude", [1.0], sweeps=("left",)),
+        "axis": lambda: rk.bifurcation(BLOCK, excitation, "mass", [1.0]),
+        "values": lambda: rk.bifurcation(BLOCK, excitation, "amplitude", [2.0, 1.0]),
+        "sweeps": lambda: rk.bifurcation(BLOCK, excitation, "amplitude", [1.0], sweeps=("left",)),
         "excitation": lambda: rk.basin(BLOCK, rk.pulses.sine(1.0, 1.0)),
-        "at": lambda: rk.poincare(BLOCK, given, at="noon"),
-        "points": lambda: rk.periodic_orbits(BLOCK, given, points=3),
-        "limits": lambda: rk.periodic_orbits(BLOCK, given, limits=(2.0, 1.0)),
-        "cycles": lambda: rk.poincare(BLOCK, given, cycles=100),
-        r"cycles\[0\]": lambda: rk.lyapunov(BLOCK, given, cycles=(10, 20)),
-        "amplitude": lambda: rk.bifurcation(BLOCK, given, "amplitude", [-1.0, 1.0]),
-        "speeds": lambda: rk.basin(BLOCK, given, speeds=[-0.1, 0.1]),
-        "phases": lambda: rk.basin(BLOCK, given, phases=[np.nan]),
+        "at": lambda: rk.poincare(BLOCK, excitation, at="noon"),
+        "points": lambda: rk.periodic_orbits(BLOCK, excitation, points=3),
+        "limits": lambda: rk.periodic_orbits(BLOCK, excitation, limits=(2.0, 1.0)),
+        "cycles": lambda: rk.poincare(BLOCK, excitation, cycles=100),
+        r"cycles\[0\]": lambda: rk.lyapunov(BLOCK, excitation, cycles=(10, 20)),
+        "amplitude": lambda: rk.bifurcation(BLOCK, excitation, "amplitude", [-1.0, 1.0]),
+        "speeds": lambda: rk.basin(BLOCK, excitation, speeds=[-0.1, 0.1]),
+        "phases": lambda: rk.basin(BLOCK, excitation, phases=[np.nan]),
     }.items():
         with pytest.raises(InvalidValueError, match=name):
             call()
@@ -150,18 +150,18 @@ def test_what_cannot_be_computed_is_refused():
 @pytest.mark.slow
 def test_pictures():
     """One panel or curve per model, at most four side by side; all calls have a picture."""
-    given, models = motion(1.2), ["housner", "ked", "calibrated", 0.5, 0.7]
-    diagram = rk.bifurcation(BLOCK, given, "amplitude", [0.9, 1.2], models, starts=2, cycles=(20, 4))
+    excitation, models = motion(1.2), ["housner", "ked", "calibrated", 0.5, 0.7]
+    diagram = rk.bifurcation(BLOCK, excitation, "amplitude", [0.9, 1.2], models, starts=2, cycles=(20, 4))
     figure = plots.bifurcation_picture(diagram)
     assert len([axes for axes in figure.axes if axes.get_visible()]) == 10
-    assert plots.basins_picture(rk.basin(BLOCK, given, phases=4, speeds=4)).get_figwidth() == pytest.approx(SINGLE)
-    eroded = rk.basin(BLOCK, given, models, amplitudes=[0.5, 1.0], phases=4, speeds=4)
+    assert plots.basins_picture(rk.basin(BLOCK, excitation, phases=4, speeds=4)).get_figwidth() == pytest.approx(SINGLE)
+    eroded = rk.basin(BLOCK, excitation, models, amplitudes=[0.5, 1.0], phases=4, speeds=4)
     assert len(plots.basins_picture(eroded).axes[0].lines) == 5
-    orbits = rk.periodic_orbits(BLOCK, given, restitution="housner", points=20, doublings=1)
+    orbits = rk.periodic_orbits(BLOCK, excitation, restitution="housner", points=20, doublings=1)
     assert len(plots.orbits_picture(orbits).axes) == 1
-    exponents = rk.lyapunov(BLOCK, given, models[:2], orbits=3, cycles=(60, 20))
+    exponents = rk.lyapunov(BLOCK, excitation, models[:2], orbits=3, cycles=(60, 20))
     assert len(plots.lyapunov_picture(exponents).axes[0].get_yticks()) == 2
-    section = rk.poincare(BLOCK, given, at="impact", cycles=(10, 10))
+    section = rk.poincare(BLOCK, excitation, at="impact", cycles=(10, 10))
     assert plots.poincare_picture(section).axes[0].get_xlabel().startswith("phase")
 
 

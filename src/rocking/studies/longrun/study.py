@@ -226,12 +226,12 @@ class Exponents(Task):
 
     def findings(self, system: HarmonicRocking, results: "xr.Dataset") -> list[dict[str, Any]]:
         by_orbit = np.column_stack([results[name].values for name in ("exponent", "second_exponent")])
-        found = LyapunovExponents(system, by_orbit, results["impact_rate"].values, np.nan)
-        (mean, second), error = found.values.tolist(), float(found.standard_errors[0])
+        exponents = LyapunovExponents(system, by_orbit, results["impact_rate"].values, np.nan)
+        (mean, second), error = exponents.values.tolist(), float(exponents.standard_errors[0])
         return [{
             "exponent": mean, "exponent_error": error, "exponent_over_p": mean / system.p, "second_exponent": second,
-            "orbits_counted": len(found.finite), "orbits_sticking": found.sticking,
-            "orbits_overturned": found.overturned,
+            "orbits_counted": len(exponents.finite), "orbits_sticking": exponents.sticking,
+            "orbits_overturned": exponents.overturned,
         }]  # fmt: skip
 
 

@@ -40,8 +40,8 @@ def test_uplift_of_a_plane_body(level, offset):
         threshold = GRAVITY * math.tan(math.atan(lever / 1.0) - sign * level)
         for factor in (0.999, 1.001):
             motion = rk.GroundMotion(-sign * factor * threshold * ramp, 0.02)
-            found = predict(block, motion, **{**FIXED, "level": level, "offset": offset}, count=4, **OPTIONS)
-            assert found.chances["uplift"].value == float(factor > 1.0)
+            prediction = predict(block, motion, **{**FIXED, "level": level, "offset": offset}, count=4, **OPTIONS)
+            assert prediction.chances["uplift"].value == float(factor > 1.0)
             # negative control: level ground and a centre in the middle
             plain = predict(block, motion, **FIXED, level=0.0, count=4, **OPTIONS).chances["uplift"].value
             assert plain == float(threshold * factor > GRAVITY * 0.2)
@@ -76,11 +76,11 @@ def test_without_the_slope_a_prediction_is_too_sure():
 def test_supports_have_names():
     """A shelf slopes more than a floor; unknown supports are refused with the known ones."""
     block, pulse = rk.Block(width=1.0, height=4.0), rk.pulses.sine(3.0, 0.8)
-    found = {name: predict(block, pulse, level=name, count=4, **OPTIONS) for name in ("floor", "shelf", "road")}
-    assert found["floor"].inputs["level"] == "uniform, -0.004 to 0.004 rad"
-    assert found["shelf"].inputs["level"] == "uniform, -0.016 to 0.016 rad"
-    assert any("2.5 %" in text for text in found["road"].assumed)
-    assert any(text.startswith("level:") for text in found["floor"].assumed)
+    by_support = {name: predict(block, pulse, level=name, count=4, **OPTIONS) for name in ("floor", "shelf", "road")}
+    assert by_support["floor"].inputs["level"] == "uniform, -0.004 to 0.004 rad"
+    assert by_support["shelf"].inputs["level"] == "uniform, -0.016 to 0.016 rad"
+    assert any("2.5 %" in text for text in by_support["road"].assumed)
+    assert any(text.startswith("level:") for text in by_support["floor"].assumed)
     with pytest.raises(RockingError, match="level"):
         predict(block, pulse, level="table", count=4)
 
@@ -89,10 +89,10 @@ def test_supports_have_names():
 def test_the_headline_names_its_condition():
     """The verdict holds for the sampled inputs; what was not sampled and what a known azimuth would change follow."""
     x = rk.pulses.sine(3.0, 0.8).sampled(0.01)
-    found = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x.scaled(0.1)}, count=32, **OPTIONS)
-    assert ", for the sampled inputs: probability" in found.verdict
-    assert any("inputs that were not sampled: placement, density" in sentence for sentence in found.sentences)
-    assert any(sentence.startswith("The azimuth was sampled") for sentence in found.sentences)
+    prediction = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x.scaled(0.1)}, count=32, **OPTIONS)
+    assert ", for the sampled inputs: probability" in prediction.verdict
+    assert any("inputs that were not sampled: placement, density" in sentence for sentence in prediction.sentences)
+    assert any(sentence.startswith("The azimuth was sampled") for sentence in prediction.sentences)
     stated = predict(rk.Block(width=0.5, height=2.0), {"x": x, "y": x}, azimuth=0.1, count=4, **OPTIONS)
     assert not any(sentence.startswith("The azimuth was sampled") for sentence in stated.sentences)
 
@@ -106,9 +106,9 @@ def test_another_restitution_leaves_the_bodies(body):
         _mechanics(body, motion, {"restitution": name}, GRAVITY, 0.0, "newton") for name in ("measured", "ked", "ked")
     )
     draws = np.random.default_rng(3).random((8, sum(new.widths.values())))
-    found, anew = (each.run(draws, 0, np.ones(8), 1) for each in (first.with_restitution("ked"), other))
-    np.testing.assert_array_equal(found.peak, anew.peak)
+    shared, separate = (each.run(draws, 0, np.ones(8), 1) for each in (first.with_restitution("ked"), other))
+    np.testing.assert_array_equal(shared.peak, separate.peak)
     assert first.with_restitution("ked").inputs["restitution"].text == new.inputs["restitution"].text
     # negative control: the restitution before
     levels = np.random.default_rng(3).random((8, sum(first.widths.values())))
-    assert (first.run(levels, 0, np.ones(8), 1).peak != anew.peak).any()
+    assert (first.run(levels, 0, np.ones(8), 1).peak != separate.peak).any()
