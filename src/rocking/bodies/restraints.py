@@ -185,7 +185,7 @@ class Tendon(Restraint):
 
 @dataclass(frozen=True, kw_only=True)
 class ViscousDamper(Restraint):
-    """A viscous damper, F = c |e'|^a sgn e'.
+    """A viscous damper, ``F = c |e'|^a sgn e'``.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ class FrictionDamper(Restraint):
 
 @dataclass(frozen=True, kw_only=True)
 class Fuse(Restraint):
-    """A yielding fuse: bilinear with kinematic hardening, F = k (e - ep), |F - H ep| <= Fy.
+    """A yielding fuse: bilinear with kinematic hardening, ``F = k (e - ep)``, ``|F - H ep| <= Fy``.
 
     A buckling-restrained fuse has the same law in compression. With `tension_only` the fuse buckles without force. The
     fuse breaks when its stroke is reached.
