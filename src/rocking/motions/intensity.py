@@ -248,7 +248,7 @@ class IntensityMeasure:
     ----------
     name : str
         Short name.
-    words : str
+    description : str
         Name in full.
     unit : str
         SI unit; ``-`` if dimensionless.

@@ -133,7 +133,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     >>> pulses = [rk.pulses.sine(amplitude=a, period=0.8) for a in (3.0, 3.4, 5.0)]
     >>> prediction = rk.predict(rk.Block(width=0.5, height=2.0), pulses, friction=(0.2, 0.4), count=64)
     >>> prediction.chances["overturning"].per_motion.round(1).tolist()
-    [0.0, 0.7, 0.8]
+    [0.2, 0.3, 0.5]
     """
     check_progress(progress)
     thread_count(threads)

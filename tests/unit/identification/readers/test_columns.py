@@ -112,6 +112,6 @@ def test_kinds_and_endings(tmp_path):
         read_measurement(path, kind="sound")
     with pytest.raises(MeasurementError, match="no such file"):
         read_measurement(tmp_path / "none.csv")
-    for name, words in (("voice.m4a", "Save the sound as WAV or FLAC"), ("a.pdf", "must end in")):
+    for name, words in (("voice.m4a", "Save the sound as WAV or FLAC"), ("a.pdf", "the extension of the file must be")):
         with pytest.raises(MeasurementError, match=words):
             read_measurement(written(tmp_path, GOOD, name))
