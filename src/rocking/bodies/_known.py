@@ -104,7 +104,7 @@ class Known:
             return (distribution,)
         return (
             Message(
-                "moment of inertia assumed: the same fraction of the largest possible value in the outline as for the "
+                "moment of inertia assumed: its ratio to the largest possible value in the outline is that of the "
                 "homogeneous body"
             ),
             distribution,

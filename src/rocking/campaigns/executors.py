@@ -228,9 +228,9 @@ def cannot_be_sent(error: Exception) -> str:
 class Serial(Executor):
     """Computes the chunks one after another in this process.
 
-    A second thread computes the next chunk while a chunk is packed, written, recorded and reported. `Histories.run` is
-    called there, never twice at a time, and possibly during the progress function. At most two chunks and the file of
-    one are in memory. The thread ends with the run.
+    A second thread computes the next chunk while a chunk is packed, written, recorded and reported. This thread calls
+    `Histories.run`, never twice at a time, and possibly during the progress function. At most two chunks and one file
+    are in memory. The thread ends with the run.
 
     Parameters
     ----------

@@ -148,7 +148,9 @@ def _problem(arguments: Arguments, in_space: bool) -> "ResponseProblem":
     stated = [*filter(None, stated), *(f"motion.{key}" for key in arguments.sets.get("motion", {}))]
     if stated and not motions and (free or dropped):
         name = "--initial-rotation" if free else "a drop"
-        raise UsageError("{options} needs a motion, and {option} has no motion", option=name, options=", ".join(stated))
+        raise UsageError(
+            "{options} can only be used with a motion, not with {option}", option=name, options=", ".join(stated)
+        )
     if not free and not dropped and not motions and not arguments.solid:
         raise UsageError("No ground motion. Add --motion or --initial-rotation")
     with arguments.hinted():

@@ -306,9 +306,9 @@ class DrawnRestitution(ImpactLaw):
 
 
 class RandomRestitution(DrawnRestitution):
-    """Random coefficient for every impact; the same seed, history and impact give the same draw.
+    """Random coefficient for every impact; the same seed, history and impact give the same coefficient.
 
-    Draws that would create energy are excluded, with one bound per side: see `DrawnRestitution`.
+    Coefficients that would increase the energy are excluded, with one bound per side: see `DrawnRestitution`.
 
     Parameters
     ----------

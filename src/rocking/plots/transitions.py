@@ -114,7 +114,7 @@ def transitions_picture(
     """
     if not isinstance(transitions, Transitions):
         raise InvalidValueError(
-            "{parameter} must be of minimum_overturning_acceleration, got {kind}", parameter="transitions",
+            "{parameter} must be a result of minimum_overturning_acceleration, got {kind}", parameter="transitions",
             kind=type(transitions).__name__,
         )  # fmt: skip
     count = int(checks.within("points", points, 2, _MOST_POINTS))

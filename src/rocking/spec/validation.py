@@ -140,7 +140,10 @@ class Update:
         facts = {"factors": self.error.text, "source": self.error.source}
         return (
             Message("Updated model error: {factors} ({source}).", facts),
-            Message("Each earthquake from the tests of the others: {verdict}", {"verdict": self.left_out.verdict}),
+            Message(
+                "Prediction of each earthquake with factors from the other earthquakes: {verdict}",
+                {"verdict": self.left_out.verdict},
+            ),
         )
 
     def answer(self) -> Answer:

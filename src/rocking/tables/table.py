@@ -145,7 +145,7 @@ class Table:
         return list(zip(*(column.values.tolist() for column in self.columns.values()), strict=True))
 
     def cells(self, *, blank: bool = True) -> Iterator[tuple[Cell, ...]]:
-        """Return the rows of a file without formulas; blank: cells without a finite number are empty."""
+        """Return the rows for a file without formulas; if blank, cells without a finite number are empty."""
         columns = decoded(self.columns).values()
         for first in range(0, len(self), PIECE):
             rows = slice(first, first + PIECE)

@@ -178,7 +178,9 @@ def test_inventories_say_it():
     (heavy,) = (of_heavy := assess([item], Hazard.of_records(HEAVY))).verdicts
     (light,) = (of_light := assess([item], Hazard.of_records(LIGHT))).verdicts
     assert heavy.worse.lost_contact > 0
-    assert f"The contact force becomes tensile in {heavy.worse.lost_contact} of these motions." in sentence(heavy, of_heavy)
+    assert f"The contact force becomes tensile in {heavy.worse.lost_contact} of these motions." in sentence(
+        heavy, of_heavy
+    )
     assert light.worse.lost_contact == 0
     assert "tensile" not in sentence(light, of_light)
 

@@ -30,7 +30,7 @@ class MessageData(BaseModel):
 
     text: str
     facts: dict[str, Any]
-    many: str = Field("", description="the text where the fact count is not 1")
+    many: str = Field("", description="text for a count other than 1")
     context: str = Field("", description="context that separates it from a message with the same text")
 
 

@@ -20,8 +20,7 @@ _SLACK = 1e-6
 _DIRECTIONS = 64
 
 ASSUMED = Message(
-    "inertia assumed: along each axis the same fraction of the largest possible value in the bounding box as for the "
-    "parts"
+    "inertia assumed: along each axis its ratio to the largest possible value in the bounding box is that of the parts"
 )
 
 

@@ -230,7 +230,7 @@ class HullResponse(ResponseBase):
     @property
     def _ending(self) -> str:
         slides = self.sliding_distance > _NO_SLIP * self.body.size
-        slid = f", a vertex slid {self.sliding_distance:.4g} m in all" if slides else ""
+        slid = f", total sliding distance of a vertex {self.sliding_distance:.4g} m" if slides else ""
         if self.outcome is Outcome.NO_UPLIFT:
             return str(self.outcome.value)
         count = self.impacts.size

@@ -1,4 +1,4 @@
-"""Energy balance and contact forces of a response without friction, with warnings against pure rocking."""
+"""Energy balance and contact forces of a response without friction, and warnings if pure rocking is not possible."""
 
 from dataclasses import dataclass
 

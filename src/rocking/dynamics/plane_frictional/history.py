@@ -88,7 +88,7 @@ class History:
 
     @property
     def overturning_time(self) -> float:
-        """Time of the last passage of the centre over the foot; NaN without overturning [s]."""
+        """Time of the last passage of the centre of mass over the foot; NaN without overturning [s]."""
         return self.passed if self.outcome is Outcome.OVERTURNED else math.nan
 
     @property

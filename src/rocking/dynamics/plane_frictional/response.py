@@ -219,7 +219,7 @@ class ContactResponse(ResponseBase):
             )
         if self.sliding_distance > 0.0:
             facts = {"outcome": ending, "distance": self.sliding_distance}
-            ending = Message("{outcome}, slid {distance:.4g} m in all", facts)
+            ending = Message("{outcome}, total sliding distance {distance:.4g} m", facts)
         return ending
 
     @property

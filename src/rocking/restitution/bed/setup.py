@@ -253,7 +253,7 @@ def _accelerations(values: object) -> tuple[float, float]:
 
 
 def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: float | None) -> tuple[float, float]:
-    """Return the initial rotation [rad] and the velocity of landing [rad/s], one from the other."""
+    """Return the initial rotation [rad] and the landing velocity [rad/s]; one of them is given."""
     # the start has the energy of the requested velocity, at rest if half the range of rotations is sufficient
     if (rotation is None) == (angular_velocity is None):
         raise InvalidValueError("use rotation or angular_velocity, exactly one of them")

@@ -49,7 +49,7 @@ class BifurcationTable(HarmonicTable):
     )
     values: Numbers = Field(
         default_factory=lambda: Values.model_validate({"from": 0.2, "to": 4.0, "count": 191}),
-        description="increasing values of the axis; 0.2 to 4 if not given",
+        description="increasing values of the axis; default: 0.2 to 4",
     )
     starts: int = key("number of initial states: at rest, then random after an impact", 4, ge=1, le=10_000)
     sweeps: Annotated[list[Sweep], Field(min_length=1, max_length=3), BeforeValidator(_words)] = key(
@@ -92,7 +92,7 @@ class BasinsTable(LongRunTable):
 
     amplitudes: Numbers = Field(
         default_factory=lambda: Values(values=[1.5]),
-        description="peak ground accelerations over that of uplift; 1.5 if not given [-]",
+        description="peak ground acceleration / uplift acceleration; default: 1.5 [-]",
     )
     frequency: Positive = key("circular frequency of the ground motion over p [-]", 3.0)
     phases: int = key("number of phases of the ground motion at the impact", 100, ge=1, le=20_000)

@@ -346,7 +346,7 @@ def sensitivity(
     [[9, 9], [9, 9]]
     """
     if not callable(study):
-        raise InvalidValueError(parameter="study", allowed="a function that takes restitution=", value=study)
+        raise InvalidValueError(parameter="study", allowed="a function with a parameter restitution", value=study)
     choices = named_restitutions(restitutions)
     first = next(iter(choices)) if baseline is None else checks.one_of("baseline", baseline, choices)
     results = {label: study(restitution=choice) for label, choice in choices.items()}

@@ -22,7 +22,7 @@ def named_restitutions(restitutions: Any) -> dict[str, Any]:
     if isinstance(restitutions, Mapping):
         pairs = [(str(name), choice) for name, choice in restitutions.items()]
         if set(restitutions) == set(FEET):
-            raise InvalidValueError("restitutions named left and right are one choice by side. Use a list of choices.")
+            raise InvalidValueError("A mapping of left and right is one restitution. Use a list of restitutions.")
         for _, choice in pairs:
             label_of(choice)
     elif isinstance(restitutions, Sequence) and not isinstance(restitutions, str):

@@ -244,7 +244,7 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
 
 def test_summary_tells_the_largest_rotation_in_degrees(rocked):
     """Of a body that stands, beside how far it slid; a body that was only pushed along has not rotated."""
-    told = re.search(r"largest rotation (\S+) degrees, slid (\S+) m in all", rocked.summary)
+    told = re.search(r"largest rotation (\S+) degrees, total sliding distance (\S+) m", rocked.summary)
     largest = math.degrees(np.abs(rocked.rotation).max())
     assert [float(each) for each in told.groups()] == pytest.approx([largest, rocked.sliding_distance], rel=5e-3)
     assert "rotation" not in rk.simulate(BODY, rk.pulses.rectangular(4.0, 0.5), None, friction=0.3).summary

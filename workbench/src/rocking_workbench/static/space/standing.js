@@ -85,7 +85,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
     ${children}
     <${Drawing} question=${question} alt=${t("Rise of the centre of mass over tilt and azimuth from pose {pose}, and the support polygon", { pose: answer.stands_in })} />
     <h3>Toppling by direction</h3>
-    <${Rows} caption="Directions" head=${["direction [\u00b0]", "direct rise of the centre [mm]", "lowest rise of the centre [mm]", "uplift at [m/s\u00b2]", "next pose"]}
+    <${Rows} caption="Directions" head=${["direction [\u00b0]", "direct rise of the centre of mass [mm]", "smallest rise of the centre of mass [mm]", "uplift at [m/s\u00b2]", "next pose"]}
       rows=${answer.directions.map((/** @type {any} */ direction) => [
         number((direction.azimuth * 180) / Math.PI, 3), millimetres(direction.straight_rise), millimetres(direction.lowest_rise),
         number(direction.uplift_acceleration, 3), direction.topples_into === null ? "\u2013" : String(direction.topples_into)])} />

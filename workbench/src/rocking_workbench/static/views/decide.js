@@ -141,7 +141,7 @@ const Crossings = ({ answer, question }) => html`
     ${answer.minimum_acceleration === null ? "No overturning in this range." : t("Lowest PGA with overturning: {acceleration} g, {factor} times this motion.", {
       acceleration: number(answer.minimum_acceleration / G, 4), factor: number(answer.minimum_acceleration / answer.motion.peak_ground_acceleration, 4) })}</p>
   <p>${sentence(answer.sentence)}</p>
-  <${Drawing} question=${question} alt="Overturning over ground acceleration" />
+  <${Drawing} question=${question} alt="Overturning as a function of ground acceleration" />
   <${Rows} caption="Crossings" head=${["PGA [g]", "times this motion", "times uplift", "below", "above"]}
     rows=${answer.crossings.slice(0, MOST).map((/** @type {any} */ crossing) => [number(crossing.peak_ground_acceleration / G, 6), number(crossing.scale, 6), number(crossing.uplift_ratio, 4),
       modeOf(crossing.mode_below), modeOf(crossing.mode_above)])} />
