@@ -25,8 +25,11 @@ Run rows_of(bool single) {
 
 Run kernel_for(bool single, const Choice& c) {
 #if defined(ROCKING_AVX512)
-    if (single && c.order == 8) return avx2::kernel_for(single, c);
-#endif
+    // wider registers have no effect on a single history; what is rare is compiled once
+    if ((single && c.order == 8) || c.linear || c.degree == 7 || c.order == 4) return avx2::kernel_for(single, c);
+    if (c.order == 6) return c.vertical ? rows_of<6, 1, true, false>(false) : rows_of<6, 1, false, false>(false);
+    return c.vertical ? rows_of<8, 1, true, false>(single) : rows_of<8, 1, false, false>(single);
+#else
     if (c.order == 8) {
         if (c.degree == 7) return c.linear ? rows_of<8, 7, false, true>(single) : rows_of<8, 7, false, false>(single);
         if (c.vertical) return c.linear ? rows_of<8, 1, true, true>(single) : rows_of<8, 1, true, false>(single);
@@ -40,6 +43,7 @@ Run kernel_for(bool single, const Choice& c) {
     }
     if (c.vertical || c.order != 4) return nullptr;
     return c.degree == 7 ? rows_of<4, 7, false, false>(false) : rows_of<4, 1, false, false>(false);
+#endif
 }
 
 }  // namespace ROCKING_ISA

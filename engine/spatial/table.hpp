@@ -52,7 +52,6 @@ public:
     namespace isa { std::unique_ptr<Engine> engine_of(const Numbers& numbers); }
 ROCKING_DECLARE(plain)
 ROCKING_DECLARE(avx2)
-ROCKING_DECLARE(avx512)
 #undef ROCKING_DECLARE
 
 }  // namespace rocking::spatial
