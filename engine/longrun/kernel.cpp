@@ -113,6 +113,7 @@ class Impacts {
         }
         end[10] = lane.peak;
         end[11] = lane.before;
+        end[12] = lane.trough;
     }
 
   public:

@@ -27,7 +27,7 @@ struct Settings {
     SpeedLaw law;
 };
 
-constexpr int kBody = 6, kStart = 3, kResults = 9, kEnds = 12, kMostSines = 32;
+constexpr int kBody = 6, kStart = 3, kResults = 9, kEnds = 13, kMostSines = 32;
 
 struct Rows {
     const double *bodies, *starts;

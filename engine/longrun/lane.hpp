@@ -50,11 +50,12 @@ struct Column {
         if (skip == 2) return first_zero<kOrder - 2>(c + 2);
         return first_zero<kOrder - 3>(c + 3);
     }
-    // The largest value between 0 and `end` at a zero of the slope; 0 without one.
-    double top(double end) const {
-        double slope[kOrder], largest = 0.0;
+    // The largest value of the polynomial times a sign between 0 and `end` at a zero of the slope; minus infinity without one.
+    double top(double end, double sign = 1.0) const {
+        double slope[kOrder], largest = -INFINITY;
         slopes_of<kOrder>(c, slope);
-        each_fall<kOrder - 1>(slope, [&](double x) { largest = x < end ? std::max(largest, value_of<kOrder>(c, x)) : largest; });
+        for (double& term : slope) term *= sign;
+        each_fall<kOrder - 1>(slope, [&](double x) { largest = x < end ? std::max(largest, sign * value_of<kOrder>(c, x)) : largest; });
         return largest;
     }
 };
@@ -69,7 +70,7 @@ struct Lane {
     int s = 0;  // side in contact: 0 for a positive rotation
     bool resting = false, lifts = false;
     double t = 0.0, y = 0.0, v = 0.0, until = 0.0, tangent[V > 0 ? V : 1][2] = {};
-    double peak = 0.0, before = 0.0, falling = 0.0;  // largest y over alpha; velocity and acceleration before the last impact
+    double peak = 0.0, trough = INFINITY, before = 0.0, falling = 0.0;  // largest y and smallest minimum over alpha; velocity and acceleration before the last impact
     std::int64_t cycle = 0, stored = 0, earlier_impacts = 0, earlier_rests = 0;  // of the driver
     double growth[2] = {};
 

@@ -242,7 +242,8 @@ class Lanes {
             event = Event::failed;
         } else if (plain) {
             move(one, i);
-            if (rate[i] > 0.0 && one.v < 0.0 && driver.counts_peaks(one)) crest(one, column(c, i), 1.0);
+            const bool turns = rate[i] > 0.0 ? one.v < 0.0 : V == 3 && one.v > 0.0;
+            if (turns && driver.counts_peaks(one)) crest(one, column(c, i), 1.0);
         } else {
             event = with_zero(one, i);
         }
@@ -280,8 +281,11 @@ class Lanes {
         one.t += zero * h[i];
         return one.land();
     }
-    // The highest point within a step.
-    void crest(Lane<V>& one, const Column& y, double end) { one.peak = std::max(one.peak, y.top(end) / one.side[one.s].alpha); }
+    // The highest and the lowest point within a step.
+    void crest(Lane<V>& one, const Column& y, double end) {
+        one.peak = std::max(one.peak, y.top(end) / one.side[one.s].alpha);
+        if (V == 3) one.trough = std::min(one.trough, -y.top(end, -1.0) / one.side[one.s].alpha);
+    }
 };
 
 }  // namespace longrun

@@ -79,8 +79,9 @@ static void many(Table bodies, Sines sines, Table starts, Array<double, 2> resul
     spread(Cycles{rows, results.data(), sections.data(), impacts.data(), settled, kept, most}, vectors, threads, isa);
 }
 
-// From one impact over n: starts of time, speed after the impact and side; ends (rows, 12): time, speed, side, event, derivatives of
-// time and then of speed by start time, start speed and parameter (none for -1), peak over alpha, velocity before the last impact.
+// From one impact over n: starts of time, speed after the impact and side; ends (rows, 13): time, speed, side, event, derivatives of
+// time and then of speed by start time, start speed and parameter (none for -1), peak over alpha, velocity before the last impact,
+// and the smallest y over alpha at a minimum between impacts (with derivatives).
 static void over_impacts(Table bodies, Sines sines, Table starts, Array<double, 2> ends, Table law, std::int64_t n, int parameter, bool linear, double overturned,
                          double rest, double step_error, int threads, const std::string& isa) {
     const Rows rows = rows_of(bodies, sines, starts, law, parameter, linear, overturned, rest, step_error, ends);

@@ -600,7 +600,7 @@ def _coded(*names: str) -> dict[int, str]:
 
 _ATTRACTORS = _coded("rest", "sticking", "periodic", "irregular", "overturned", "failed")
 _FINAL_STATES = _coded("overturned", "small", "settled", "failed")
-_BRANCH_POINTS = _coded("none", "fold", "pitchfork", "period doubling")
+_BRANCH_POINTS = _coded("none", "fold", "pitchfork", "period doubling", "grazing")
 _LONG_RUN = (
     Quantity("amplitude_ratio", "1", "peak ground acceleration over that of uplift", label="amplitude / uplift"),
     Quantity("frequency_ratio", "1", "circular frequency of the ground motion over p", label="frequency / p"),

@@ -7,6 +7,7 @@ K KED.
 import math
 from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -25,16 +26,9 @@ from rocking.studies.longrun.basins import (
     ends_of,
     uncertainty_exponent,
 )
+from rocking.studies.longrun.continuation import bifurcation_curve, branch_off, continue_orbit
 from rocking.studies.longrun.exponents import lyapunov_exponents
-from rocking.studies.longrun.orbits import (
-    OrbitNotFoundError,
-    bifurcation_curve,
-    branch_off,
-    continue_orbit,
-    find_orbit,
-    slender_orbit,
-    symmetric_orbit,
-)
+from rocking.studies.longrun.orbits import OrbitNotFoundError, find_orbit, slender_orbit, symmetric_orbit
 from rocking.studies.longrun.system import Harmonic, HarmonicRocking, Numerics, over_impacts, over_periods
 from rocking.studies.longrun.thresholds import slender_thresholds
 
@@ -137,7 +131,8 @@ def test_the_cascade_in_one_call():
     system = system_of(4, 1.2, 2.0, 0.5, linear=True)
     options = {"limits": (0.05, 2.6), "restitution": 0.5, "doublings": 3, "points": 16, "linear": True}
     branches = rk.periodic_orbits(system.body, system.excitation, **options)
-    values = branches["amplitude_ratio"].values[branches["branch_point"].values > 1]
+    kinds = branches["branch_point"].values
+    values = branches["amplitude_ratio"].values[(kinds > 1) & (kinds < 4)]
     cascade = (1.827271179103310924, 2.312850976204278652, 2.394371332179993847, 2.411422145578383563)
     assert values == pytest.approx(cascade, abs=1e-9)
     branch = continue_orbit(symmetric_orbit(system), (0.0, 2.0), increasing=False)
@@ -164,6 +159,60 @@ def test_pitchforks_of_slender_bodies(amplitude, frequency, restitution):
     orbit = symmetric_orbit(system_of(4, 1.5, frequency, restitution, linear=True))
     branch = continue_orbit(orbit, ANYTHING, step=0.05, stop=is_kind("pitchfork"))
     assert branch.first("pitchfork").value == pytest.approx(amplitude, abs=1e-9)
+
+
+def grazing_of_a_slender_body(frequency, restitution):
+    """Return the amplitude at which the path of the symmetric orbit touches zero rotation between its impacts.
+
+    x = 1 + (G sin f - 1) cosh t + (v - W G cos f) sinh t - G sin(W t + f) with G = A / (1 + W^2), up to the sign of the
+    forcing: x and x' at the touch, x at the next impact, and its speed v / r, are four equations for A, f, v and the
+    time of the touch, solved to 40 digits.
+    """
+    with mp.workdps(40):
+        w, r = mp.mpf(frequency), mp.mpf(restitution)
+
+        def path(t, amplitude, f, v):
+            g = amplitude / (1 + w * w)
+            a, b = g * mp.sin(f) - 1, v + g * w * mp.cos(f)
+            x = 1 + a * mp.cosh(t) + b * mp.sinh(t) - g * mp.sin(w * t + f)
+            return x, a * mp.sinh(t) + b * mp.cosh(t) - g * w * mp.cos(w * t + f)
+
+        def equations(amplitude, f, v, touch):
+            x, speed = path(mp.pi / w, amplitude, f, v)
+            return [x, speed + v / r, *path(touch, amplitude, f, v)]
+
+        return float(mp.findroot(equations, (1.23, 0.03, 0.13, 1.5 / w))[0])
+
+
+@pytest.mark.verifies("closed form", "the path of the symmetric orbit of a slender body, to 40 digits", within="1e-9")
+@pytest.mark.parametrize(("frequency", "restitution"), [("2", "0.9"), ("3", "0.85"), ("4", "0.9")])
+def test_grazing_of_the_symmetric_orbit(frequency, restitution):
+    """Beyond the fold the branch ends where its path touches the other side; negative control: another coefficient."""
+    exact, other = (grazing_of_a_slender_body(frequency, r) for r in (restitution, "0.8"))
+    orbit = symmetric_orbit(system_of(4, 2.0, float(frequency), float(restitution), linear=True))
+    branch = continue_orbit(orbit, ANYTHING, increasing=False)
+    assert [item.kind for item in branch.bifurcations] == ["fold", "grazing"]
+    assert branch.bifurcations[-1].value == pytest.approx(exact, abs=1e-9)
+    assert branch.bifurcations[-1].orbit.trough == pytest.approx(0.0, abs=1e-6)
+    assert abs(exact - other) > 1e-5
+    with pytest.raises(ValueError, match="pitchfork"):
+        branch_off(branch.bifurcations[-1], ANYTHING)
+
+
+@pytest.mark.verifies("second engine", "the orbit with two impacts fewer, whose path touches zero", within="1e-9")
+@pytest.mark.parametrize(
+    ("case", "state"),
+    [((4, 2.0, 2, 0.9, True), (3.165148, 0.158656)), ((2, 2.0, 2, "ked", False), (3.183132, 0.146774))],
+)
+def test_grazing_where_impacts_disappear(case, state):
+    """The orbit of three impacts per half period loses two of them, without speed, where that of one impact grazes."""
+    orbit = symmetric_orbit(system_of(*case[:4], linear=case[4]))
+    grazing = continue_orbit(orbit, ANYTHING, increasing=False).first("grazing")
+    below = orbit.system.changed("amplitude", grazing.value - 0.01)
+    branch = continue_orbit(find_orbit(below, *state, impacts=3, halves=1), ANYTHING, step=0.002)
+    assert branch.first("grazing").value == pytest.approx(grazing.value, abs=1e-9)
+    first, last = branch.orbits[0], branch.orbits[-1]
+    assert (first.slowest > 1e-3, last.slowest < 1e-6, last.trough) == (True, True, math.inf)
 
 
 @pytest.mark.verifies("closed form", "the symmetric orbit of slender bodies", within="1e-10")

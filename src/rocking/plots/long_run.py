@@ -1,6 +1,7 @@
 """Pictures of long-run dynamics: bifurcation diagrams, sections, exponents, basins and branches of orbits."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Container, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +31,11 @@ if TYPE_CHECKING:
 
 FINAL_STATES = ((COLORS[1], "overturned"), (PALE, "small"), (COLORS[0], "settled"), (INK, "failed"))
 _KINDS = ((3, COLORS[1], "irregular"), (2, COLORS[0], "periodic"), (1, COLORS[2], "with rests"), (0, GREY, "at rest"))
+_THRESHOLDS = {
+    "uplift": "uplift", "fold": "fold", "melnikov": "Melnikov", "heteroclinic": "tangency", "housner": "Housner",
+    "no_impact": "no impact", "one_impact": "one impact",
+}  # fmt: skip
+_OF_BOUNDARIES, _FROM_REST = ("melnikov", "heteroclinic"), ("uplift", "housner", "no_impact", "one_impact")
 _LABELS = {
     "amplitude_ratio": r"$a\,/\,(g\,\tan\,\alpha)$ [-]", "frequency_ratio": r"$\omega\,/\,p$ [-]",
     "slenderness_ratio": "slenderness h/b [-]", "semi_diagonal": "semi-diagonal R [m]",
@@ -64,6 +70,8 @@ def bifurcation_picture(results: Any) -> "Figure":
             options: Any = {"color": color, "rasterized": True, "zorder": 3 - code, "markersize": 0.9}
             column[0].plot(x.values.ravel(), points.values.ravel(), "o", markeredgewidth=0.0, **options)
         _mark_overturning(column[0], data, axis)
+        if axis == "amplitude_ratio":
+            _draw_thresholds(column[0], _thresholds_of(data, _THRESHOLDS))
         if has_exponents:
             exponent = data["exponent"].isel(period_number=0)
             largest = exponent.where(np.isfinite(exponent)).max(dim=("sweep", "initial_state"))
@@ -74,6 +82,38 @@ def bifurcation_picture(results: Any) -> "Figure":
     legend = [*(patch(color, name) for _, color, name in _KINDS), patch(INK, "fraction overturned (top)")]
     legend_below(figure, legend, 3 if len(shown) == 1 else 5)
     return figure
+
+
+def _thresholds_of(data: "xr.Dataset", names: Container[str], color: str = GREY) -> list[tuple[float, str, str]]:
+    """Return value, label and colour of the thresholds in closed form of a result."""
+    by_model = json.loads(data.attrs.get("thresholds", "{}"))
+    thresholds = by_model.get(data.attrs.get("restitution"), {})
+    return [(value, _THRESHOLDS[name], color) for name, value in thresholds.items() if name in names]
+
+
+def _draw_thresholds(axes: "Axes", lines: list[tuple[float, str, str]], *, is_upright: bool = False) -> None:
+    """Draw thin lines within the limits of the axis of amplitudes, with labels beside each other."""
+    from matplotlib.patheffects import withStroke
+
+    low, high = axes.get_ylim() if is_upright else axes.get_xlim()
+    pixels = axes.bbox.height if is_upright else axes.bbox.width
+    width = (high - low) * 0.09 * axes.figure.dpi / pixels  # of a label
+    end = low
+    for value, label, color in sorted(line for line in lines if low < line[0] < high):
+        start = max(value - width, end)
+        end = start + width
+        options: Any = {
+            "fontsize": 5.0,
+            "color": color,
+            "path_effects": [withStroke(linewidth=1.2, foreground="white")],
+        }
+        if is_upright:
+            axes.axhline(value, color=color, linewidth=0.5, linestyle=":")
+            axes.text(0.99, start, label, ha="right", va="bottom", transform=axes.get_yaxis_transform(), **options)
+        else:
+            axes.axvline(value, color=color, linewidth=0.5, linestyle=":")
+            options |= {"rotation": 90, "transform": axes.get_xaxis_transform()}
+            axes.text(start, 0.99, label, ha="left", va="top", **options)
 
 
 def _mark_overturning(axes: "Axes", data: "xr.Dataset", axis: str) -> None:
@@ -150,6 +190,9 @@ def basins_picture(results: Any) -> "Figure":
                 x, np.nan_to_num(low), np.nan_to_num(high, nan=1.0), color=style["color"], alpha=0.2, lw=0
             )
             axes.plot(x, safe / number, label=_name(label), **style)
+        axes.margins(x=0.0)
+        colored = [(data, look(k)["color"]) for k, data in enumerate(shown.values())]
+        _draw_thresholds(axes, [line for pair in colored for line in _thresholds_of(pair[0], _OF_BOUNDARIES, pair[1])])
         axes.set(xlabel=_LABELS["amplitude_ratio"], ylabel="fraction without overturning [-]", ylim=(-0.02, 1.02))
         axes.legend()
         return figure
@@ -159,6 +202,8 @@ def basins_picture(results: Any) -> "Figure":
         kinds, uncertain = (cells[name].values[..., 0] for name in ("final_state", "is_uncertain"))
         phases, heights = data["ground_phase"].values, data[upward].values
         draw_cells(axes, phases, heights, kinds)
+        if upward == "amplitude_ratio":
+            _draw_thresholds(axes, _thresholds_of(data, _FROM_REST, INK), is_upright=True)
         rows, across = np.nonzero(uncertain)
         axes.plot(phases[across], heights[rows], "x", color=INK, markersize=2)
     _label(columns, "ground_phase", _LABELS[upward])
@@ -200,7 +245,7 @@ def orbits_picture(results: Any) -> "Figure":
             for is_stable, style in ((1, "-"), (0, (0, (3, 2)))):
                 y = curve["speed_ratio"].where(curve["is_stable"] == is_stable)
                 axes.plot(curve[axis], y, linestyle=style, color=COLORS[number % 6], linewidth=0.9)
-        for code in (1, 2, 3):
+        for code in list(words)[1:]:
             points = data.where(data["branch_point"] == code)
             values = points["speed_ratio"].values.ravel()
             axes.plot(points[axis].values.ravel(), values, MARKS[code], color=INK, markersize=3.5, label=words[code])
@@ -239,7 +284,10 @@ def _by_restitution(results: Any) -> "dict[str, xr.Dataset]":
         return dict(results)
     if "restitution" not in results.dims:
         return {str(results.attrs.get("restitution", "")): results}
-    return {str(label): results.sel(restitution=label) for label in results["restitution"].values}
+    return {
+        str(label): results.sel(restitution=label).assign_attrs(restitution=str(label))
+        for label in results["restitution"].values
+    }
 
 
 def _panels(

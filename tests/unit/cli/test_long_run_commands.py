@@ -12,7 +12,7 @@ WORDS = {
     "lyapunov": ("--orbits", 3, "--settled", 60, "--kept", 20),
     "basins": ("--phases", 4, "--speeds", 4, "--amplitudes", "0.5,1.5"),
 }
-ROWS = {"bifurcation": 1, "orbits": 3, "lyapunov": 1, "basins": 2}
+ROWS = {"bifurcation": 1, "orbits": 4, "lyapunov": 1, "basins": 2}
 
 
 @pytest.mark.parametrize("command", WORDS)
@@ -36,8 +36,8 @@ def test_the_orbits_of_a_job_file_are_those_of_the_command(run, file):
     path = file('[body]\nunits = "m"\nwidth = 1\nheight = 2\n[restitution]\nmodel = "housner"\n[orbits]\n'
                 "frequency = 2\namplitude = 1.2\nhighest = 3\ndoublings = 1\npoints = 20\n", "job.toml")  # fmt: skip
     found = json.loads(run("orbits", path, "--json")[1])["findings"]
-    assert [row["branch_point"] for row in found] == ["fold", "pitchfork", "period doubling"]
-    assert found[0]["amplitude_ratio"] == pytest.approx(0.365698905, abs=1e-9)
+    assert [row["branch_point"] for row in found] == ["grazing", "fold", "pitchfork", "period doubling"]
+    assert found[1]["amplitude_ratio"] == pytest.approx(0.365698905, abs=1e-9)
     assert (
         run("orbits", path, "--json")[1]
         == run("orbits", *BLOCK, *WORDS["orbits"], "--restitution", "housner", "--json")[1]

@@ -14,6 +14,7 @@ from waiting import wait_for
 import rocking as rk
 from rocking import plots
 from rocking.campaigns.jobs import Job, JobFolder, status_of
+from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.errors import InvalidValueError
 from rocking.plots.style import SINGLE
 from rocking.spec.questions import question_in
@@ -90,7 +91,9 @@ def test_sections_after_impacts_and_exponents():
 def test_branches_of_orbits():
     """Fold, pitchfork and doublings as of two independent programs, stability between them."""
     found = rk.periodic_orbits(BLOCK, motion(1.2), limits=(0.05, 3.2), restitution="housner", points=60)
-    marked = found["branch_point"].values
+    marked = found["branch_point"].values.copy()
+    assert marked[0, 0] == 4  # the unstable branch ends at a grazing
+    marked[marked == 4] = 0
     values = found["amplitude_ratio"].values[marked > 0]
     assert values == pytest.approx([0.365698905, 2.387388435, 2.926390467, 2.986533874], abs=2e-9)
     assert marked[marked > 0].tolist() == [1, 2, 3, 3]
@@ -156,13 +159,42 @@ def test_pictures():
     assert len([axes for axes in figure.axes if axes.get_visible()]) == 10
     assert plots.basins_picture(rk.basin(BLOCK, excitation, phases=4, speeds=4)).get_figwidth() == pytest.approx(SINGLE)
     eroded = rk.basin(BLOCK, excitation, models, amplitudes=[0.5, 1.0], phases=4, speeds=4)
-    assert len(plots.basins_picture(eroded).axes[0].lines) == 5
+    assert len(plots.basins_picture(eroded).axes[0].get_legend_handles_labels()[1]) == 5
     orbits = rk.periodic_orbits(BLOCK, excitation, restitution="housner", points=20, doublings=1)
     assert len(plots.orbits_picture(orbits).axes) == 1
     exponents = rk.lyapunov(BLOCK, excitation, models[:2], orbits=3, cycles=(60, 20))
     assert len(plots.lyapunov_picture(exponents).axes[0].get_yticks()) == 2
     section = rk.poincare(BLOCK, excitation, at="impact", cycles=(10, 10))
     assert plots.poincare_picture(section).axes[0].get_xlabel().startswith("phase")
+
+
+def drawn(axes, *, is_upright=False):
+    """Return the labelled lines of an axis of amplitudes, as texts and values."""
+    lines = [line.get_ydata()[0] if is_upright else line.get_xdata()[0] for line in axes.lines if line.get_ls() == ":"]
+    return sorted(text.get_text() for text in axes.texts), sorted(lines)
+
+
+@pytest.mark.verifies("closed form", "Lenci and Rega (2006), the half sine and static uplift", within="1e-12")
+def test_thresholds_are_drawn_on_axes_of_amplitudes():
+    """Those of each model and of each start; none on another axis, or of a coefficient that depends on the speed."""
+    excitation, both = motion(1.2), {"half": 0.5, "elastic": 0.9}
+    values, options = np.linspace(0.1, 2.5, 9), {"starts": 1, "cycles": (4, 2), "exponents": False}
+    figure = plots.bifurcation_picture(rk.bifurcation(BLOCK, excitation, "amplitude", values, both, **options))
+    texts, lines = drawn(figure.axes[0])
+    assert texts == ["Housner", "Melnikov", "fold", "no impact", "one impact", "tangency", "uplift"]
+    for exact in (1.0, 1.386750490563072805, 1.8007239305607457817, math.sqrt(5.0)):
+        assert min(abs(line - exact) for line in lines) < 1e-12
+    assert min(abs(line - 1.386750490563072805) for line in drawn(figure.axes[1])[1]) > 0.01  # of another coefficient
+    frequencies = rk.bifurcation(BLOCK, excitation, "frequency", [1.0, 2.0], 0.5, **options)
+    assert drawn(plots.bifurcation_picture(frequencies).axes[0]) == ([], [])
+    eroded = plots.basins_picture(rk.basin(BLOCK, excitation, both, amplitudes=values, phases=3, speeds=3, check=False))
+    assert drawn(eroded.axes[0])[0] == ["Melnikov", "Melnikov", "tangency", "tangency"]
+    from_rest = plots.basins_picture(rk.basin(BLOCK, excitation, 0.5, amplitudes=values, phases=3, speeds=0))
+    assert drawn(from_rest.axes[0], is_upright=True)[0] == ["Housner", "no impact", "one impact", "uplift"]
+    by_speed = rk.basin(
+        BLOCK, excitation, SpeedRestitution([0.0, 1.0], [0.9, 0.7]), amplitudes=values, phases=3, speeds=0
+    )
+    assert drawn(plots.basins_picture(by_speed).axes[0], is_upright=True) == (["uplift"], [1.0])
 
 
 JOB = """

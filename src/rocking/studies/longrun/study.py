@@ -1,6 +1,7 @@
 """Long-run dynamics of one body with several restitution models as histories of a study."""
 
 import hashlib
+import json
 import math
 import os
 from abc import ABC, abstractmethod
@@ -19,12 +20,14 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.rows import Rows
 from rocking.outcome import UNCOUNTED
 from rocking.studies.histories import Histories, checked_range
-from rocking.studies.longrun import attractors, basins, orbits
+from rocking.studies.longrun import attractors, basins
 from rocking.studies.longrun import system as engine
 from rocking.studies.longrun.attractors import start_states
+from rocking.studies.longrun.continuation import Branch, branch_off, continue_orbit
 from rocking.studies.longrun.exponents import ALIGNED, LyapunovExponents, lyapunov_exponents
-from rocking.studies.longrun.orbits import Branch, OrbitNotFoundError, PeriodicOrbit
+from rocking.studies.longrun.orbits import OrbitNotFoundError, PeriodicOrbit, symmetric_orbit
 from rocking.studies.longrun.system import NONE, OVERTURNED, Harmonic, HarmonicRocking, Numerics, Parameter
+from rocking.studies.longrun.thresholds import thresholds_of
 from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import changed_body
 from rocking.studies.sensitivity.restitutions import label_of, named_restitutions
@@ -40,7 +43,7 @@ AXES = {
 }  # fmt: skip
 """Quantities of the axes of diagrams and branches."""
 _OF_ORBITS = ("ground_phase", "speed_ratio", "multiplier", "peak_ratio")
-BRANCH_POINTS = ("none", "fold", "pitchfork", "period doubling")
+BRANCH_POINTS = ("none", "fold", "pitchfork", "period doubling", "grazing")
 _OUTCOMES = {"outcome": np.int8, "mode": np.int64}
 _ENDED = {-3: 3, -2: 0, -1: 1, UNCOUNTED: 2}  # outcome by mode
 
@@ -329,12 +332,12 @@ class Branches(Task):
     def branches(self, system: HarmonicRocking) -> list[Branch]:
         """Return the branches that exist."""
         parameter: Any = self.axis
-        branch = _both_ways(orbits.symmetric_orbit(system), self.limits, parameter)
+        branch = _both_ways(symmetric_orbit(system), self.limits, parameter)
         branches = [branch]
         for kind in ("pitchfork", *["period doubling"] * (self.doublings - 1))[: self.doublings]:
             try:
                 bifurcation = branches[-1].first(kind)
-                branches.append(orbits.branch_off(bifurcation, self.limits, parameter=parameter, most=500))
+                branches.append(branch_off(bifurcation, self.limits, parameter=parameter, most=500))
             except OrbitNotFoundError:
                 break
         return branches
@@ -351,7 +354,7 @@ class Branches(Task):
 
 def _both_ways(orbit: PeriodicOrbit, limits: tuple[float, float], parameter: Parameter) -> Branch:
     """Return the branch through an orbit, from its end at lower values, beyond a fold, to that at higher ones."""
-    ways = [orbits.continue_orbit(orbit, limits, parameter=parameter, increasing=up) for up in (False, True)]
+    ways = [continue_orbit(orbit, limits, parameter=parameter, increasing=up) for up in (False, True)]
     return Branch(
         parameter, [*ways[0].orbits[:0:-1], *ways[1].orbits], [*ways[0].bifurcations[::-1], *ways[1].bifurcations]
     )
@@ -455,6 +458,8 @@ def long_run_study(systems: Mapping[str, HarmonicRocking], task: Task) -> Study:
         "frequency_parameter": first.p, "slenderness_angle": first.alpha, "linear": int(first.linear),
         "gravity": first.gravity, **({} if several else {"restitution": next(iter(systems))}),
     }  # fmt: skip
+    if "amplitude_ratio" in {*task.coordinates, *task.columns}:
+        attributes["thresholds"] = json.dumps({label: thresholds_of(system) for label, system in systems.items()})
     return Study(LongRunHistories(systems=tuple(systems.values()), task=task), dims, coordinates, attributes)
 
 

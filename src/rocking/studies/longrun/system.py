@@ -363,6 +363,8 @@ class ImpactFlights:
     jacobian: FloatArray  # derivatives of phase and speed by those at the start, shape (rows, 2, 2)
     by_parameter: FloatArray  # derivatives of phase and speed, at constant phase at the start, shape (rows, 2)
     peak: FloatArray  # largest rotation
+    trough: FloatArray  # smallest minimum of the rotation between impacts, with derivatives; infinite without one
+    before: FloatArray  # speed before the last impact
 
 
 def over_impacts(
@@ -387,7 +389,7 @@ def over_impacts(
     sine = system.sine
     omega = sine[1]
     starts = np.ascontiguousarray(np.stack([(phase - sine[2]) / omega, speed * rate, side], axis=1), dtype=float)
-    ends = np.full((len(starts), 12), np.nan)
+    ends = np.full((len(starts), 13), np.nan)
     engine().over_impacts(
         *_tables(system, len(starts)), starts, ends, system.factors, impacts, _CODES[parameter], system.linear,
         math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
@@ -408,4 +410,7 @@ def over_impacts(
         by[:, 0] += jacobian[:, 0, 1] * speed / system.alpha
         by[:, 1] += (jacobian[:, 1, 1] * speed - ends[:, 1] / rate) / system.alpha
     ends_phase = ends[:, 0] * omega + sine[2]
-    return ImpactFlights(ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10])
+    return ImpactFlights(
+        ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10], ends[:, 12],
+        -ends[:, 11] / rate,
+    )  # fmt: skip

@@ -1,15 +1,18 @@
 """Thresholds of harmonic rocking in closed form, for slender bodies."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from rocking import checks
 from rocking.conventions import FloatArray
+
+if TYPE_CHECKING:
+    from rocking.studies.longrun.system import HarmonicRocking
 
 
 @dataclass(frozen=True)
@@ -118,6 +121,18 @@ def slender_thresholds(frequency: float, restitution: float) -> SlenderThreshold
         no_impact=_half_sine(w),
         one_impact=_full_sine(w, r),
     )
+
+
+def thresholds_of(system: "HarmonicRocking") -> dict[str, float]:
+    """Return the thresholds of the slender body with the frequency ratio and the coefficient of a system, by name.
+
+    Only the amplitude of uplift holds for a body that is not symmetric, or a coefficient that depends on the speed.
+    """
+    restitution = float(system.sides[2])
+    if not system.is_symmetric or system.factors.size or restitution == 0.0:
+        return {"uplift": 1.0}
+    thresholds = asdict(slender_thresholds(system.frequency_ratio, restitution))
+    return {name: value for name, value in thresholds.items() if math.isfinite(value)}
 
 
 def _half_sine(w: float) -> float:
