@@ -17,6 +17,7 @@ import rocking as rk
 from rocking import Block, MassPoints, simulate
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.motions.pulse import Sinusoids
+from rocking.outcome import UNCOUNTED, Outcome
 from rocking.studies.longrun.attractors import KINDS, diagram, start_states
 from rocking.studies.longrun.basins import (
     basin_stability,
@@ -29,6 +30,7 @@ from rocking.studies.longrun.basins import (
 from rocking.studies.longrun.continuation import bifurcation_curve, branch_off, continue_orbit
 from rocking.studies.longrun.exponents import lyapunov_exponents
 from rocking.studies.longrun.orbits import OrbitNotFoundError, find_orbit, slender_orbit, symmetric_orbit
+from rocking.studies.longrun.study import Cells, LongRunHistories
 from rocking.studies.longrun.system import Harmonic, HarmonicRocking, Numerics, over_impacts, over_periods
 from rocking.studies.longrun.thresholds import slender_thresholds
 
@@ -304,17 +306,22 @@ def test_speed_dependent_restitution():
     assert (fold.value, pitchfork.value, doubling.value) == pytest.approx(expected, abs=1e-9)
 
 
-def by_reference(system, phase, speed, side, duration):
-    """Return state, tangent and impacts after a start on one foot, by the reference engine in pure Python."""
+def response_by_reference(system, phase, speed, side, duration):
+    """Return the response after a start on one foot, by the reference engine in pure Python."""
     motion, rate = system.excitation, system.alpha * system.p
     wave = (motion.amplitude, motion.frequency, phase)
     ground = Sinusoids("harmonic", (wave,), duration, motion.amplitude, motion.amplitude, motion.period)
-    response = simulate(
+    return simulate(
         system.body, ground, system.restitution, angular_velocity=side * speed * rate, duration=duration,
         linear=system.linear, gravity=system.gravity, engine="reference", rest_speed=0.0,
     )  # fmt: skip
-    tangent, impacts = response.tangent(), response.impacts
-    return tangent.by_start[-1], tangent.by_parameter["amplitude"][-1], impacts
+
+
+def by_reference(*start):
+    """Return state, tangent and impacts after a start on one foot, by the reference engine in pure Python."""
+    response = response_by_reference(*start)
+    tangent = response.tangent()
+    return tangent.by_start[-1], tangent.by_parameter["amplitude"][-1], response.impacts
 
 
 BY_SPEED = SpeedRestitution(at=[0.0, 5.0], factors=[1.0, 0.6], times=0.9)
@@ -542,6 +549,35 @@ BASINS = {
     "rectangle, Housner": ((4, 1.5, 3, "housner", False), (6334, 106, 3560)),
     "rectangle, KED": ((4, 1.5, 3, "ked", False), (7132, 92, 2776)),
 }
+
+
+@pytest.mark.slow
+@pytest.mark.verifies("second engine", "the reference engine in pure Python, cell for cell")
+@pytest.mark.filterwarnings("ignore")
+def test_pieces_of_a_basin_by_the_reference_engine():
+    """All columns of pieces of a campaign; the final states of two models differ as those of the reference do."""
+    systems = tuple(system_of(4, 1.5, 3.0, name) for name in ("housner", "ked"))
+    grids, impacts, small = cells(6, 4, 2.0), 8, 0.15
+    histories = LongRunHistories(systems=systems, task=Cells(np.array([1.5]), *grids, impacts, small))
+    pieces = [histories.run(first, min(first + 7, 48)) for first in range(0, 48, 7)]
+    columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+    def final_state(system, phase, speed):
+        """Return 0, 1 or 2 for overturning, a small speed after an impact, and neither after all impacts."""
+        response = response_by_reference(system, phase, speed, 1.0, 8.0 * system.excitation.period)
+        after = np.abs(response.impacts["velocity_after"][:impacts]) / (system.alpha * system.p)
+        if (after < small).any():
+            return 1
+        assert len(after) == impacts or response.outcome is Outcome.OVERTURNED
+        return 2 if len(after) == impacts else 0
+
+    states = [final_state(system, *start) for system in systems for start in np.transpose(grid(*grids))]
+    assert columns["final_state"].tolist() == states
+    assert set(states) == {0, 1, 2}
+    assert columns["outcome"].tolist() == [2 if state == 0 else 1 for state in states]
+    assert columns["mode"].tolist() == [UNCOUNTED if state == 0 else -1 for state in states]
+    assert not columns["is_uncertain"].any()
+    assert states[:24] != states[24:]  # negative control: the other model has other final states
 
 
 @pytest.mark.slow
