@@ -190,6 +190,7 @@ ASKED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ASKED)
 def test_studies_say_what_was_assumed(printed, answered, command):
     """Pages and JSON of studies tell an assumed density from one that was given."""
@@ -200,6 +201,7 @@ def test_studies_say_what_was_assumed(printed, answered, command):
     assert answered(*words, "--density", "2400")["assumed"] == []
 
 
+@pytest.mark.slow
 def test_assumed_friction_is_said(printed, answered, tmp_path):
     """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
     words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")

@@ -66,6 +66,7 @@ def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
     assert report["retries"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(against="kill -9 between and within rounds, and a quiet run", control="within")
 def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
     """A refined map, each of whose rounds follows from the last, dies at random instants; its polylines stay."""
@@ -78,6 +79,7 @@ def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
     assert careless["wrong"]  # negative control: files cut short are seen
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "shards written in place, and records that come before them")
 @pytest.mark.parametrize(
     ("variant", "sentences"),

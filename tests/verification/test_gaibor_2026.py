@@ -53,6 +53,7 @@ def test_shares_of_attractors(cases, name):
     assert np.abs(differences(cases[name], SHARES[name])).max() <= 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "the shares of another restitution model")
 def test_the_shares_distinguish_the_models(cases):
     """Negative control: the shares with KED are not those with Housner."""

@@ -170,6 +170,7 @@ def test_nonlinear_rectangles(tangent, ratio, p_time, engine, agreement):
     assert abs(linear / ratio - 1.0) > 1e-3  # negative control
 
 
+@pytest.mark.slow
 @pytest.mark.verifies(
     "computed anew", "boundaries to 17 and 8 digits", within="1e-10, and 3e-8 where fewer digits are known"
 )

@@ -209,6 +209,7 @@ class Watched(RestrainedReference):
         self.totals = [*getattr(self, "totals", []), (self.now, self.work, *(d.work for d in self.devices))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.energy and name not in {"1H3", "2H1"}])
 @pytest.mark.verifies("computed anew", "two independent programs", within="1e-9")
 def test_independent_energy(name):
@@ -288,6 +289,7 @@ def test_slender_positive_stiffness_is_a_sine():
     assert p * response.impacts["time"][0] == pytest.approx(0.669310320263978928607, rel=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("body", [WALL, SKEW], ids=["wall", "asymmetric"])
 @pytest.mark.verifies("second engine", "the engine without restraints", within="1e-12")
@@ -400,6 +402,7 @@ def test_without_hardening_reverse_yield_coincides_with_the_impact(engine):
     assert device.law.yields < 2 * response.impacts.size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("exponent", [0.3, 0.5, 1.5])
 @pytest.mark.verifies("invariant", "energy, and another tolerance", within="1e-11")

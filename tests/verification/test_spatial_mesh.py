@@ -80,6 +80,7 @@ def test_peak_and_decay_converge_to_the_rolling_rim(law, rim):
         assert missing[-1] < 0.04
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", "the law by points")
 @built
 def test_the_law_by_points_does_not_converge(rim):
@@ -89,6 +90,7 @@ def test_the_law_by_points_does_not_converge(rim):
     assert lost[1] > lost[0] > 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("order", "the rolling rim", within="0.006 of the peak and 0.01 of the energy at 200 corners")
 def test_two_hundred_corners_are_nearly_the_rim(rim):
     """128 and 200 corners, reference engine: peak within .9 and .6 %, energy within 1.5 and 1 %."""

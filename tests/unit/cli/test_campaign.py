@@ -262,6 +262,7 @@ def test_check_of_a_small_disk(run, job, tmp_path, monkeypatch):
     assert err.startswith(f"rocking: {tmp_path / 'c'}: 0 MB are needed")
 
 
+@pytest.mark.slow
 def test_run_on_a_cluster(run, job, tmp_path):
     """A cluster that is there already computes the same file."""
     distributed = pytest.importorskip("distributed")

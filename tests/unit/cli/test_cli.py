@@ -96,6 +96,7 @@ def test_paper_summary_and_json(paper):
     assert {"claims", "errata", "league", "tables", "verdict", "calibration", "provenance"} <= set(answer)
 
 
+@pytest.mark.slow
 def test_paper_folder(paper, tmp_path):
     """`rocking reproduce --output` writes report, figures and tables, and names them."""
     code, out, _ = paper("--output", tmp_path / "report")

@@ -20,6 +20,7 @@ def own(monkeypatch, tmp_path):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_add_list_calibrate(printed, answered, own):
     """A file is added once and listed; models and calibration are then of 41 measurements in ten groups."""
@@ -38,6 +39,7 @@ def test_add_list_calibrate(printed, answered, own):
     assert "me: oak/steel" in page
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("behaviour")
 def test_paper_on_a_selection(answered, own):
     """League and calibration of the paper's report are of what is selected; tables, errata and claims stay."""

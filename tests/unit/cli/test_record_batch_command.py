@@ -30,6 +30,7 @@ def folder(tmp_path):
     return place
 
 
+@pytest.mark.slow
 def test_a_folder_becomes_a_flatfile(run, folder, tmp_path):
     """One row a record in CSV, Excel and netCDF; the damaged file is named on the page, and in the workbook."""
     files = [tmp_path / f"flat{ending}" for ending in (".csv", ".xlsx", ".nc", ".png")]
@@ -89,6 +90,7 @@ def test_a_target_chooses_and_scales(run, folder):
     assert "misfits" in out
 
 
+@pytest.mark.slow
 def test_other_commands_take_sets(run, printed, folder, tmp_path):
     """Predict takes pairs as one motion, fragility each component, doubled by mirrors; a job file says the same."""
     few = ["--set", "predict.count=4", "--set", "predict.contributions=false"]
@@ -150,6 +152,7 @@ def test_a_source_without_horizontal_records_is_left_out(run, refuses, folder, t
     refuses([*words, upright], "horizontal component")
 
 
+@pytest.mark.slow
 def test_convert_turns_two_components(run, refuses, tmp_path):
     """Both are written after their turn, by hand; another angle is another record; some formats hold one alone."""
     a, b = np.sin(0.3 * np.arange(400)), np.cos(0.2 * np.arange(400)) ** 3
@@ -182,6 +185,7 @@ def test_convert_keeps_its_source(run, tmp_path, word):
     assert own.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_convert(run, folder, tmp_path):
     """A record goes through its steps into another format, drawn before and after, with what was done to it."""
     source, made = folder / "RSN0_A000.AT2", [tmp_path / name for name in ("new.at2", "new.png", "new.json")]
@@ -220,6 +224,7 @@ def test_a_file_says_what_options_say(run, refuses, folder, tmp_path):
     refuses(["record", "batch", many], "records is missing")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["assess", "code-checks"])
 def test_a_record_of_zeros_does_not_stop_a_folder(run, folder, command):
     """It is left out with its reason as damaged ones are; a folder of nothing else is refused."""

@@ -54,6 +54,7 @@ SAME = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("one", "other"), SAME.values(), ids=SAME)
 def test_two_ways_to_say_it(run, one, other):
     """A key that is set is the option, digit by digit."""
@@ -62,6 +63,7 @@ def test_two_ways_to_say_it(run, one, other):
     assert json.loads(first) == json.loads(second)
 
 
+@pytest.mark.slow
 def test_step_and_scale_hold_along_every_axis(run):
     """What is set of files holds for both components, and a scale for the motion as a whole."""
     code, out, _ = run(*f"{ALONG} --set motion.scale=1.5 --json".split())
@@ -71,6 +73,7 @@ def test_step_and_scale_hold_along_every_axis(run):
     assert (code, answer["peak_tilt"], answer["summary"]) == (0, expected.peak_tilt, expected.summary)
 
 
+@pytest.mark.slow
 def test_a_file_says_how_curves_that_cross_are_written(refuses, run, monkeypatch):
     """`[export] crossing_curves` of a file holds unless the option says otherwise; a campaign alone takes the rest."""
     from rocking.cli.fragility_answer import FragilityAnswer

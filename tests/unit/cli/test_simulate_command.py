@@ -96,6 +96,7 @@ OPTIONS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("words", "options"), OPTIONS.values(), ids=list(OPTIONS))
 def test_each_option_reaches_the_engine(answered, words, options):
     """With each option the answer is that of Python with the same argument, and not the one without it."""
@@ -196,6 +197,7 @@ def test_a_model_that_does_not_fit_says_why(capsys):
     assert answer.answer().plain()["other_models"]["odd"] == {"error": "the impact would create energy"}
 
 
+@pytest.mark.slow
 def test_files(run, printed, tmp_path):
     """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
     paths = {ending: tmp_path / f"a.{ending}" for ending in ("svg", "html", "csv", "mat")}
@@ -226,6 +228,7 @@ def test_netcdf(run, tmp_path):
         np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)
 
 
+@pytest.mark.slow
 def test_a_missing_engine_is_said_once(monkeypatch, run):
     """One plain sentence on standard error, no Python warning, however many histories run."""
     monkeypatch.setitem(sys.modules, "rocking.dynamics._engine", None)

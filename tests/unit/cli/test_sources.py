@@ -88,6 +88,7 @@ def test_a_level_is_an_option(run, record):
     assert "floor 3 of 5" in err
 
 
+@pytest.mark.slow
 def test_curves_of_a_floor_are_not_of_the_ground(run, tmp_path):
     """PELICUN reads peak floor acceleration; OpenQuake, whose PGA is that of the ground, gets no file."""
     rng, times, names = np.random.default_rng(4), 0.02 * np.arange(200), []

@@ -43,6 +43,7 @@ def test_map_in_g_and_degrees(printed, drawn, tmp_path):
         assert round(value * 20) == pytest.approx(value * 20, abs=1e-6)  # 0.05 g is as fine as it gets: round in g
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("analysis", ["stripes", "incremental"])
 def test_fragility_in_g(printed, analysis, drawn, tmp_path):
     """Levels in g give medians in g, and axes in g."""
@@ -134,6 +135,7 @@ def test_slip_in_mm(printed, record):
     assert slid[1] == pytest.approx(1000.0 * slid[0], rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["restitution", "simulate"])
 def test_mesh_in_mm_is_told_in_mm(printed, command, record, tmp_path):
     """A mesh of 500 x 600 x 2000 mm: its size, centre, base and edges in mm."""

@@ -78,6 +78,7 @@ def test_a_body_outside_a_domain_would_be_noticed():
     assert rk.restitution.model("housner").evaluate(rk.Block(width=2.0, height=1.0)).flags
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set(BODIES) - set(PLANE)))
 @pytest.mark.filterwarnings("ignore:.*round base")
 def test_solids_have_a_coefficient_under_every_model(name):

@@ -179,6 +179,7 @@ def test_text_is_refused() -> None:
         MINISEED.read(Source("a", content.getvalue()), units="g")
 
 
+@pytest.mark.slow
 def test_damaged_files_give_no_other_error() -> None:
     """Files with flipped bits or cut short are refused, or hold finite samples."""
     whole = recorded(np.sin(np.arange(300.0))).content

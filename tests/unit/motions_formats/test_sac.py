@@ -130,6 +130,7 @@ def test_each_place_has_its_own_limit(order: str, name: str, most: float) -> Non
         assert SAC.read(Source("a.sac", inside), units="g").components[0].acceleration.tolist() == VALUES
 
 
+@pytest.mark.slow
 def test_damaged_files_give_no_other_error() -> None:
     """Files with flipped bits or cut short are refused, or keep what their header states."""
     pytest.importorskip("obspy")

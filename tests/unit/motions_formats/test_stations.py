@@ -18,6 +18,7 @@ def with_response_out(path, stations):
     return processed(read_motion(path, stations=stations), [f"response:stations={stations},low=0.2,high=30"])
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "a low pass of first order", within="2e-3", control="within")
 @pytest.mark.parametrize(
     "channels",
@@ -62,6 +63,7 @@ def test_no_other_channel_is_taken(tmp_path, channels, message):
         read_motion(path, stations=tmp_path / "a.xml")
 
 
+@pytest.mark.slow
 def test_counts_without_a_name_are_doubted(tmp_path):
     """M/S**2 to NONE, as some networks had it, is read as counts, with a doubt."""
     path = write_counts(tmp_path / "a.mseed")
@@ -71,6 +73,7 @@ def test_counts_without_a_name_are_doubted(tmp_path):
     assert found.acceleration == pytest.approx(burst(), abs=2e-3 * 3.0)
 
 
+@pytest.mark.slow
 def test_a_folder_as_data_centres_deliver_it(tmp_path, printed):
     """Each station has its own XML beside its files: one folder is read as it is, and its response taken out."""
     for station, gain in (("ABC", 4000.0), ("DEF", 900.0)):
@@ -99,6 +102,7 @@ def test_a_sensor_that_stands_upside_down(tmp_path):
     assert record.z.acceleration == pytest.approx(-record.x.acceleration)
 
 
+@pytest.mark.slow
 def test_cases_with_stations(case_records):
     """The same counts give the same motion by each description, and both stations of the folder are read."""
     step = "response:stations={},low=0.2,high=30"
@@ -115,6 +119,7 @@ def test_cases_with_stations(case_records):
     assert all(part is not None for record in records for part in record.parts)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("closed form", "a low pass of first order", within="2e-3", control="within")
 def test_a_known_response_is_taken_out(tmp_path):
     """What a first-order low pass made of a burst of 5 Hz is the burst again, to 0.2 %; its counts are 10 % off."""

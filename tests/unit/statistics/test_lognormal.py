@@ -52,6 +52,7 @@ def test_two_levels_have_a_closed_form():
     assert fit.standard_errors["dispersion"] == pytest.approx(spread, rel=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("computed anew", "the likelihood over a grid", within="1e-5")
 def test_ends_of_the_profile_interval_lie_on_the_boundary_of_the_region():
     """Over all dispersions (medians) the fall at an end is never below the quantile, and reaches it."""

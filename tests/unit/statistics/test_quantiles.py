@@ -91,6 +91,7 @@ def second_definitions(source: str) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_no_other_definition_is_chosen_anywhere():
     """NumPy's default and `quantiles` are one definition: no call chooses another one."""
     found = {path.name: second_definitions(path.read_text("utf-8")) for path in SOURCE.rglob("*.py")}

@@ -144,6 +144,7 @@ def test_two_levels_fit_perfectly():
         assert values["value"] == pytest.approx(0.0, abs=1e-9), name
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("repeated sampling", "300 studies whose curve is right", within="0.07 of a share of 0.1")
 def test_error_rate_is_nominal():
     """Of 300 studies whose curve is right, about 10 % have a p-value below 0.1, by every statistic."""

@@ -88,6 +88,7 @@ def test_matlab(made, tmp_path, which, what):
     assert json.loads(found.provenance)["job"] == made[which].job.text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("which", "what"), CASES[2:])
 def test_netcdf(made, tmp_path, which, what):
     """Flips and differences as variables along the rows of their tables, with the values of the CSV file."""

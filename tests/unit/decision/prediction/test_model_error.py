@@ -169,6 +169,7 @@ def test_calibration_with_a_lowered_barrier(barrier):
     assert error.mean[1] < 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.verifies("negative control", room="studies")
 def test_calibration_without_the_factors():
     """A body without error: the probabilities are calibrated before, and the factors include one."""
