@@ -261,3 +261,21 @@ def test_twins_of_predictions_measure_the_same_growth():
     ]
     own = response.tangent().by_parameter["amplitude"][-1, 0]
     assert own == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-4)
+
+
+@pytest.mark.verifies("second engine", "pairs of `predict` whose motions differ by 1e-6", within="1e-3")
+@pytest.mark.parametrize("strength", [1.6, 2.5])
+def test_the_relative_change_of_a_prediction_is_the_tangent_by_amplitude(strength):
+    """Of one body in all samples the median change of the peak over that of the motion; control: by the frequency."""
+    body, time = rk.Block(width=5.0, height=20.0), np.arange(0.0, 8.0, 0.002)
+    waves = sum(np.sin(2.0 * np.pi * (0.5 + 0.4 * i) * time + i * i) for i in range(4))
+    motion, coefficients = rk.GroundMotion(strength * 1.3734 * waves, 0.002), {"left": 0.9, "right": 0.9}
+    certain = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "polarity": 1.0, "model_error": "off"}
+    options = {"restitution": coefficients, "friction": 10.0, "count": 4, "contributions": False}
+    growth = rk.predict(body, motion, **options, **certain).growth
+    response = rk.simulate(body, motion, coefficients)
+    peak, by = np.argmax(np.abs(response.rotation)), response.tangent().by_parameter
+    changes = {name: abs(values[peak, 0] / response.rotation[peak]) for name, values in by.items()}
+    assert len(response.impacts) > 30
+    assert growth.median == pytest.approx(changes["amplitude"], rel=1e-3)  # the peak of the tangent is that of a sample
+    assert abs(changes["frequency"] / growth.median - 1.0) > 0.05

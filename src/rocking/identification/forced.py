@@ -12,6 +12,7 @@ from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.plane.fast_engine import run
 from rocking.dynamics.plane.settings import PlaneSettings
+from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.identification import forced_friction, forced_start
 from rocking.identification.forced_model import (
@@ -218,20 +219,23 @@ def _forced(posterior: ForcedPosterior, friction: IntervalEstimate) -> ForcedRoc
 
 
 def _predictable_time(problem: Forced, x: FloatArray) -> float:
-    """Return the time after which a change of r by 1e-4 changes the response by 10 % of its peak [s]; NaN if never."""
-    body = problem.prior.body
-    parameters = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), PlaneSettings().gravity)
+    """Return the time after which a change of r by 1e-4 changes the response by 10 % of its peak [s]; NaN if never.
+
+    The change is of first order, by the tangent dynamics.
+    """
+    body: Any = problem.prior.body
+    settings, segments = PlaneSettings(), problem.motion.segments()
+    nominal = RockingParameters.of_body(body, dict.fromkeys(FEET, 0.0), settings.gravity)
     sides = {}
     for foot, sign in (("right", 1.0), ("left", -1.0)):
         alpha, p, _ = problem.sides(sign, x[WIDTH], x[HEIGHT], x[TILT])
         sides[foot] = replace(
-            getattr(parameters, foot), slenderness_angle=float(alpha), frequency_parameter=float(p),
+            getattr(nominal, foot), slenderness_angle=float(alpha), frequency_parameter=float(p),
             coefficient=math.exp(x[MEAN] + sign * x[HALF]),
         )  # fmt: skip
-    segments, rotations = problem.motion.segments(), []
-    for factor in (1.0, 1.0 - _DIFFERENCE):
-        changed_sides = {foot: replace(side, coefficient=side.coefficient * factor) for foot, side in sides.items()}
-        changed = RockingParameters(changed_sides["right"], changed_sides["left"], ConstantRestitution(), "")
-        rotations.append(np.nan_to_num(run(changed, segments, PlaneSettings()).rotation, nan=0.5 * math.pi))
-    apart = np.flatnonzero(np.abs(rotations[0] - rotations[1]) > _CLOSE * np.abs(rotations[0]).max())
-    return float(segments.step * apart[0]) if apart.size else math.nan
+    parameters = RockingParameters(sides["right"], sides["left"], ConstantRestitution(), "")
+    trajectory = run(parameters, segments, settings)
+    response = Response(body, None, parameters, settings, segments, 1.0, 0, trajectory)
+    change = _DIFFERENCE * math.exp(x[MEAN]) * response.tangent().by_parameter["restitution"][:, 0]
+    apart = np.flatnonzero(np.abs(change) > _CLOSE * np.abs(response.rotation).max())
+    return float(response.time[apart[0]]) if apart.size else math.nan

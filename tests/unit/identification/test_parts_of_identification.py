@@ -12,7 +12,7 @@ import rocking as rk
 from rocking.identification import association, forced, forced_friction, forced_start, state_space
 from rocking.identification.design import peaks_bound
 from rocking.identification.forced_half_cycles import Flights
-from rocking.identification.forced_model import SIZE
+from rocking.identification.forced_model import HALF, MEAN, SIZE
 from rocking.identification.posterior import Knowledge
 from rocking.identification.readers import rocking_sequence, sound
 from rocking.identification.results import IntervalEstimate
@@ -131,6 +131,27 @@ def shaken():
     problem = forced_start.problem_of(case["series"], known, case["motion"], (case["clock"], 0.01))
     problem, fit, _ = forced_start.first_fit(problem, problem.mean)
     return replace(problem, middle=-0.5), fit.x
+
+
+@pytest.mark.verifies("computed anew", "two simulations whose coefficients differ by 1e-4", within="2%")
+@pytest.mark.parametrize(("strength", "is_lost"), [(3.0, True), (4.0, False)])
+def test_the_predictable_time_by_the_tangent(strength, is_lost):
+    """Two simulations differ by 10 % of the peak at this time, or never; 2 %, since 10 % is not a small difference."""
+    time = np.arange(0.0, 20.0, 0.01)
+    motion = rk.GroundMotion(strength * np.sin(16.0 * time) * np.sin(0.77 * time + 0.3), 0.01)
+    r, x = {"right": 0.93, "left": 0.9}, np.zeros(SIZE)
+    x[MEAN], x[HALF] = 0.5 * math.log(0.93 * 0.9), 0.5 * math.log(0.93 / 0.9)
+
+    def sides(sign, *_):
+        side = BODY.side("right" if sign > 0.0 else "left")
+        return side.slenderness_angle, side.frequency_parameter, None
+
+    problem = SimpleNamespace(prior=SimpleNamespace(body=BODY), motion=motion, sides=sides)
+    own = forced._predictable_time(problem, x)
+    first, second = (rk.simulate(BODY, motion, {foot: f * r[foot] for foot in r}) for f in (1.0, 1.0 - 1e-4))
+    apart = first.time[np.abs(first.rotation - second.rotation) > 0.1 * np.abs(first.rotation).max()]
+    assert apart.size > 0 if is_lost else apart.size == 0
+    assert own == pytest.approx(apart[0], rel=0.02) if is_lost else math.isnan(own)
 
 
 def dense(problem, terms):
