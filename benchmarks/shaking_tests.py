@@ -28,7 +28,7 @@ from rocking.statistics.sobol import scrambled_sobol
 
 ROOT = Path(__file__).parents[1]
 DATA, SAMPLES = ROOT.parent / "shared" / "data", Path(__file__).with_suffix(".txt")
-NAME, AXIS, UP = "granite rock", (0.5322, 0.0040, 0.8466), (0.816, 0.263, -0.514)
+NAME, KIND, AXIS, UP = "granite rock", "natural", (0.5322, 0.0040, 0.8466), (0.816, 0.263, -0.514)
 STEPS = "mean; bandpass:low=0.1,high=25"
 OFF_COUNT, WIDE_COUNT, SEED = 16, 16, 1
 """Samples of each test without model error, and with the proposal of factors; random seed."""
@@ -99,8 +99,8 @@ def kept_numbers(samples: dict[int, tuple[FloatArray, FloatArray]], motions: lis
     wide = mechanics(motions[:1], WIDE)
     points = [wide_draws(wide.widths, k, WIDE_COUNT, SEED) for k in indices]
     logarithms = np.log([wide.values(draws)["model_error"] for draws in points])
-    tests, prior = BodyTests(logarithms, overturned, observed, earthquakes), hierarchy([])
-    body = tests.tested(NAME, "3D")
+    tests, prior = BodyTests(logarithms, overturned, observed, earthquakes), hierarchy([], KIND)
+    body = tests.tested(NAME, KIND)
     fractions = (np.nansum(off, axis=1) + 0.5) / (np.isfinite(off).sum(axis=1) + 1.0)
     peaks = np.log([(motions[k].peak, peak_ground_velocity(motions[k])) for k in indices])
     forecasts = {

@@ -16,6 +16,7 @@ from rocking.cli.exports import CSV, NETCDF, REPORTED, Exports
 from rocking.cli.numbers import number_or_name
 from rocking.cli.page import MOST_MODELS, MOST_ROWS, Page, bar, deliver
 from rocking.cli.study import source_lines
+from rocking.decision.prediction.forecast import input_label
 from rocking.decision.prediction.likelihood import scale_words
 from rocking.errors import located
 from rocking.quantities import closely
@@ -147,7 +148,7 @@ class PredictionAnswer:
             page.line("Reasons, sources and likelihood terms: --details    Files: -o report.pdf, -o table.csv")
             return
         listed = result.assumptions.keys() | result.fixed.keys()
-        page.facts([(name, text) for name, text in result.inputs.items() if name not in listed])
+        page.facts([(input_label(name), text) for name, text in result.inputs.items() if name not in listed])
         page.facts([("assumed", reason) for reason in result.assumed])
         page.facts([("not sampled", reason) for reason in result.not_sampled])
         page.facts(source_lines(result.motions))

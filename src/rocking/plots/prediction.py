@@ -8,6 +8,7 @@ from rocking import checks
 from rocking.conventions import percent
 from rocking.decision.assessment import BodyAssessment
 from rocking.decision.prediction import Prediction, Validation
+from rocking.decision.prediction.forecast import input_label
 from rocking.plots.labels import plain, plain_log
 from rocking.plots.style import (
     COLORS,
@@ -107,7 +108,7 @@ def _shares(axes: "Axes", prediction: Prediction) -> None:
         ):
             axes.barh(row + offset, max(value, 0.0), 0.34, color=color)
             axes.plot([max(low, 0.0), max(high, 0.0)], [row + offset] * 2, color="black", linewidth=0.8)
-    axes.set_yticks(range(len(ranked)), ["motion" if name == "case" else name for name, _ in ranked])
+    axes.set_yticks(range(len(ranked)), [input_label(name) for name, _ in ranked])
     axes.set_xlim(0.0, 1.02)
     axes.set_ylim(len(ranked) - 0.5, -0.5)
     axes.set_title("contributions to the variance", loc="left", fontsize=7.5)

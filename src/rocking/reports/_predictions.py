@@ -3,6 +3,7 @@
 from functools import partial
 
 from rocking.decision.prediction import Prediction, Validation
+from rocking.decision.prediction.forecast import input_label
 from rocking.decision.prediction.likelihood import scale_words
 from rocking.plots.prediction import prediction_picture, reliability_picture
 from rocking.reports.body_blocks import body_blocks
@@ -80,9 +81,12 @@ def validation_content(validations: FolderValidation, *, name: str, date: str) -
 
 
 def _assumed(prediction: Prediction) -> ReportSection:
-    sampled = [(name, distribution) for name, distribution in prediction.inputs.items() if name not in prediction.fixed]
+    fixed = prediction.fixed
+    sampled = [(input_label(name), text) for name, text in prediction.inputs.items() if name not in fixed]
     inputs = table("Sampled", ["input", "distribution"], sampled)
-    not_sampled = table("Not sampled", ["input", "value in all histories"], prediction.fixed.items())
+    not_sampled = table(
+        "Not sampled", ["input", "value in all histories"], [(input_label(name), fixed[name]) for name in fixed]
+    )
     return ReportSection("Inputs: sampled, not sampled, assumed", [
         *([inputs] if inputs.rows else []), not_sampled,
         *(Paragraph(assumption, "Assumed:") for assumption in prediction.assumed),

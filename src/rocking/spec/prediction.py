@@ -10,7 +10,7 @@ import numpy as np
 from rocking.bodies import Body, Solid
 from rocking.decision.prediction import Prediction, predict
 from rocking.decision.prediction.mechanics import COMPLEMENTARITY, MEASURED
-from rocking.decision.prediction.model_error import OFF
+from rocking.decision.prediction.model_error import OFF, is_class
 from rocking.errors import InvalidValueError, located
 from rocking.spec.bodies import any_body_of, without_restraints
 from rocking.spec.construction import components_of, motion_of, motions_of, restitutions_of
@@ -89,8 +89,9 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
         options["pga"] = IntensityLevel.of("PGA", options["pga"]).value
     if "axis" in options:
         options["azimuth"] = _azimuth(body, options.pop("axis"), document.predict.azimuth)
-    if isinstance(options.get("model_error"), str) and options["model_error"] != OFF:
-        options["model_error"] = str(inputs.file(options["model_error"]))
+    error = options.get("model_error")
+    if isinstance(error, str) and error != OFF and not is_class(error):
+        options["model_error"] = str(inputs.file(error))
     model = options.get("restitution")
     if isinstance(model, str) and model not in {*MEASURED, COMPLEMENTARITY}:
         table = RestitutionTable(model=model)

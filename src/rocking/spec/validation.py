@@ -15,7 +15,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.decision.prediction import Prediction, Validation, predict, score
 from rocking.decision.prediction._predict import sampled_bodies
 from rocking.decision.prediction._score import EVENTS, Outcomes, RefusedRow, Trial, column, is_outcomes
-from rocking.decision.prediction.model_error import ModelError, hierarchy, kept_bodies
+from rocking.decision.prediction.model_error import ModelError, hierarchy, is_class, kept_bodies
 from rocking.decision.prediction.recalibration import WIDE, BodyTests, wide_samples
 from rocking.errors import InvalidValueError, RockingError, located
 from rocking.exported import Exported
@@ -238,7 +238,8 @@ class ValidationProblem:
         """Return the model error with the tests, and the scores of the left-out earthquakes."""
         mechanics = sampled_bodies(self.body, list(self.motions.values()), self.options | {"model_error": WIDE})
         logarithms, overturned = wide_samples(mechanics, prediction.count, prediction.seed, threads)
-        prior, names = hierarchy(kept_bodies(mechanics.kind)), np.array(self.clusters)
+        stated, names = self.options.get("model_error"), np.array(self.clusters)
+        prior = hierarchy(kept_bodies(), stated if is_class(stated) else mechanics.kind)
         tests = BodyTests(logarithms[motion_index], overturned[motion_index], scored.outcome, names)
         left_out = score(tests.left_out(prior), scored.outcome, names, pga=pga, pgv=pgv, seed=prediction.seed)
         return Update(tests.error(prior), left_out)

@@ -14,6 +14,7 @@ from rocking.bodies.equilibria import Pass, StablePose
 from rocking.conventions import FEET, FloatArray, IntArray, g, percent
 from rocking.decision.code_methods.comparison import AT_MOST
 from rocking.decision.prediction import Prediction
+from rocking.decision.prediction.forecast import input_label
 from rocking.decision.remedies import CALIBRATED, Remedies, millimetres, rounded_up
 from rocking.messages import Message
 from rocking.motions.summary import peak_name, support_of
@@ -465,7 +466,7 @@ class BodyAssessment:
             main = max(shares, key=lambda name: shares[name].total)
             others = [item.total_high for name, item in self.prediction.contributions.items() if name != main]
             text = _MAIN_INPUT if shares[main].total_low > max(others, default=0.0) else _NO_MAIN_INPUT
-            source = Message("the choice of motion" if main == "case" else main)
+            source = Message("the choice of motion") if main == "case" else input_label(main)
             sentences.append(Message(text, {"input": source, "share": min(shares[main].total, 1.0)}))
         return tuple(sentences)
 

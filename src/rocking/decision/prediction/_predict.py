@@ -10,6 +10,7 @@ from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
 from rocking.decision.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
 from rocking.decision.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
+from rocking.decision.prediction.model_error import MODEL_ERROR
 from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.settings import check_progress, thread_count
 from rocking.errors import InvalidValueError, RockingError
@@ -28,6 +29,8 @@ REPRODUCED = 0.01
 """Pairs of histories under each motion, their relative difference in scale, and tolerance of their peaks [-]."""
 
 FIFTH = 0.2
+FEWEST = 4
+"""Histories with the rarer outcome below which contributions to the variance are not computed."""
 
 
 def predict(  # noqa: PLR0913 - each uncertain input is an argument
@@ -85,17 +88,19 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         half size of the body. It is smaller where the body would not remain in its pose [m].
     level : input or {"floor", "shelf", "pedestal", "road"}, optional
         Slope of the support, positive if the support descends towards x of the body; solids: towards x and y,
-        independent. Default: that of a floor by DIN 18202 over the width of the base [rad].
+        independent. Default: that of a floor by DIN 18202, over the width of the base [rad].
     polarity : input, optional
         1 as recorded, -1 reversed; default: both, equally likely; plane bodies only [-].
     azimuth : input, optional
         Azimuth of the body's plane or x axis, from x towards y; default: uniform over all directions. Solids also with
         one component [rad].
     model_error : str, path-like, ModelError or dict, optional
-        Factors on the uplift acceleration and on the energy barrier, for the error that remains with known inputs;
-        default: from the kept shaking-table tests of other bodies, with a wide variance between bodies. "off" switches
-        the factors off. A file of ``rocking validate-predictions --update`` or a table with `mean` and `covariance` of
-        ln of both factors replaces the default [-].
+        Factors on the uplift acceleration and on the energy barrier, for the error that remains with known inputs.
+        The class of the body: "machined" (machined or cast, default of a `Block`), "object" (as a statue or a cabinet,
+        default of other plane bodies), or "natural" (rough body or scan, default of solids). The factors are from the
+        kept shaking-table tests and the variance of the class. "off" switches the factors off. A file of
+        ``rocking validate-predictions --update`` or a table with `mean` and `covariance` of ln of both factors
+        replaces the default [-].
     sliding_beyond : float
         Sliding distance that counts as sliding [m].
     pga : float, optional
@@ -133,7 +138,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     >>> pulses = [rk.pulses.sine(amplitude=a, period=0.8) for a in (3.0, 3.4, 5.0)]
     >>> prediction = rk.predict(rk.Block(width=0.5, height=2.0), pulses, friction=(0.2, 0.4), count=64)
     >>> prediction.chances["overturning"].per_motion.round(1).tolist()
-    [0.2, 0.3, 0.5]
+    [0.0, 0.5, 0.8]
     """
     check_progress(progress)
     thread_count(threads)
@@ -239,7 +244,8 @@ def _shares(
     mixed = smaller.points[2 * smaller.count :]
     if np.isnan(both).all():
         return {}, both[:0]
-    if np.nanmin(both) == np.nanmax(both):  # without variance all contributions are zero
+    rarer = min(np.nansum(both), np.nansum(1.0 - both))
+    if rarer < FEWEST:  # without variance, or with too little of it, no contribution is resolved
         return dict.fromkeys([*design.inputs, *["case"] * (both.shape[1] > 1)], VarianceShare(*[0.0] * 6)), both[:0]
     others = _counted(mechanics, mixed, min_sliding, threads, progress, 0)["overturning"]
     return smaller.shares(np.concatenate([both, others])), others
@@ -305,11 +311,13 @@ def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) 
     """Return the probability of overturning in the lowest and the highest fifth of each input's samples."""
     values, by_input, column = mechanics.values(points), {}, 0
     for name, width in mechanics.widths.items():
-        level = points[:, column : column + width].sum(axis=1)
+        level, sampled = points[:, column : column + width].sum(axis=1), values[name]
+        if name == MODEL_ERROR:  # its factors have different means: by the factor on the uplift acceleration
+            level = sampled = sampled[:, 0]
         column += width
         order, size = np.argsort(level, kind="stable"), max(1, int(FIFTH * len(points)))
         low, high = order[:size], order[-size:]
-        ends = [(float(values[name][end].mean()), _mean(overturned[end])) for end in (low, high)]
+        ends = [(float(sampled[end].mean()), _mean(overturned[end])) for end in (low, high)]
         by_input[name] = EndsOfRange(*ends[0], *ends[1])
     return by_input
 

@@ -10,7 +10,7 @@ import numpy as np
 from rocking.answers import Answer, AnswerRows
 from rocking.conventions import FloatArray, percent
 from rocking.decision.prediction.likelihood import likelihood, scale_words
-from rocking.decision.prediction.model_error import evidence
+from rocking.decision.prediction.model_error import MODEL_ERROR, evidence
 from rocking.exported import Exported
 from rocking.messages import Message
 from rocking.motions.summary import MotionSummary, condition
@@ -48,6 +48,11 @@ _AT_ENDS = (
 _DIRECTIONS = (
     "The azimuth was sampled, because no azimuth was given: between the quarters of the directions the probability of "
     "overturning ranges from {low} to {high}. State the azimuth if the direction of the body is known."
+)
+_MODEL_ERROR = "The samples contain the error of the model: {factors}."
+_AT_ENDS_OF_ERROR = (
+    "The probability of overturning is {low} with {lower:.3g} times the computed uplift acceleration and {high} with "
+    "{higher:.3g} times."
 )
 _NOT_SAMPLED = "The probability does not include the uncertainty of inputs that were not sampled: {inputs}."
 
@@ -163,9 +168,7 @@ class Prediction(Exported):
     def ranked_contributions(self) -> AnswerRows:
         """Contributions of the uncertain inputs to the variance of overturning, largest first."""
         ordered = sorted(self.contributions.items(), key=lambda pair: -pair[1].total)
-        return AnswerRows.of_records(
-            {"input": "motion" if name == "case" else name, **vars(share)} for name, share in ordered
-        )
+        return AnswerRows.of_records({"input": input_label(name), **vars(share)} for name, share in ordered)
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -176,7 +179,7 @@ class Prediction(Exported):
     def assumed_values(self) -> tuple[str, ...]:
         """Assumed inputs with their values, without the reasons."""
         return tuple(
-            Message("{name}: {value}", {"name": Message(name), "value": self.inputs[name]}) if reason else name
+            Message("{name}: {value}", {"name": input_label(name), "value": self.inputs[name]}) if reason else name
             for name, reason in self.assumptions.items()
         )
 
@@ -231,10 +234,12 @@ class Prediction(Exported):
             range_of_quarters = {"low": percent(min(self.directions)), "high": percent(max(self.directions))}
             sentences.append(Message(_DIRECTIONS, range_of_quarters))
         if self.fixed:
-            listed, *others = map(Message, self.fixed)
+            listed, *others = map(input_label, self.fixed)
             for other in others:
                 listed = Message("{first}, {second}", {"first": listed, "second": other})
             sentences.append(Message(_NOT_SAMPLED, {"inputs": listed}))
+        if MODEL_ERROR in self.inputs and MODEL_ERROR not in self.fixed:
+            sentences.append(Message(_MODEL_ERROR, {"factors": self.inputs[MODEL_ERROR]}))
         sentences += [self._sentence(event) for event in ("uplift", "sliding")]
         if self.beside:
             others = [
@@ -250,8 +255,8 @@ class Prediction(Exported):
         for name, item in ranked[:2]:
             if item.probability_low != item.probability_high:
                 low, high = percent(item.probability_low), percent(item.probability_high)
-                facts = {"input": Message(name), "low": low, "high": high, "lower": item.low, "higher": item.high}
-                sentences.append(Message(_AT_ENDS, facts))
+                facts = {"input": input_label(name), "low": low, "high": high, "lower": item.low, "higher": item.high}
+                sentences.append(Message(_AT_ENDS_OF_ERROR if name == MODEL_ERROR else _AT_ENDS, facts))
         sentences.append(self.growth.sentence)
         if self.failed:
             text = "{count} of {total} histories have no result and do not count."
@@ -349,7 +354,12 @@ class Prediction(Exported):
 
 
 def _reasoned(name: str, reason: str) -> str:
-    return Message("{name}: {reason}", {"name": Message(name), "reason": reason})
+    return Message("{name}: {reason}", {"name": input_label(name), "reason": reason})
+
+
+def input_label(name: str) -> str:
+    """Return the name of an input as text; names of assumptions without an input are sentences."""
+    return Message({MODEL_ERROR: "model error", "case": "motion"}.get(name, name))
 
 
 def _between(low: float, high: float) -> str:

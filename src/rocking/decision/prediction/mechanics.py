@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -188,7 +188,7 @@ class BodyOutcomes:
 class SampledBodies(ABC):
     """A body on an engine: samples from the unit cube, and outcomes."""
 
-    kind: ClassVar[str]  # "2D" or "3D", the kind of tested bodies for the model error
+    kind: str = "natural"  # class of bodies with one prior of the model error
     widths_of: Mapping[str, int] = {}  # dimensions of an input in the unit cube; default: 1
     reasons: Mapping[str, str] = {}  # reasons of the defaults, by input
     never_sampled: Mapping[str, str] = MappingProxyType({})  # reasons of quantities with one value, by name
@@ -219,7 +219,7 @@ class SampledBodies(ABC):
         plausibility.warn(plausibility.of_friction(self.inputs["friction"].median))
 
     def _set_model_error(self) -> None:
-        """Set the factors of the model error, by default those of the tested bodies of this kind."""
+        """Set the factors of the model error, by default those of the class of the body."""
         error = model_error_of(self.stated.get("model_error"), self.kind)
         if error is None:
             self.inputs["model_error"] = Uncertain(Message("off"), lambda levels: np.ones(levels.shape), fixed=True)

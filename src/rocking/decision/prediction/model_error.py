@@ -9,10 +9,10 @@ other shape. Lengths are then s f times longer.
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from scipy.special import ndtri
@@ -25,23 +25,37 @@ from rocking.messages import Message
 KEPT = Path(__file__).parent / "data" / "shaking_tests.json"
 """Posteriors and scores of tests of real bodies, written by `make shaking-tests`."""
 
+MODEL_ERROR = "model_error"  # name of the input
 OFF = "off"
 ORDERS = np.array([1.0, 2.0])
 """The uplift acceleration is proportional to an angle, and the energy barrier to its square: so are their errors."""
 
-BETWEEN, COMMON = 0.2, 0.2
-"""Prior of ln of the factor on the uplift acceleration: scale of the half-normal standard deviation between bodies, and
-standard deviation of the mean of a class. With both, 95 % of the bodies have factors between 0.6 and 1.8."""
 
-DEVIATIONS = np.linspace(0.02, 0.8, 40)
-"""Grid of the standard deviation between bodies [-]."""
+@dataclass(frozen=True)
+class BodyClass:
+    """Class of bodies with one prior of the factors."""
+
+    text: str
+    deviation: float  # of ln of the factor on the uplift acceleration: of the mean of the class, and between bodies [-]
+
+
+CLASSES = {
+    "machined": BodyClass(Message("machined or cast block"), 0.05),
+    "object": BodyClass(Message("object such as a statue or a cabinet"), 0.1),
+    "natural": BodyClass(Message("natural rough body or scan"), 0.2),
+}
+"""Classes in the order of their errors. The deviations are arguments, not estimates: docs/theory/prediction.md."""
+
+DEVIATIONS = np.linspace(0.1, 4.0, 40)
+"""Grid of the standard deviation between bodies over the deviation of the class [-]."""
 
 SCATTERS = np.array([0.05, 0.1, 0.15, 0.2])
-"""Grid of the standard deviation between repeated tests of one body, with equal prior probabilities [-]."""
+"""Grid of the standard deviation between repeated tests of one natural body, with equal prior probabilities [-]."""
 
 MOST_FACTOR = 20.0
 _HOW = (
-    '"off", a file of `rocking validate-predictions --update`, or a table with mean and covariance of ln of the factors'
+    '"off", "machined", "object", "natural", a file of `rocking validate-predictions --update`, or a table with mean '
+    "and covariance of ln of the factors"
 )
 
 
@@ -115,9 +129,9 @@ class Similarity:
 
 
 def model_error_of(stated: Any, kind: str) -> ModelError | None:
-    """Return the stated model error, by default that of the tested bodies of a kind; None without one."""
-    if stated is None:
-        return kept_error(kind)
+    """Return the stated model error, by default that of a further body of a class; None without one."""
+    if stated is None or is_class(stated):
+        return kept_error(stated or kind)
     if isinstance(stated, ModelError):
         return stated
     if isinstance(stated, str) and stated == OFF:
@@ -131,6 +145,11 @@ def model_error_of(stated: Any, kind: str) -> ModelError | None:
     raise InvalidValueError(parameter="model_error", allowed=_HOW, value=stated)
 
 
+def is_class(stated: Any) -> TypeGuard[str]:
+    """Return True for the name of a class of bodies."""
+    return isinstance(stated, str) and stated in CLASSES
+
+
 def _in_file(path: Path) -> ModelError:
     try:
         table = json.loads(path.read_text("utf-8"))
@@ -138,7 +157,7 @@ def _in_file(path: Path) -> ModelError:
         raise InvalidValueError(parameter="model_error", allowed=_HOW, value=str(path)) from error
     if not isinstance(table, dict):
         raise InvalidValueError(parameter="model_error", allowed=_HOW, value=str(path))
-    return model_error_of(table, "") or _refused(path)
+    return model_error_of(table, "natural") or _refused(path)
 
 
 def _refused(path: Path) -> ModelError:
@@ -150,7 +169,7 @@ class BodyEvidence:
     """Factors of one tested body from its tests alone: mean and covariance of ln of the factors, and scatter."""
 
     name: str
-    kind: str  # "3D" or "2D"
+    kind: str  # name of the class
     tests: int
     earthquakes: int
     mean: FloatArray  # shape (2,)
@@ -171,30 +190,45 @@ class FurtherBody:
         return ModelError.of_moments(self.mean, self.covariance + self.scatter * np.diag(ORDERS**2), source)
 
 
-def hierarchy(bodies: Sequence[BodyEvidence]) -> FurtherBody:
-    """Return the distribution of the factors of a further body of the class of tested bodies.
+def hierarchy(bodies: Sequence[BodyEvidence], kind: str) -> FurtherBody:
+    """Return the distribution of the factors of a further body of a class, from tested bodies.
 
     The mean of a class has a normal prior, the standard deviation between bodies a half-normal one. Its likelihood is
     the restricted one, which does not depend on the deviation for a single body: one specimen cannot shrink it.
     """
+    prior = CLASSES[kind]
+    seen = [_in_class(body, prior) for body in bodies if CLASSES[body.kind].deviation >= prior.deviation]
     weights, means, covariances = [], [], []
-    for deviation in DEVIATIONS.tolist():
-        between = deviation**2 * np.diag(ORDERS**2)  # Eq. 357
-        precisions = [np.linalg.inv(between + body.covariance) for body in bodies]
-        information, moment = _sums(precisions, bodies)
+    for ratio in DEVIATIONS.tolist():
+        between = (ratio * prior.deviation) ** 2 * np.diag(ORDERS**2)  # Eq. 357
+        precisions = [np.linalg.inv(between + body.covariance) for body in seen]
+        information, moment = _sums(precisions, seen)
         restricted = 0.0
-        if len(bodies) > 1:
+        if len(seen) > 1:
             centre = np.linalg.solve(information, moment)
-            off = [body.mean - centre for body in bodies]
+            off = [body.mean - centre for body in seen]
             restricted = 0.5 * sum(float(np.linalg.slogdet(matrix)[1]) for matrix in precisions)
             restricted -= 0.5 * float(np.linalg.slogdet(information)[1])
             restricted -= 0.5 * sum(float(x @ matrix @ x) for x, matrix in zip(off, precisions, strict=True))
-        covariance = np.linalg.inv(information + np.diag(1.0 / (COMMON * ORDERS) ** 2))
+        covariance = np.linalg.inv(information + np.diag(1.0 / (prior.deviation * ORDERS) ** 2))
         means.append(covariance @ moment)
         covariances.append(covariance + between)
-        weights.append(restricted - 0.5 * (deviation / BETWEEN) ** 2)
-    scatter = float(np.mean([body.scatter for body in bodies])) if bodies else float(np.mean(SCATTERS**2))
-    return FurtherBody(*mixed(np.array(weights), np.array(means), np.array(covariances)), scatter)
+        weights.append(restricted - 0.5 * ratio**2)
+    return FurtherBody(*mixed(np.array(weights), np.array(means), np.array(covariances)), _scatter(bodies, kind))
+
+
+def _in_class(body: BodyEvidence, prior: BodyClass) -> BodyEvidence:
+    """Return a tested body as evidence for a class with smaller errors, whose error is contained in its own."""
+    further = 2.0 * (CLASSES[body.kind].deviation ** 2 - prior.deviation**2)  # of the mean, and between bodies
+    return replace(body, covariance=body.covariance + further * np.diag(ORDERS**2))
+
+
+def _scatter(bodies: Sequence[BodyEvidence], kind: str) -> float:
+    """Return the mean square between repeated tests of the tested bodies of a class, or of its prior."""
+    tested = [body.scatter for body in bodies if body.kind == kind]
+    if tested:
+        return float(np.mean(tested))
+    return float(np.mean(SCATTERS**2)) * (CLASSES[kind].deviation / CLASSES["natural"].deviation) ** 2
 
 
 def _sums(precisions: Sequence[FloatArray], bodies: Sequence[BodyEvidence]) -> tuple[FloatArray, FloatArray]:
@@ -221,27 +255,31 @@ def kept() -> dict[str, Any]:
     return dict(json.loads(KEPT.read_text("utf-8")))
 
 
-def kept_bodies(kind: str) -> list[BodyEvidence]:
-    """Return the kept tested bodies of a kind, "3D" or "2D"."""
+def kept_bodies() -> list[BodyEvidence]:
+    """Return the kept tested bodies."""
     return [
         BodyEvidence(
             item["name"], item["kind"], item["tests"], item["earthquakes"], np.array(item["mean"]),
             np.array(item["covariance"]), item["scatter"],
         )
-        for item in kept()["bodies"] if item["kind"] == kind
+        for item in kept()["bodies"]
     ]  # fmt: skip
 
 
 @cache
 def kept_error(kind: str) -> ModelError:
-    """Return the model error of a further body of a kind, "3D" or "2D", from the kept tests."""
-    bodies = kept_bodies(kind)
-    if not bodies:
-        return hierarchy([]).error(Message("prior without a tested body of this kind"))
-    facts = {"bodies": ", ".join(body.name for body in bodies), "tests": sum(body.tests for body in bodies)}
-    return hierarchy(bodies).error(Message("{tests} shaking-table tests of {bodies}, with a wide prior", facts))
+    """Return the model error of a further body of a class, from the kept tests."""
+    bodies = kept_bodies()
+    tested = [body for body in bodies if body.kind == kind]
+    listed = tested or bodies
+    facts = {"class": CLASSES[kind].text, "bodies": ", ".join(body.name for body in listed),
+             "tests": sum(body.tests for body in listed)}  # fmt: skip
+    source = Message(_TESTED_CLASS if tested else _UNTESTED_CLASS, facts)
+    return hierarchy(bodies, kind).error(source)
 
 
+_TESTED_CLASS = "{class}: {tests} shaking-table tests of {bodies}, with a wide prior"
+_UNTESTED_CLASS = "{class}: prior of the class; {tests} shaking-table tests of {bodies} count little"
 _TESTED = (
     "Shaking-table tests of real bodies ({bodies}): of {count} tests with a predicted probability of {low} to {high}, "
     "{share} overturned (95 % interval {interval_low} to {interval_high})."

@@ -1,6 +1,7 @@
 """Defaults of the placement of a body: level of its support, and horizontal position of its centre of mass."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,13 +9,15 @@ import numpy as np
 from rocking import checks
 from rocking.messages import Message
 
-UNEVENNESS = ((0.1, 0.002), (1.0, 0.004), (4.0, 0.010), (10.0, 0.012))
-"""Distance of two points of a finished floor, and the allowed deviation from level or flat between both [m]:
-DIN 18202:2013, Table 3, row 3; values between are interpolated."""
+UNEVENNESS = ((0.1, 0.002), (1.0, 0.004), (4.0, 0.010), (10.0, 0.012), (15.0, 0.015))
+INCLINATION = ((0.5, 0.003), (1.0, 0.006), (3.0, 0.008), (6.0, 0.012), (15.0, 0.016))
+"""Length and allowed deviation of a finished floor [m]: gap below a straightedge between two high points (DIN 18202,
+Table 3, row 3), and deviation from level (Table 2). Deviation over length as a slope, and values between the lengths
+by interpolation, are arguments of this project."""
 
 SHELF, PEDESTAL, ROAD = 0.016, math.radians(1.0), 0.025
-"""Largest slopes [rad]: end of a shelf with uniform load whose deflection is 1/200 of its span (3.2 x deflection over
-span); a pedestal set by eye; usual crossfall of roads, 2.5 %."""
+"""Largest slopes [rad]. Arguments: end of a shelf with uniform load whose deflection is 1/200 of its span (3.2 x
+deflection over span), a pedestal set by eye. Straight roads: crossfall of 2.5 %; curves are steeper."""
 
 OFFSET = 0.03
 """Largest offset of the centre of mass over the half size of the body, as for its height [-]."""
@@ -23,12 +26,14 @@ OFFSET_REASON = Message(
     "horizontal position of the centre of mass: up to 3 % of the half size of the body, as for its height; smaller "
     "where the body would not remain in its pose"
 )
-_FLOOR = Message("slope of a finished floor over the width of the base by DIN 18202, Table 3, row 3")
+_FLOOR = Message(
+    "slope of a finished floor over the width of the base, from the tolerances of level and flatness of DIN 18202"
+)
 _REASONS = {
     "floor": _FLOOR,
     "shelf": Message("slope at the end of a shelf that deflects by 1/200 of its span"),
     "pedestal": Message("slope of a pedestal that is set by eye: up to 1 degree"),
-    "road": Message("crossfall of a road: up to 2.5 %"),
+    "road": Message("crossfall of a straight road: up to 2.5 %"),
 }
 SUPPORTS = tuple(_REASONS)
 FARTHEST = 0.9
@@ -42,11 +47,15 @@ def floor_slope(width: float) -> float:
     """Return the largest slope of a finished floor over a width [m], in rad.
 
     >>> [round(floor_slope(width), 4) for width in (0.05, 0.1, 1.0, 4.0)]
-    [0.02, 0.02, 0.004, 0.0025]
+    [0.02, 0.02, 0.006, 0.0025]
     """
-    distances, deviations = zip(*UNEVENNESS, strict=True)
-    length = min(max(width, distances[0]), distances[-1])
-    return float(np.interp(length, distances, deviations)) / length
+    return max(_slope(width, UNEVENNESS), _slope(width, INCLINATION))
+
+
+def _slope(width: float, allowed: Sequence[tuple[float, float]]) -> float:
+    lengths, deviations = zip(*allowed, strict=True)
+    length = min(max(width, lengths[0]), lengths[-1])
+    return float(np.interp(length, lengths, deviations) / length)
 
 
 def level_default(stated: Any, width: float) -> tuple[tuple[float, float] | None, Message]:

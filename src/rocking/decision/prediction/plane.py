@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.bodies import Body
+from rocking.bodies import Block, Body
 from rocking.conventions import FEET, BoolArray, FloatArray, IntArray
 from rocking.decision.prediction.mechanics import (
     AZIMUTH_REASON,
@@ -69,12 +69,12 @@ _FOLLOWS = Message("restitution depends on base and centre as in the shifted imp
 class SampledInPlane(SampledBodies):
     """A plane body that may slide, hop and fly."""
 
-    kind = "2D"
     widths_of, reasons, never_sampled = {"base": 2, "model_error": 2}, _REASONS, NOT_SAMPLED
 
     def __init__(self, body: Body, motions: Any, inputs: Mapping[str, Any], settings: ContactSettings) -> None:
         super().__init__(motions, inputs)
         self.body, self._settings = body, settings
+        self.kind = "machined" if isinstance(body, Block) else "object"
         if not self._turns and inputs.get("azimuth") is not None:
             raise InvalidValueError('azimuth requires motions of two components, {"x": ..., "y": ...}')
         left, right = (body.side(foot, settings.gravity) for foot in FEET)

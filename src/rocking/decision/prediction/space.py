@@ -70,7 +70,6 @@ _LAWS = {
 class SampledInSpace(SampledBodies):
     """A 3D body that may slide, hop, fly and overturn onto another side."""
 
-    kind = "3D"
     reasons, never_sampled = _REASONS, NOT_SAMPLED
     widths_of: Mapping[str, int] = MappingProxyType({"offset": 2, "level": 2, "model_error": 2})
 

@@ -20,13 +20,17 @@ class PredictTable(JobTable):
     offset: Any = key("horizontal offset of the centre of mass, default up to 3 % of the half size of the body [m]")
     level: Any = key('slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"')
     polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
-    azimuth: Any = key("azimuth of the body to the x component, 3D or with two components, default uniform [rad]")
+    azimuth: Any = key(
+        "azimuth of the body to the x component, 3D or with two components; enter the known direction of the body; "
+        "default: unknown, sampled over all directions [rad]"
+    )
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
         "direction of the x component of the motion in the axes of the scan file, instead of azimuth"
     )
     model_error: Any = key(
-        'factors on uplift acceleration and energy barrier: "off", a file of validate-predictions --update, or a table '
-        "with mean and covariance of ln of both factors; default: from shaking-table tests of other bodies [-]"
+        'factors on uplift acceleration and energy barrier: class of the body, "machined" (default of blocks), '
+        '"object" (default of other plane bodies), "natural" (default of scans), "off", a file of '
+        "validate-predictions --update, or a table with mean and covariance of ln of both factors [-]"
     )
     sliding_beyond: Positive = key("smallest sliding distance that counts as sliding [m]", 0.01)
     pga: Text | None = key("peak ground acceleration of every scaled motion: 0.3g, 2.9m/s2")

@@ -10,8 +10,7 @@ import rocking as rk
 from rocking.bodies.solid import box
 from rocking.decision.prediction._predict import sampled_bodies
 from rocking.decision.prediction.model_error import (
-    BETWEEN,
-    COMMON,
+    CLASSES,
     KEPT,
     ORDERS,
     BodyEvidence,
@@ -27,6 +26,7 @@ from rocking.errors import InvalidValueError
 from rocking.statistics.scores import Forecasts
 
 pytestmark = pytest.mark.verifies(room="studies")
+NATURAL = CLASSES["natural"].deviation
 FIXED = {"restitution": 0.9, "friction": 0.6, "base": 0.0, "centre": 1.0, "azimuth": 0.0}
 PULSES = [rk.pulses.sine(a, t).sampled(0.005) for a, t in ((2.6, 0.5), (3.0, 0.9), (4.5, 0.7), (6.0, 0.4), (3.4, 1.3))]
 
@@ -94,17 +94,17 @@ def test_row_in_the_contributions():
 )  # fmt: skip
 def test_refused_model_errors(stated):
     with pytest.raises(InvalidValueError):
-        model_error_of(stated, "3D")
+        model_error_of(stated, "natural")
 
 
 def test_file_of_an_update_is_read(tmp_path):
     error = ModelError((0.1, -0.2), ((0.04, 0.01), (0.01, 0.09)), "7 tests")
     error.save(tmp_path / "own.json")
-    assert model_error_of(str(tmp_path / "own.json"), "3D") == error
+    assert model_error_of(str(tmp_path / "own.json"), "natural") == error
 
 
-def _body(mean, deviation=0.02, name="body"):
-    return BodyEvidence(name, "3D", 40, 20, np.array(mean), np.diag([deviation**2, (2.0 * deviation) ** 2]), 0.01)
+def _body(mean, deviation=0.02, name="body", kind="natural"):
+    return BodyEvidence(name, kind, 40, 20, np.array(mean), np.diag([deviation**2, (2.0 * deviation) ** 2]), 0.01)
 
 
 @pytest.mark.verifies(
@@ -113,22 +113,22 @@ def _body(mean, deviation=0.02, name="body"):
 def test_one_specimen_does_not_shrink_the_variance_between_bodies():
     """With one body, however exact, the variance between bodies keeps its prior: E[t2] + (1/(t2 + V) + 1/M2)^-1."""
     deviations, weights = np.linspace(1e-4, 1.6, 4000), None
-    weights = np.exp(-0.5 * (deviations / BETWEEN) ** 2)
+    weights = np.exp(-0.5 * (deviations / NATURAL) ** 2)
     weights /= weights.sum()
-    variance = weights @ (deviations**2 + 1.0 / (1.0 / (deviations**2 + 1e-10) + COMMON**-2))
-    result = hierarchy([_body((0.0, 0.0), 1e-5)])
+    variance = weights @ (deviations**2 + 1.0 / (1.0 / (deviations**2 + 1e-10) + NATURAL**-2))
+    result = hierarchy([_body((0.0, 0.0), 1e-5)], "natural")
     assert result.covariance[0, 0] == pytest.approx(variance, rel=0.05)  # grid of deviations
-    assert result.covariance[0, 0] > BETWEEN**2 * 0.9
+    assert result.covariance[0, 0] > NATURAL**2 * 0.9
 
 
 @pytest.mark.verifies("negative control", room="studies")
 def test_many_specimens_do():
     """Thirty equal bodies leave little variance between bodies; thirty scattered bodies have theirs."""
-    equal = hierarchy([_body((0.3, 0.6))] * 30)
-    assert equal.covariance[0, 0] < 0.1 * BETWEEN**2
+    equal = hierarchy([_body((0.3, 0.6))] * 30, "natural")
+    assert equal.covariance[0, 0] < 0.1 * NATURAL**2
     assert equal.mean[0] == pytest.approx(0.3, abs=0.02)
     random = np.random.default_rng(5)
-    scattered = hierarchy([_body(0.4 * ORDERS * random.normal(size=2)) for _ in range(30)])
+    scattered = hierarchy([_body(0.4 * ORDERS * random.normal(size=2)) for _ in range(30)], "natural")
     assert scattered.covariance[0, 0] == pytest.approx(0.16, rel=0.5)  # of 30 bodies
 
 
@@ -161,7 +161,7 @@ def test_calibration_with_a_lowered_barrier(barrier):
     """Without the factors overconfident, with them calibrated; two standard deviations reach the true factor."""
     tests, observed, fractions = _invented(barrier)
     assert Forecasts(fractions, observed).calibration > 3.0  # without the factors: overconfident
-    prior = hierarchy([])
+    prior = hierarchy([], "natural")
     assert abs(Forecasts(tests.left_out(prior), observed).calibration) < 2.0
     error = tests.error(prior)
     ends = np.array(error.mean)[1] + np.array([-2.0, 2.0]) * math.sqrt(error.covariance[1][1])
@@ -175,7 +175,7 @@ def test_calibration_without_the_factors():
     """A body without error: the probabilities are calibrated before, and the factors include one."""
     tests, observed, fractions = _invented(1.0)
     assert abs(Forecasts(fractions, observed).calibration) < 2.5
-    error = tests.error(hierarchy([]))
+    error = tests.error(hierarchy([], "natural"))
     assert abs(error.mean[0]) < 2.0 * math.sqrt(error.covariance[0][0])
 
 
@@ -197,8 +197,8 @@ def test_kept_evidence_is_numbers_about_tests_only():
     counts = [row["count"] for row in table["reliability"]]
     assert sum(counts) == sum(body["tests"] for body in table["bodies"])
     assert max(len(values) for body in table["bodies"] for values in body.values() if isinstance(values, list)) == 2
-    error = kept_error("3D")
-    assert error.covariance[0][0] > BETWEEN**2  # another body: at least the variance between bodies
+    error = kept_error("natural")
+    assert error.covariance[0][0] > NATURAL**2  # another body: at least the variance between bodies
     assert "granite" in error.source
 
 
@@ -207,3 +207,73 @@ def test_evidence_is_the_row_of_the_probability(probability):
     text = evidence(probability)
     row = next(row for row in kept()["reliability"] if row["low"] <= probability <= row["high"])
     assert f"of {row['count']} tests" in text
+
+
+@pytest.mark.verifies("behaviour", control="test_natural_bodies_keep_their_wide_factors")
+def test_a_machined_block_is_surer_than_an_object_and_a_rock():
+    """95 % of the factors: 0.85 to 1.17 of a block; a block of measured size has a steep curve of probabilities."""
+    deviations = [math.sqrt(kept_error(kind).covariance[0][0]) for kind in ("machined", "object", "natural")]
+    assert deviations[0] < 0.09
+    assert deviations == sorted(deviations)
+    assert deviations[2] > 3.0 * deviations[0]
+    pulses = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 5.0)]
+    block, options = rk.Block(width=0.5, height=2.0), {"count": 64, "contributions": False}
+    chances = {
+        stated: rk.predict(block, pulses, model_error=stated, **options).chances["overturning"].per_motion
+        for stated in (None, "machined", "natural")
+    }
+    assert chances[None][0] < 0.1
+    assert chances[None][1] > 0.9
+    np.testing.assert_array_equal(chances["machined"], chances[None])
+    assert chances["natural"][0] > 0.2  # negative control: the factors of a rock hide the statics of the block
+
+
+@pytest.mark.verifies("negative control", room="studies")
+def test_natural_bodies_keep_their_wide_factors():
+    """A solid has by default the factors of a natural body; a section and mass points those of an object."""
+    section = rk.Section([rk.Region([[0.0, 0.0], [0.5, 0.0], [0.5, 2.0], [0.0, 2.0]], 2400.0)])
+    for body, kind in ((_solid(), "natural"), (section, "object"), (rk.Block(width=0.5, height=2.0), "machined")):
+        mechanics = sampled_bodies(body, PULSES[:1], {})
+        assert mechanics.kind == kind
+        assert mechanics.inputs["model_error"].text == kept_error(kind).text
+        assert CLASSES[kind].text in mechanics.assumed["model_error"]
+
+
+@pytest.mark.verifies("closed form", "a body with larger errors as evidence: precision-weighted mean", room="studies")
+def test_a_rock_counts_little_for_a_machined_block():
+    """One rock moves the mean of machined blocks by s2/(s2 + t2 + V + 2 (s_rock2 - s2)) of its own, at each t."""
+    rock, s = _body((-0.4, -0.8), 0.1), CLASSES["machined"].deviation
+    ratios = np.linspace(0.1, 4.0, 40)
+    weights = np.exp(-0.5 * ratios**2) / np.exp(-0.5 * ratios**2).sum()
+    gains = s**2 / (s**2 + (ratios * s) ** 2 + 0.01 + 2.0 * (NATURAL**2 - s**2))
+    moved = hierarchy([rock], "machined").mean[0]
+    assert moved == pytest.approx(-0.4 * weights @ gains, rel=1e-9)
+    assert abs(moved) < 0.03 * 0.4
+    assert hierarchy([rock], "natural").mean[0] < 10.0 * moved  # counts fully for natural bodies
+
+
+def test_a_machined_block_says_nothing_about_a_rock():
+    """The errors of a class are contained in those of rougher classes, not in those of smoother ones."""
+    block = _body((0.3, 0.6), kind="machined")
+    np.testing.assert_array_equal(hierarchy([block], "natural").mean, [0.0, 0.0])
+    assert hierarchy([block], "machined").mean[0] > 0.1
+
+
+def test_model_error_in_plain_words():
+    """Sentences have the factors or the missing model error as text, and no name of a key."""
+    pulses = [rk.pulses.sine(amplitude, 0.8) for amplitude in (3.0, 3.4)]
+    sampled = "The samples contain the error of the model: uplift acceleration times 0.8"
+    missing = "inputs that were not sampled: model error"
+    for stated in (None, "off"):
+        shown = str(rk.predict(rk.Block(width=0.5, height=2.0), pulses, model_error=stated, count=32))
+        assert (sampled in shown, missing in shown) == (stated is None, stated == "off")
+        assert "model_error" not in shown
+
+
+def test_ends_of_the_model_error_are_uplift_accelerations():
+    """The row has the mean factor on the uplift acceleration in its lowest and highest fifth: 1 -+ 1.4 deviations."""
+    error = {"mean": [0.0, 1.0], "covariance": [[0.01, 0.0], [0.0, 0.01]]}
+    prediction = rk.predict(rk.Block(width=0.5, height=2.0), PULSES[:1], model_error=error, count=256)
+    ends = prediction.ends["model_error"]
+    assert ends.low == pytest.approx(math.exp(-0.14), rel=0.02)
+    assert ends.high == pytest.approx(math.exp(0.14), rel=0.02)  # mean of a fifth of a normal distribution: 1.40 sd

@@ -77,7 +77,7 @@ def test_supports_have_names():
     """A shelf slopes more than a floor; unknown supports are refused with the known ones."""
     block, pulse = rk.Block(width=1.0, height=4.0), rk.pulses.sine(3.0, 0.8)
     by_support = {name: predict(block, pulse, level=name, count=4, **OPTIONS) for name in ("floor", "shelf", "road")}
-    assert by_support["floor"].inputs["level"] == "uniform, -0.004 to 0.004 rad"
+    assert by_support["floor"].inputs["level"] == "uniform, -0.006 to 0.006 rad"
     assert by_support["shelf"].inputs["level"] == "uniform, -0.016 to 0.016 rad"
     assert any("2.5 %" in text for text in by_support["road"].assumed)
     assert any(text.startswith("level:") for text in by_support["floor"].assumed)

@@ -119,6 +119,20 @@ def test_what_is_known_leaves_nothing_to_chance():
     assert [each for each in found.assumed if each.startswith(("friction", "base", "centre", "restitution:"))] == []
 
 
+@pytest.mark.verifies("behaviour", control="test_the_input_that_decides_has_the_share")
+def test_rare_outcomes_have_no_contributions():
+    """With fewer than four samples of the rarer outcome no further history is computed, and the answer says so."""
+    predictions = [predict(BLOCK, rk.pulses.sine(a, 0.8), count=16, seed=2) for a in np.linspace(2.4, 6.0, 13)]
+    for prediction in predictions:
+        fallen = 16.0 * prediction.chances["overturning"].value
+        if min(fallen, 16.0 - fallen) < 4.0:
+            assert prediction.histories == 32  # sampled bodies and pairs
+            assert not any(share.total for share in prediction.contributions.values())
+            assert prediction.decides
+    rare = [p for p in predictions if 0.0 < p.chances["overturning"].value < 0.25]
+    assert any("Too few histories differ" in p.decides for p in rare)
+
+
 def test_the_input_that_decides_has_the_share():
     """Where it overturns if the friction holds its foot, and slides if not, friction has all of the variance."""
     found = predict(BLOCK, rk.pulses.sine(12.0, 0.8), **{**KNOWN, "friction": (0.05, 0.8)}, count=64)

@@ -10,6 +10,7 @@ import rocking as rk
 from rocking.bodies.solid import Part, Polyhedron, Solid, box
 from rocking.decision.prediction import space
 from rocking.decision.prediction.mechanics import Uncertain
+from rocking.decision.prediction.shapes import inset as inset_of
 from rocking.decision.prediction.space import SampledInSpace, sloping
 from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.ground import HullGround
@@ -301,3 +302,30 @@ def test_coarse_settings_give_the_same_probability(monkeypatch):
     assert differ <= chaos + 3.0 * math.sqrt(chaos + 1.0)
     assert abs(float((found - exact).sum())) <= 2.0 * math.sqrt(differ + 1.0)
     assert abs(float((verdicts(coarse, 1.1) - exact).sum())) > 2.0 * math.sqrt(differ + 1.0)
+
+
+@pytest.mark.verifies(
+    "invariant", "the outline, inset at each height", control="test_a_ledge_beside_the_base_carries_the_body"
+)
+def test_all_points_are_inside_the_outline():
+    """Each point moves horizontally towards the plumb line by the inset, the base and its neighbours alike."""
+    solid = stone()
+    shapes = SampledInSpace(solid, shaking(), KNOWN, rk.conventions.g).shapes
+    inset = 0.01
+    before, after = shapes.corners, shapes.points(-inset)
+    far = np.linalg.norm(before[:, :2], axis=1)
+    np.testing.assert_array_equal(after[:, 2], before[:, 2])
+    moved = far - np.linalg.norm(after[:, :2], axis=1)
+    np.testing.assert_allclose(moved, np.minimum(inset, 0.9 * far), rtol=1e-12)
+
+
+@pytest.mark.verifies("negative control")
+def test_a_ledge_beside_the_base_carries_the_body():
+    """With an inset of the base alone, the outline just above the base lies outside it: the base is not inset."""
+    shapes = SampledInSpace(stone(), shaking(), KNOWN, rk.conventions.g).shapes
+    low = shapes.corners[:, 2] <= shapes.corners[:, 2].min() + 1e-9
+    alone = shapes.corners.copy()
+    alone[low, :2] = inset_of(alone[low, :2], -0.05)
+    everywhere = shapes.points(-0.05)
+    reach = [np.linalg.norm(points[~low][:, :2], axis=1).max() for points in (alone, everywhere)]
+    assert reach[0] > reach[1] + 0.049

@@ -76,7 +76,8 @@ const Decide = ({ app, questions }) => {
       ${["firm-ground", "soft-ground"].includes(shaken.value)
         && html`<${Field} label="Peak acceleration" name="pga" unit="g" value=${pga} inputmode="decimal" />`}
       ${command.value === "predict" ? html`
-        <p class="field-help">Uncertain inputs: one number, two numbers as a range, or empty for the default.</p>
+        <p class="field-help">Uncertain inputs: one number, two numbers as a range, or empty for the default.
+          Without an azimuth all directions of the body are sampled.</p>
         <div class="fields">${Object.entries(app.info.keys.predict).map(([name, facts]) => html`
           <${KeyField} key=${name} name=${name} facts=${facts} value=${unknown.at(name)} />`)}</div>` : html`
       <${Field} label="Required margin" name="margin" unit="times the motion" value=${margin} inputmode="decimal"
@@ -205,7 +206,7 @@ const Forecast = ({ answer, question }) => {
   const share = (low, at, high) => t("{value} ({low} to {high})", { value: number(at, 2), low: number(low, 2), high: number(high, 2) });
   return html`
     <p class=${`verdict ${high <= 0.05 ? "good" : high <= 0.5 ? "fair" : "bad"}`} data-testid="verdict">${answer.verdict}</p>
-    <p>${answer.growth.sentence}</p>
+    <ul>${answer.sentences.slice(1).map((/** @type {string} */ text) => html`<li key=${text}>${text}</li>`)}</ul>
     <${Drawing} question=${question} alt="Probabilities of rocking, sliding and overturning, and main uncertainties" />
     <h3>Probabilities</h3>
     <${Chances} of=${answer} />
