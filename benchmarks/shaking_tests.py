@@ -1,8 +1,8 @@
 """Predictions of shaking-table tests of real bodies: kept posteriors, scores and reliability.
 
 `make shaking-tests` samples histories of all tests that are present beside the project, stores their outcomes in
-shaking_tests.txt, and writes the kept numbers. Records and outcomes of tests are not kept. Stored histories are used
-again; remove the file for new ones.
+shaking_tests.txt, and writes the kept numbers. A random subset is predicted without the axis of the table as well.
+Records and outcomes of tests are not kept. Stored histories are used again; remove the files for new ones.
 """
 
 import csv
@@ -28,10 +28,16 @@ from rocking.statistics.sobol import scrambled_sobol
 
 ROOT = Path(__file__).parents[1]
 DATA, SAMPLES = ROOT.parent / "shared" / "data", Path(__file__).with_suffix(".txt")
+ANY_AZIMUTH, ANY_COUNT = SAMPLES.with_name("shaking_tests_any_azimuth.txt"), 110
+"""Histories without the axis of the table, and number of their tests."""
 NAME, KIND, AXIS, UP = "granite rock", "natural", (0.5322, 0.0040, 0.8466), (0.816, 0.263, -0.514)
 STEPS = "mean; bandpass:low=0.1,high=25"
 OFF_COUNT, WIDE_COUNT, SEED = 16, 16, 1
 """Samples of each test without model error, and with the proposal of factors; random seed."""
+
+DEFAULT, LOGISTIC = "model error of other earthquakes of this body", "logistic curve in PGA and PGV"
+Stored = dict[int, tuple[FloatArray, FloatArray]]
+"""Outcomes of histories by index of the test: without model error, and with the proposal."""
 
 EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 
@@ -59,15 +65,15 @@ def rock(data: Path = DATA) -> tuple[rk.Solid, float]:
     return solid, -float(np.arctan2(y, x))
 
 
-def mechanics(motions: list[Any], error: Any) -> SampledBodies:
-    """Return the sampled bodies of the rock under motions, with the axis of the table."""
+def mechanics(motions: list[Any], error: Any, *, axis: bool = True) -> SampledBodies:
+    """Return the sampled bodies of the rock under motions; axis: True with the axis of the table."""
     solid, azimuth = rock()
-    return sampled_bodies(solid, motions, {"azimuth": azimuth, "model_error": error})
+    return sampled_bodies(solid, motions, {"azimuth": azimuth if axis else None, "model_error": error})
 
 
-def sampled(indices: Iterable[int], motions: list[Any]) -> Iterator[tuple[int, str, str]]:
+def sampled(indices: Iterable[int], motions: list[Any], *, axis: bool = True) -> Iterator[tuple[int, str, str]]:
     """Yield the index of a test, and its sampled outcomes without model error and with the proposal as text."""
-    off, wide = mechanics(motions, "off"), mechanics(motions, WIDE)
+    off, wide = mechanics(motions, "off", axis=axis), mechanics(motions, WIDE, axis=axis)
     draws = scrambled_sobol(sum(off.widths.values()), OFF_COUNT, SEED)
     for index in indices:
         fell = off.run(draws, index, np.ones(OFF_COUNT), 1).overturning
@@ -84,36 +90,36 @@ def from_text(text: str) -> FloatArray:
     return np.array([np.nan if mark == "-" else float(mark) for mark in text])
 
 
-def stored(path: Path = SAMPLES) -> dict[int, tuple[FloatArray, FloatArray]]:
+def stored(path: Path = SAMPLES) -> Stored:
     """Return the stored outcomes of histories by index of the test: without model error, and with the proposal."""
     lines = path.read_text("utf-8").splitlines() if path.is_file() else []
     rows = [line.split() for line in lines if not line.startswith("#")]
     return {int(index): (from_text(off), from_text(wide)) for index, off, wide in rows}
 
 
-def kept_numbers(samples: dict[int, tuple[FloatArray, FloatArray]], motions: list[Any]) -> dict[str, Any]:
-    """Return the numbers to keep, from the tests with stored histories: posterior, scores, and reliability."""
+def tests_of(samples: Stored, motions: list[Any], *, axis: bool) -> tuple[BodyTests, dict[str, Forecasts]]:
+    """Return the tests with stored histories, and their forecasts by name."""
     indices = sorted(samples)
     earthquakes, observed = (values[indices] for values in outcomes()[1:])
     off, overturned = (np.array([samples[k][kind] for k in indices]) for kind in (0, 1))
-    wide = mechanics(motions[:1], WIDE)
+    wide = mechanics(motions[:1], WIDE, axis=axis)
     points = [wide_draws(wide.widths, k, WIDE_COUNT, SEED) for k in indices]
     logarithms = np.log([wide.values(draws)["model_error"] for draws in points])
     tests, prior = BodyTests(logarithms, overturned, observed, earthquakes), hierarchy([], KIND)
-    body = tests.tested(NAME, KIND)
-    fractions = (np.nansum(off, axis=1) + 0.5) / (np.isfinite(off).sum(axis=1) + 1.0)
     peaks = np.log([(motions[k].peak, peak_ground_velocity(motions[k])) for k in indices])
-    forecasts = {
-        name: Forecasts(probability, observed, earthquakes)
-        for name, probability in {
-            "without model error": fractions,
-            "model error of other earthquakes of this body": tests.left_out(prior),
-            "model error without tests": tests.without(prior),
-            "logistic curve in PGA and PGV": logistic_left_out(peaks, observed, earthquakes),
-        }.items()
+    probabilities = {
+        "without model error": (np.nansum(off, axis=1) + 0.5) / (np.isfinite(off).sum(axis=1) + 1.0),
+        DEFAULT: tests.left_out(prior),
+        "model error without tests": tests.without(prior),
+        LOGISTIC: logistic_left_out(peaks, observed, earthquakes),
     }
-    logistic = forecasts["logistic curve in PGA and PGV"]
-    default = forecasts["model error of other earthquakes of this body"]
+    return tests, {name: Forecasts(values, observed, earthquakes) for name, values in probabilities.items()}
+
+
+def kept_numbers(samples: Stored, any_azimuth: Stored, motions: list[Any]) -> dict[str, Any]:
+    """Return the numbers to keep, from the tests with stored histories: posterior, scores, and reliability."""
+    tests, forecasts = tests_of(samples, motions, axis=True)
+    body, observed = tests.tested(NAME, KIND), tests.observed
     return {
         "data": "shaking-table tests by Zhiang Chen (virtual_shake_robot_pybullet, VSR_Pro); these numbers are fitted "
                 "to their outcomes",
@@ -123,14 +129,21 @@ def kept_numbers(samples: dict[int, tuple[FloatArray, FloatArray]], motions: lis
             "scatter": body.scatter,
         }],
         "samples": {"without model error": OFF_COUNT, "with the proposal": WIDE_COUNT},
-        "scores": {
-            name: {
-                "brier": vars(forecast.brier), "balanced_accuracy": vars(forecast.balanced_accuracy),
-                "calibration": forecast.calibration, "better_than_logistic": vars(forecast.skill(logistic)),
-            }
-            for name, forecast in forecasts.items()
+        "scores": _scores(forecasts),
+        "any_azimuth": {
+            "tests": len(any_azimuth), "scores": _scores(tests_of(any_azimuth, motions, axis=False)[1]),
         },
-        "reliability": _reliability(default.probability, observed),
+        "reliability": _reliability(forecasts[DEFAULT].probability, observed),
+    }  # fmt: skip
+
+
+def _scores(forecasts: dict[str, Forecasts]) -> dict[str, dict[str, Any]]:
+    return {
+        name: {
+            "brier": vars(forecast.brier), "balanced_accuracy": vars(forecast.balanced_accuracy),
+            "calibration": forecast.calibration, "better_than_logistic": vars(forecast.skill(forecasts[LOGISTIC])),
+        }
+        for name, forecast in forecasts.items()
     }  # fmt: skip
 
 
@@ -161,12 +174,14 @@ def main() -> None:
         print(f"no shaking-table tests in {DATA / 'shaking_tests'}; the kept numbers do not change")
         return
     names = outcomes()[0]
-    motions, samples = motions_of(names), stored()
-    missing = [index for index in range(len(names)) if index not in samples]
-    with SAMPLES.open("a", encoding="utf-8") as file:
-        for index, off, wide in sampled(missing, motions):
-            print(index, off, wide, file=file, flush=True)
-    table = rounded(kept_numbers(stored(), motions))
+    motions = motions_of(names)
+    subset = np.random.default_rng(4).permutation(len(names))[:ANY_COUNT].tolist()
+    for path, indices, axis in ((SAMPLES, range(len(names)), True), (ANY_AZIMUTH, subset, False)):
+        missing = [index for index in indices if index not in stored(path)]
+        with path.open("a", encoding="utf-8") as file:
+            for index, off, wide in sampled(missing, motions, axis=axis):
+                print(index, off, wide, file=file, flush=True)
+    table = rounded(kept_numbers(stored(), stored(ANY_AZIMUTH), motions))
     KEPT.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
     for name, scores in table["scores"].items():
         brier, accuracy = scores["brier"], scores["balanced_accuracy"]["value"]

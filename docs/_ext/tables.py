@@ -61,7 +61,7 @@ def _meaning(entry: object) -> str:
 
 
 class TestedBodies(SphinxDirective):
-    """The kept scores of predictions of shaking-table tests: `scores` or `reliability`."""
+    """The kept scores of predictions of shaking-table tests: `scores`, `any-azimuth` or `reliability`."""
 
     required_arguments = 1
 
@@ -69,7 +69,8 @@ class TestedBodies(SphinxDirective):
         """Return a table of the scores of all forecasts, or of the observed fractions."""
         from rocking.decision.prediction.model_error import kept
 
-        return self.parse_text_to_nodes({"scores": _scores, "reliability": _reliability}[self.arguments[0]](kept()))
+        tests = {"any-azimuth": kept()["any_azimuth"]}.get(self.arguments[0], kept())
+        return self.parse_text_to_nodes((_reliability if self.arguments[0] == "reliability" else _scores)(tests))
 
 
 def _scores(tests: dict[str, Any]) -> str:

@@ -59,22 +59,11 @@ class BodyTests:
     def probabilities(self) -> FloatArray:
         """Probability of overturning of each test at each node, shape (tests, nodes), by weighted samples.
 
-        The fraction of all samples of the test, (h + 1/2) / (n + 1) as in `score`, counts as one effective sample.
+        The estimate with the next larger scatter counts as one effective sample of that with a smaller one. That with
+        the largest scatter has the fraction of all samples, (h + 1/2) / (n + 1) as in `score`, as one.
         """
-        widths = np.sqrt(np.array(WIDE.covariance).diagonal())
-        scatter = self.nodes[:, 2:] * ORDERS
-        rows = []
-        for logarithms, overturned in zip(self.logarithms, self.overturned, strict=True):
-            valid = np.isfinite(overturned)
-            sampled, fell = logarithms[valid], overturned[valid]
-            off = (sampled[:, None, :] - self.nodes[None, :, :2]) / scatter
-            exponent = 0.5 * ((sampled / widths) ** 2).sum(axis=1)[:, None] - 0.5 * (off**2).sum(axis=2)
-            weights = np.exp(exponent - exponent.max(axis=0, initial=-np.inf))
-            total = weights.sum(axis=0)
-            effective = total**2 / np.maximum((weights**2).sum(axis=0), 1e-300)
-            every = (fell.sum() + 0.5) / (fell.size + 1.0)
-            rows.append((effective * (fell @ weights) / np.maximum(total, 1e-300) + every) / (effective + 1.0))
-        return np.array(rows)
+        centres = self.nodes[:: len(SCATTERS), :2]  # the scatter varies fastest
+        return np.array([_smoothed(*test, centres) for test in zip(self.logarithms, self.overturned, strict=True)])
 
     @cached_property
     def likelihood(self) -> FloatArray:
@@ -131,6 +120,24 @@ class BodyTests:
         with np.errstate(divide="ignore"):
             mean, covariance = mixed(np.log(weights), nodes[:, :2], within)
         return mean, covariance, float(weights @ nodes[:, 2] ** 2)
+
+
+def _smoothed(logarithms: FloatArray, overturned: FloatArray, centres: FloatArray) -> FloatArray:
+    """Return the probability of a test at each centre of the factors and each scatter, the scatter fastest."""
+    valid = np.isfinite(overturned)
+    sampled, fell = logarithms[valid], overturned[valid]
+    proposal = 0.5 * (sampled**2 / np.array(WIDE.covariance).diagonal()).sum(axis=1)[:, None]
+    estimate = np.full(len(centres), (fell.sum() + 0.5) / (fell.size + 1.0))
+    estimates = []
+    for scatter in SCATTERS[::-1].tolist():
+        off = (sampled[:, None, :] - centres) / (scatter * ORDERS)
+        exponent = proposal - 0.5 * (off**2).sum(axis=2)
+        weights = np.exp(exponent - exponent.max(axis=0, initial=-np.inf))
+        total = np.maximum(weights.sum(axis=0), 1e-300)
+        effective = total**2 / np.maximum((weights**2).sum(axis=0), 1e-300)
+        estimate = (effective * (fell @ weights) / total + estimate) / (effective + 1.0)
+        estimates.append(estimate)
+    return np.stack(estimates[::-1], axis=1).ravel()
 
 
 def wide_samples(
