@@ -92,7 +92,7 @@ def _thresholds_of(data: "xr.Dataset", names: Container[str], color: str = GREY)
 
 
 def _draw_thresholds(axes: "Axes", lines: list[tuple[float, str, str]], *, is_upright: bool = False) -> None:
-    """Draw thin lines within the limits of the axis of amplitudes, with labels beside each other."""
+    """Draw thin lines within the limits of the axis of amplitudes, with labels side by side."""
     from matplotlib.patheffects import withStroke
 
     low, high = axes.get_ylim() if is_upright else axes.get_xlim()
