@@ -31,6 +31,7 @@ from rocking_workbench.projects.store import ProjectStore
 from rocking_workbench.questions import router as questions
 from rocking_workbench.questions.desk import QuestionDesk
 from rocking_workbench.records import RecordStore
+from rocking_workbench.runs.runner import Runner
 from rocking_workbench.security import sessions as session
 from rocking_workbench.security.gate import Failures, Gate, SafeHeaders
 from rocking_workbench.security.request_body import BodyLimits
@@ -134,13 +135,14 @@ def create_app(settings: ServerSettings) -> FastAPI:
     limits = settings.limits
     store = RecordStore(settings.folder, limits)
     files = RecordStore(settings.folder, limits, "files", forgets=True)  # a question keeps those that it needs
+    runner = Runner()
     app.state.rocking = AppState(
         settings=settings,
         records=store,
         files=files,
         projects=ProjectStore(settings.folder, limits),
-        questions=QuestionDesk(settings.folder, (files, store), limits),
-        studies=StudyManager(settings.folder, limits, store, workers=settings.workers),
+        questions=QuestionDesk(settings.folder, (files, store), limits, runner),
+        studies=StudyManager(settings.folder, limits, store, runner, workers=settings.workers),
         sessions=Sessions(limits, kept=settings.folder / "sessions.json"),
         heavy=ComputationQueue(limits.heavy_at_once, limits.heavy_waiting),
     )

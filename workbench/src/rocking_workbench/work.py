@@ -1,15 +1,10 @@
-"""Long computations: threads with a short queue, process groups, cached results."""
+"""Long computations: threads with a short queue, cached results."""
 
 import asyncio
-import os
-import signal
-import subprocess
-import sys
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
@@ -77,15 +72,6 @@ async def sized(
     if vertices <= _SMALL:
         return await run_in_threadpool(function, *args, **kwargs)
     return await heavy(request, function, *args, **kwargs)
-
-
-def kill(process: "subprocess.Popen[bytes]") -> None:
-    """End a process group."""
-    with suppress(OSError):
-        if sys.platform == "win32":
-            process.kill()
-        elif process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
 
 
 class Remembered(Generic[T]):

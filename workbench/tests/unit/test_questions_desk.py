@@ -14,7 +14,7 @@ from waiting import HANG, allowed, wait_for
 from rocking.motions import processed
 from rocking.motions.formats import read_motion
 from rocking_workbench.errors import NotFound, Refused, TooLarge
-from rocking_workbench.questions.desk import OUTPUTS, QuestionDesk, refuse_outside
+from rocking_workbench.questions.desk import OUTPUTS, QuestionDesk, QuestionRun, refuse_outside
 from rocking_workbench.records import RecordStore
 from rocking_workbench.settings import Limits
 
@@ -377,7 +377,7 @@ def test_questions_of_schema_1_open(tmp_path):
     }  # fmt: skip
     (crossings,) = (question for question in desk.all() if question.command == "overturning-pga")
     assert json.loads(desk.answer(crossings.id))["minimum_acceleration"] > 0.0
-    desk._become(crossings)
+    desk.runner.get(QuestionRun, crossings.id).become("done")
     assert json.loads((desk.folder / crossings.id / "state.json").read_bytes())["schema"] == 2
     assert later.exists()
     desk.close()
@@ -392,7 +392,7 @@ def test_what_brings_the_server_down_is_not_asked_for_ever(tmp_path):
         one = desk.get(desk.all()[0].id) if turn else desk.ask("predict", long, {})
         while desk.get(one.id).state == "waiting":
             time.sleep(0.01)
-        while desk.get(one.id).state == "running" and desk._process is None:
+        while desk.get(one.id).state == "running" and desk.runner.get(QuestionRun, one.id).process is None:
             time.sleep(0.01)
         note = (desk.folder / one.id / "state.json").read_bytes()
         desk.close()
@@ -475,28 +475,26 @@ def waits(process):
 def test_a_process_is_ready_before_it_is_asked(desk, monkeypatch):
     """It answers the next question, alone; other surroundings get another; without a server or questions it ends."""
     desk.prepare()
-    first = desk._ahead[0]
+    first = desk._ahead
     desk.prepare()
-    assert desk._ahead[0] is first
+    assert desk._ahead is first
     monkeypatch.setenv("ROCKING_MODELS", "")
     desk.prepare()
-    second = desk._ahead[0]
-    assert (first.poll() is None, second is first) == (False, False)
-    second.kill()
-    second.wait()
+    second = desk._ahead
+    assert (first.code is None, second is first) == (False, False)
+    second.stop()
     desk.prepare()
-    third = desk._ahead[0]
+    third = desk._ahead
     assert ended(desk, desk.ask("predict", TABLES, {}).id).state == "done"
-    assert (third.poll(), desk._ahead) == (0, None)
-    left = desk._start()
+    assert (third.code, desk._ahead) == (0, None)
+    left = desk._process()._process
     left.stdin.close()
     assert left.wait(HANG) == 0
     desk.prepare()
-    fourth = desk._ahead[0]
-    monkeypatch.setattr("rocking_workbench.questions.desk._IDLE", 0.1)
-    with desk._changed:
-        desk._changed.notify_all()
-    wait_for(lambda: fourth.poll() is not None)
+    fourth = desk._ahead
+    monkeypatch.setattr("rocking_workbench.runs.runner.IDLE", 0.1)
+    desk.runner.changed()
+    wait_for(lambda: fourth.code is not None)
     desk.prepare()
     desk.close()
     assert desk._ahead is None
@@ -507,7 +505,7 @@ def test_a_question_about_a_record_is_quick(desk):
     """Half of the time of a processor goes into what was loaded ahead: the rest has a limit of 1.5 s."""
     sha = desk.store.add(SHAKEN.encode(), "hall.txt").record
     desk.prepare()
-    waits(desk._ahead[0])
+    waits(desk._ahead._process)
     begun = time.monotonic()
     tables = {"motion": {"record": "hall.txt", "process": ["mean", "taper"]}}
     assert ended(desk, desk.ask("record convert", tables, {"hall.txt": sha}).id).state == "done"

@@ -49,7 +49,7 @@ def _imports() -> Iterator[None]:
 
 def main() -> None:
     """Run the received command."""
-    from rocking_workbench.studies.child import end_with_the_server
+    from rocking_workbench.runs.process import end_with_the_server
 
     received, question = threading.Event(), b""
 
@@ -115,7 +115,6 @@ def keep_inside(*folders: Path) -> None:
 
 def _limit() -> None:
     """Limit memory, time and file size, if the system supports limits."""
-    os.nice(10) if hasattr(os, "nice") else None
     try:
         import resource
     except ImportError:

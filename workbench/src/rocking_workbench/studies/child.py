@@ -4,26 +4,21 @@ The process ends with the server, because its standard input is a pipe that clos
 2 refused, 3 stopped (finished histories are safe).
 """
 
-import contextlib
 import json
-import os
-import signal
 import sys
 import threading
 import time
 from pathlib import Path
 
-from rocking_workbench.studies import GRACE
+from rocking_workbench.runs.process import STOPPED, end_with_the_server
 
-DONE, REFUSED, STOPPED = 0, 2, 3  # exit codes
+DONE, REFUSED = 0, 2  # exit codes
 _PATIENCE = 3.0
 
 
 def main(arguments: list[str]) -> int:
     """Start or continue the campaign of a study."""
     threading.Thread(target=end_with_the_server, daemon=True).start()
-    with contextlib.suppress(OSError, AttributeError):
-        os.nice(10)
     from rocking.campaigns import CampaignInterrupted
     from rocking.errors import RockingError
     from rocking.restitution.from_file import register_own
@@ -66,21 +61,6 @@ def _compute(study: Path, workers: int) -> None:
         else:
             break
     keep_result(OpenStudy(study.name, StudyFolder(study), folder))
-
-
-def end_with_the_server() -> None:
-    """Wait for the end of the server, then end this process group."""
-    with contextlib.suppress(OSError):
-        while os.read(0, 1):
-            pass
-    with contextlib.suppress(OSError):
-        os.kill(os.getpid(), signal.SIGINT)
-    time.sleep(GRACE)
-    if sys.platform == "win32":
-        os._exit(STOPPED)
-    else:
-        # the workers too: the group is this process's own
-        os.killpg(os.getpgrp(), signal.SIGKILL) if os.getpgrp() == os.getpid() else os._exit(STOPPED)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ from rocking_workbench.settings import state_of
 from rocking_workbench.studies.answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
 from rocking_workbench.studies.finished import Crossing, Kind
 from rocking_workbench.studies.manager import StudyManager
+from rocking_workbench.studies.study import HostedStudy
 from rocking_workbench.studies.study_folder import StudyFolder
 from rocking_workbench.work import heavy
 
@@ -226,32 +227,27 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
         with contextlib.suppress(RuntimeError):  # the loop has ended, the browser with it
             loop.call_soon_threadsafe(changed.set)
 
-    if manager.queue.watchers >= MOST:
+    async def send() -> None:
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # closed during the message
+            while True:
+                changed.clear()
+                await socket.send_text(bytes(JsonAnswer({"studies": manager.overview()}).body).decode())
+                await changed.wait()
+                await asyncio.sleep(SHORTEST)
+
+    if len(manager.queue.listeners) >= MOST:
         await socket.close(_TRY_LATER)
         return
-    leave, tasks = manager.queue.subscribe(tell), set[asyncio.Task[Any]]()
+    manager.queue.listeners.add((HostedStudy, tell))
     try:
         await socket.accept()
-        tasks.add(gone := asyncio.create_task(_gone(socket)))
-        while not gone.done():
-            changed.clear()
-            await socket.send_text(bytes(JsonAnswer({"studies": manager.overview()}).body).decode())
-            tasks.add(woken := asyncio.create_task(changed.wait()))
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-            tasks.remove(woken)
-            woken.cancel()
-            await asyncio.wait({gone}, timeout=SHORTEST)
-    except (WebSocketDisconnect, RuntimeError):  # closed during the message
+        sending = asyncio.create_task(send())
+        try:
+            while (await socket.receive())["type"] != "websocket.disconnect":
+                pass  # messages of the browser are ignored
+        finally:
+            sending.cancel()
+    except (WebSocketDisconnect, RuntimeError):  # closed before the connection was accepted
         pass
     finally:
-        leave()
-        for task in tasks:
-            task.cancel()
-
-
-async def _gone(socket: WebSocket) -> None:
-    """Wait until the browser disconnects; ignore its messages."""
-    while True:
-        message = await socket.receive()
-        if message["type"] == "websocket.disconnect":
-            return
+        manager.queue.listeners.discard((HostedStudy, tell))

@@ -1,30 +1,25 @@
-"""A study of the server: state, speed and process."""
+"""A study of the server: state, speed and progress."""
 
-import contextlib
-import json
-import logging
-import os
-import signal
-import subprocess
-import sys
 import time
 from collections import deque
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Self
 
 from rocking.campaigns import Estimate
 from rocking.campaigns.status import Speed
 from rocking.errors import RockingError
-from rocking_workbench.studies import GRACE
-from rocking_workbench.studies.study_folder import CANCELLED, DONE, FAILED, INTERRUPTED, LOG, RUNNING, Meta, StudyFolder
-from rocking_workbench.work import kill
+from rocking_workbench.runs.folder import DONE, RUNNING, WAITING
+from rocking_workbench.runs.process import LOG, RunProcess
+from rocking_workbench.runs.runner import Run
+from rocking_workbench.studies.study_folder import CAMPAIGN, CANCELLED, FAILED, INTERRUPTED, META, Meta, StudyFolder
 
 _WINDOW = 6.0
 _LEAST = 0.15
 
 _LONGEST_SENTENCE = 1000
-_LOG = logging.getLogger(__name__)
+_UNREADABLE = f"its {META} cannot be read; nothing was changed: mend it and start the server again, or delete the study"
 
 
 class StudyPace:
@@ -56,96 +51,44 @@ class StudyPace:
         return (after - before) / spent if spent > _LEAST else 0.0, self._pace
 
 
-class StudyProcess:
-    """A process group that computes a study."""
-
-    def __init__(self, folder: StudyFolder, workers: int) -> None:
-        self.folder = folder
-        command = [sys.executable, "-P", "-m", "rocking_workbench.studies.child", str(folder.path), str(workers)]
-        with (folder.path / LOG).open("ab") as log:
-            self._begin = log.tell()
-            self._process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log, cwd=folder.path,
-                start_new_session=True, env={**os.environ, "PYTHONUNBUFFERED": "1"},
-            )  # fmt: skip
-
-    @property
-    def code(self) -> int | None:
-        """Exit code; None while it runs, negative where a signal ended it."""
-        return self._process.poll()
-
-    def stop(self, patience: float = GRACE) -> int:
-        """Interrupt the process, and kill it after `patience` [s]; finished simulations are kept."""
-        if self._process.poll() is None:
-            with contextlib.suppress(OSError, ValueError):  # some systems have no such signal
-                self._process.send_signal(signal.SIGINT)
-            try:
-                self._process.wait(patience)
-            except subprocess.TimeoutExpired:
-                kill(self._process)
-        kill(self._process)
-        return self._process.wait()
-
-    def close(self) -> None:
-        """Close the pipe of the ended process."""
-        if self._process.stdin:
-            self._process.stdin.close()
-
-    def refusal(self) -> str:
-        """Return the reason of its end, or the path of its log."""
-        try:
-            with (self.folder.path / LOG).open("rb") as log:
-                log.seek(self._begin)
-                lines = log.read(1 << 20).decode(errors="replace").splitlines()
-        except OSError:
-            lines = []
-        for line in reversed(lines):
-            with contextlib.suppress(ValueError, TypeError, KeyError):
-                return str(json.loads(line)["error"]["message"])[:_LONGEST_SENTENCE]
-        how = "was ended by the system" if (self.code or 0) < 0 else "ended unexpectedly"
-        return f"the computation {how}; what was finished is safe, and its log is {Path(self.folder.id) / LOG}"
-
-
 @dataclass
-class HostedStudy:
+class HostedStudy(Run):
     """A study."""
 
-    folder: StudyFolder  # where it is
-    meta: Meta  # state on disk
-    process: StudyProcess | None = None  # who computes it now
+    GONE = "study not found; it may have been deleted"
+    FULL: ClassVar = {
+        "text": "{count} studies are queued", "hint": "try again when a study is finished", "seconds": 30
+    }  # fmt: skip
+    FILES = (META, CAMPAIGN)
+    NICE = 12
+
+    folder: StudyFolder
+    note: Meta
     begun: int = 0  # begun, done: histories of the rounds that have begun, and finished ones, at the last look [-]
     done: int = 0
     rate: float = 0.0  # histories per second at the last update [1/s]
     estimate: Estimate | None = None  # time that is left, at the last look; None while that is not known
-    cancelled: bool = False  # cancelled, left: whether a user wants it to stop, and whether it is being deleted
-    left: bool = False
-    unreadable: bool = False  # whether the files are unreadable: shown, and left unchanged
-    saved: bool = True  # whether the state is saved
+    unreadable: bool = False  # True if the state on the disk is unreadable, and left unchanged
     _pace: StudyPace = field(default_factory=StudyPace)
 
-    def begin(self, workers: int) -> None:
-        """Start to compute."""
-        self._pace, self.rate, self.estimate, self.cancelled = StudyPace(), 0.0, None, False
-        self.process = StudyProcess(self.folder, workers)
-        self.become(RUNNING)
+    @classmethod
+    def opened(cls, path: Path) -> Self:
+        """Return a study of an earlier server; an unreadable study is shown, and left unchanged."""
+        folder = StudyFolder(path)
+        created = instant(datetime.fromtimestamp(path.lstat().st_mtime, UTC))
+        unknown = Meta(f"study {path.name}", "unknown", created, 0, FAILED, _UNREADABLE)
+        meta = folder.read()
+        study = cls(folder, meta or unknown, unreadable=meta is None)
+        is_complete = study.look()
+        if study.note.state in {WAITING, RUNNING, INTERRUPTED}:
+            message = "the server was closed; finished simulations are kept, and the study continues"
+            study.become(*(DONE,) if is_complete else (WAITING, message))
+        return study
 
-    def become(self, state: str, message: str = "") -> None:
-        """Change the state in memory and on disk; `save` repeats a failed write."""
-        self.meta = replace(self.meta, state=state, message=message)
-        self.saved = False
-        self.save()
-        if not self.saved and not self.left:
-            _LOG.warning("the state of study %s could not be written; it is tried again", self.folder.id)
-
-    def save(self) -> None:
-        """Write an unsaved state; a full disk or a missing folder is ignored."""
-        if self.saved or self.left:
-            return
-        try:
-            self.folder.write(self.meta)
-            self.saved = True
-        except OSError as error:
-            self.saved = isinstance(error, FileNotFoundError)  # there is no folder to write it in, nor will there be
+    def begin(self) -> None:
+        """Forget the speed of an earlier process."""
+        self._pace, self.rate, self.estimate = StudyPace(), 0.0, None
+        super().begin()
 
     def look(self) -> bool:
         """Update the progress; return True if complete."""
@@ -159,36 +102,51 @@ class HostedStudy:
             self.estimate = None if status.work is None or not speed else status.work.at(speed)
         return complete
 
-    def end(self, *, closed: bool) -> None:
-        """Store the final state after the process has ended."""
-        process, self.process = self.process, None
-        if process is None:
-            return
-        process.close()
-        if self.look():
+    def finish(self, process: RunProcess | None, *, closed: bool) -> None:
+        """Set the final state."""
+        if process is not None and self.look():
             self.become(DONE)
         elif self.cancelled:
-            self.become(CANCELLED, "cancelled; finished simulations are kept, resume the study")
+            kept = "cancelled; finished simulations are kept, resume the study"
+            self.become(CANCELLED, "cancelled before the start" if process is None else kept)
+        elif process is None:
+            self.become(INTERRUPTED, "the server was closed before the study started; it starts with the next server")
         elif closed:
             self.become(
                 INTERRUPTED,
                 "the server was closed; finished simulations are kept, and the study continues with the next server",
             )
         else:
-            self.become(FAILED, process.refusal())
+            self.become(FAILED, self._reason(process))
+
+    def fail(self, reason: str) -> None:
+        """Set the state of a study that can be resumed."""
+        self.become(FAILED, f"{reason}; resume it")
+
+    def _reason(self, process: RunProcess) -> str:
+        """Return the refusal of the process, or the path of its log."""
+        if refusal := self.folder.refusal(process.log_start):
+            return str(refusal["message"])[:_LONGEST_SENTENCE]
+        how = "was ended by the system" if (process.code or 0) < 0 else "ended unexpectedly"
+        return f"the computation {how}; what was finished is safe, and its log is {Path(self.folder.id) / LOG}"
 
     @property
     def facts(self) -> dict[str, Any]:
         """State and progress for answers."""
-        running = self.meta.state == RUNNING
-        total = max(self.meta.histories, self.begun)  # total of an adaptive study: not known in advance
+        running = self.note.state == RUNNING
+        total = max(self.note.histories, self.begun)  # total of an adaptive study: not known in advance
         left = self.estimate if running else None
         return {
             "id": self.folder.id,
-            **asdict(self.meta),
+            **asdict(self.note),
             "histories": total,
             "histories_done": self.done,
             "rate": self.rate if running else None,
             "seconds_left": left and left.seconds,
             "seconds_left_between": left and [left.low, left.high],
         }
+
+
+def instant(time: datetime) -> str:
+    """Return a time as text."""
+    return time.isoformat(timespec="microseconds").replace("+00:00", "Z")

@@ -1,14 +1,9 @@
-"""A study on disk: identifier, data, job, records and campaign."""
+"""A study on disk: data, job, records and campaign."""
 
-import json
-import re
-import secrets
-import shutil
 import tomllib
-from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal
 
 import numpy as np
 from pydantic import TypeAdapter
@@ -20,28 +15,17 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.spec.schema import migrated
 from rocking_workbench.errors import NotFound
 from rocking_workbench.plain_text import record_file_name
+from rocking_workbench.runs.folder import WAITING, RunFolder
 
 if TYPE_CHECKING:
     from rocking_workbench.records import RecordStore
     from rocking_workbench.studies.job_document import JobDocument
 
-_ID = re.compile(r"[0-9a-f]{16}\Z")
-META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "records", "log.txt"
+META, JOB, CAMPAIGN, RECORDS = "meta.json", "job.toml", "campaign", "records"
 """Files and folders of a study."""
-
-WAITING, RUNNING, CANCELLED = "waiting", "running", "cancelled"
-INTERRUPTED, FAILED, DONE = "interrupted", "failed", "done"
-STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)  # states of a study
-
-
-def new_id() -> str:
-    """Return the name of a new study's folder."""
-    return secrets.token_hex(8)
-
-
-def is_id(text: str) -> bool:
-    """Return True if a text can be the name of a study folder."""
-    return _ID.match(text) is not None
+CANCELLED: Final = "cancelled"
+INTERRUPTED: Final = "interrupted"
+FAILED: Final = "failed"
 
 
 @dataclass(frozen=True)
@@ -52,24 +36,17 @@ class Meta:
     kind: str
     created: str  # when it was made, as of ISO 8601
     histories: int  # number of histories
-    state: str = WAITING  # one of `STATES`
+    state: Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"] = WAITING
     message: str = ""  # result message; empty if there is none
     project: str = ""  # to which it belongs, by its name in addresses; empty if to none
 
 
-_META = TypeAdapter(Meta)
-
-
-@dataclass(frozen=True)
-class StudyFolder:
+class StudyFolder(RunFolder):
     """The folder of a study."""
 
-    path: Path  # where it is; its name is that of the study
-
-    @property
-    def id(self) -> str:
-        """Name of the study in addresses."""
-        return self.path.name
+    NOTE: ClassVar = META
+    SCHEMA: ClassVar = 1
+    FORMAT: ClassVar = TypeAdapter(Meta)
 
     @property
     def campaign(self) -> Path:
@@ -80,22 +57,19 @@ class StudyFolder:
         from rocking.campaigns.jobs import Job
 
         try:
-            disk.make_folder(self.path)
-            self.path.chmod(0o700)
-            kept = {sha256: self._keep(sha256, records.path(sha256)) for sha256 in job.records}
-            disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
-            if not job.needs_long:
-                with np.errstate(all="ignore"):  # overflow gives infinity, which is rejected by its key
-                    count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
-                if count != meta.histories:
-                    raise InvalidValueError(
-                        "job has {count} histories, not {expected}", count=count, expected=meta.histories
-                    )
-            self.write(meta)
-        except BaseException as error:
-            shutil.rmtree(self.path, ignore_errors=True)
-            if isinstance(error, RockingError):
-                without_paths(error, self.path)
+            with self.new():
+                kept = {sha256: self._keep_record(sha256, records.path(sha256)) for sha256 in job.records}
+                disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
+                if not job.needs_long:
+                    with np.errstate(all="ignore"):  # overflow gives infinity, which is rejected by its key
+                        count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
+                    if count != meta.histories:
+                        raise InvalidValueError(
+                            "job has {count} histories, not {expected}", count=count, expected=meta.histories
+                        )
+                self.write(meta)
+        except RockingError as error:
+            without_paths(error, self.path)
             raise
 
     def asked(self) -> dict[str, Any]:
@@ -106,32 +80,6 @@ class StudyFolder:
                 motions["records"] = [Path(name).parent.name for name in motions["records"]]
         return tables
 
-    def _keep(self, sha256: str, source: Path) -> str:
-        """Link or copy a record into the study, and return its path in the study."""
-        name = f"{RECORDS}/{sha256}/{record_file_name(source.name)}"
-        target = self.path / name
-        disk.make_folder(target.parent)
-        try:
-            target.hardlink_to(source)
-        except OSError:
-            try:
-                shutil.copyfile(source, target)
-            except FileNotFoundError as error:
-                raise NotFound("a record of the job was deleted; upload the record again") from error
-        return name
-
-    def write(self, meta: Meta) -> None:
-        """Write the data of the study atomically."""
-        disk.write_new(self.path / META, (json.dumps(asdict(meta), indent=1) + "\n").encode())
-
-    def read(self) -> Meta | None:
-        """Return the data of the study; None if missing or unreadable."""
-        try:
-            meta = _META.validate_json((self.path / META).read_bytes(), strict=True)
-        except (OSError, ValueError):
-            return None
-        return meta if meta.state in STATES else None
-
     def status(self) -> tuple[CampaignStatus | None, bool]:
         """Return the progress of the campaign, None before its start, and True if complete."""
         if not (self.campaign / JOB).is_file():
@@ -139,20 +87,14 @@ class StudyFolder:
         campaign = status_of(self.campaign, verify=False)
         return campaign.status, campaign.complete
 
-    def ended(self) -> Meta | None:
-        """Return the data of the study at the start of the server; interrupted studies are queued."""
-        meta = self.read()
-        if meta is None or meta.state not in {WAITING, RUNNING, INTERRUPTED}:
-            return meta
+    def _keep_record(self, sha256: str, source: Path) -> str:
+        """Keep a record, and return its path in the study."""
+        name = f"{RECORDS}/{sha256}/{record_file_name(source.name)}"
         try:
-            complete = self.status()[1]
-        except (RockingError, OSError):
-            complete = False
-        message = "" if complete else "the server was closed; finished simulations are kept, and the study continues"
-        meta = replace(meta, state=DONE if complete else WAITING, message=message)
-        with suppress(OSError):  # ignore a full disk; the next start computes the state again
-            self.write(meta)
-        return meta
+            self.keep(name, source)
+        except FileNotFoundError as error:
+            raise NotFound("a record of the job was deleted; upload the record again") from error
+        return name
 
 
 def without_paths(error: RockingError, study: Path) -> RockingError:

@@ -12,11 +12,12 @@ from waiting import HANG
 
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking_workbench.records import RecordStore
+from rocking_workbench.runs.folder import new_id
 from rocking_workbench.settings import Limits
 from rocking_workbench.studies.finished import OpenStudy
 from rocking_workbench.studies.job_document import JobDocument
 from rocking_workbench.studies.manager import StudyManager
-from rocking_workbench.studies.study_folder import Meta, StudyFolder, new_id
+from rocking_workbench.studies.study_folder import Meta, StudyFolder
 
 Tables = dict[str, Any]
 

@@ -20,11 +20,11 @@ from rocking_workbench.errors import TooLarge
 from rocking_workbench.inputs import MOTION_KEYS
 from rocking_workbench.plain_text import shown
 from rocking_workbench.records import RecordStore
+from rocking_workbench.runs.folder import is_id, new_id
 from rocking_workbench.settings import Limits
 from rocking_workbench.studies import job_document
 from rocking_workbench.studies.job_document import JobDocument, launched_kinds
 from rocking_workbench.studies.manager import StudyManager
-from rocking_workbench.studies.study_folder import is_id, new_id
 
 EXAMPLES = examples.path("overturning-map").parent
 LAUNCHED = [

@@ -14,7 +14,7 @@ from rocking_workbench.settings import Limits
 from rocking_workbench.studies.finished import OpenStudy
 from rocking_workbench.studies.manager import StudyManager
 from rocking_workbench.studies.results import kept_result, result_of
-from rocking_workbench.studies.study import StudyPace
+from rocking_workbench.studies.study import HostedStudy, StudyPace
 
 Tables = dict[str, Any]
 
@@ -34,7 +34,7 @@ def test_cancel_leaves_no_process_and_resume_goes_on(manager, long_job, until):
     """What was finished when it was cancelled is not computed again; no process is left."""
     study = manager.create(None, long_job)
     until(manager, study, "running", done=1)
-    child = manager.queue.study(study).process
+    child = manager.queue.get(HostedStudy, study).process
     assert child is not None
     manager.cancel(study)
     facts = manager.get(study)
@@ -42,15 +42,11 @@ def test_cancel_leaves_no_process_and_resume_goes_on(manager, long_job, until):
     assert 0 < facts["histories_done"] < facts["histories"]
     with pytest.raises(ProcessLookupError):
         os.killpg(child._process.pid, 0)
-    before = {
-        path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
-    }
+    before = {path.name: path.stat().st_mtime_ns for path in (manager._folder / study).rglob("shards/*.shard")}
     manager.resume(study)
     until(manager, study, "running", done=facts["histories_done"] + 1)
     manager.cancel(study)
-    after = {
-        path.name: path.stat().st_mtime_ns for path in manager.queue.study(study).folder.path.rglob("shards/*.shard")
-    }
+    after = {path.name: path.stat().st_mtime_ns for path in (manager._folder / study).rglob("shards/*.shard")}
     assert before.items() <= after.items()
     assert manager.get(study)["histories_done"] > facts["histories_done"]
 
@@ -97,7 +93,7 @@ def test_a_server_that_was_killed_finds_its_studies(tmp_path, map_job, idle):
     for study in (running, complete):
         path = tmp_path / "studies" / study / "meta.json"
         path.write_text(json.dumps(json.loads(path.read_text()) | {"state": "running"}))
-    folder = manager.queue.study(complete).folder
+    folder = manager.queue.get(HostedStudy, complete).folder
     JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
     (tmp_path / "studies" / torn / "meta.json").unlink()
     (tmp_path / "studies" / ".deleted-x").mkdir()
@@ -223,14 +219,14 @@ def test_what_is_over_cannot_be_cancelled(manager, map_job, until):
 def test_listeners_are_told_until_they_leave(map_job, idle):
     """A change is told once to everybody who still listens."""
     manager, told = idle(), []
-    leave = manager.queue.subscribe(lambda: told.append(1))
+    listener = (HostedStudy, lambda: told.append(1))
+    manager.queue.listeners.add(listener)
     study = manager.create(None, map_job())
     manager.queue.publish()
     assert len(told) == 1
-    leave()
+    manager.queue.listeners.discard(listener)
     manager.cancel(study)
     assert len(told) == 1
-    assert manager.queue.watchers == 0
     manager.close()
 
 

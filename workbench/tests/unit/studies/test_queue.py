@@ -16,7 +16,7 @@ from waiting import HANG, wait_for
 
 from rocking.errors import RockingError
 from rocking_workbench.errors import NoRoom, NotFound, Refused
-from rocking_workbench.studies import queue as line
+from rocking_workbench.runs import runner
 from rocking_workbench.studies import router
 from rocking_workbench.studies.study import HostedStudy
 from rocking_workbench.studies.study_folder import StudyFolder
@@ -27,8 +27,8 @@ Tables = dict[str, Any]
 ORPHAN = """
 import signal, threading, time
 signal.signal(signal.SIGINT, signal.SIG_IGN)
-from rocking_workbench.studies import child
-threading.Thread(target=child.end_with_the_server, daemon=True).start()
+from rocking_workbench.runs.process import end_with_the_server
+threading.Thread(target=end_with_the_server, daemon=True).start()
 print("ready", flush=True)
 time.sleep(3000.0)
 """
@@ -44,7 +44,7 @@ def _told(manager, study):
 
 def test_a_full_disk_stops_no_other_study(manager, map_job, monkeypatch, until):
     """States that cannot be written are known all the same, and written once there is room; the next study runs."""
-    monkeypatch.setattr(line, "SAVE_AGAIN", 0.1)
+    monkeypatch.setattr(runner, "SAVE_AGAIN", 0.1)
     manager.queue._at_once = 0
     first, second = manager.create(None, map_job()), manager.create(None, map_job())
     with monkeypatch.context() as full:
@@ -87,7 +87,7 @@ def test_a_study_that_cannot_be_looked_at_stops_no_other(manager, map_job, monke
     look = HostedStudy.look
 
     def refuse(study):
-        if study.folder.id == first and study.process is None and study.meta.state == "running":
+        if study.folder.id == first and study.process is None and study.note.state == "running":
             raise ZeroDivisionError
         return look(study)
 
@@ -112,14 +112,14 @@ def test_what_was_deleted_does_not_come_back(tmp_path, map_job, idle):
     """A study that is deleted while it is put in line again is not there afterwards."""
     manager = idle()
     study = manager.create(None, map_job())
-    found = manager.queue.study(study)
+    found = manager.queue.get(HostedStudy, study)
 
     def crossed():
         manager.delete(study)
         return found
 
     with pytest.raises(NotFound):
-        manager.queue.enter(crossed)
+        manager.queue.enter(HostedStudy, crossed)
     found.become("waiting")
     assert manager.overview() == []
     assert list((tmp_path / "studies").iterdir()) == []
@@ -129,7 +129,7 @@ def test_a_late_end_does_not_end_the_next_process(manager, long_job, until):
     """Of two requests that cancel one process the slower one does not touch the process of a resume between them."""
     study = manager.create(None, long_job)
     until(manager, study, "running")
-    found = manager.queue.study(study)
+    found = manager.queue.get(HostedStudy, study)
     before = found.process
     assert before is not None
     manager.cancel(study)

@@ -130,7 +130,7 @@ def test_too_many_browsers_are_turned_away(client, monkeypatch):
         socket.receive_json()
         with pytest.raises(WebSocketDisconnect), client.websocket_connect(LIVE) as other:
             other.receive_json()
-    wait_for(lambda: not client.app.state.rocking.studies.queue.watchers)
+    wait_for(lambda: not client.app.state.rocking.studies.queue.listeners)
     with client.websocket_connect(LIVE) as socket:
         assert socket.receive_json() == {"studies": []}
 
