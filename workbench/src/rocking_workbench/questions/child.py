@@ -5,46 +5,24 @@ The process loads common modules until it reads a line with a folder and the arg
 its standard input is a pipe.
 """
 
-# ruff: noqa: F401 - modules that are imported ahead
 import json
 import os
 import sys
 import tempfile
 import threading
-from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from runpy import run_module
 from typing import Any
 
 _MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
+_COMMON = (
+    "typer", "rocking.spec.documents.prediction", "rocking.decision.prediction", "rocking.spec.construction",
+    "rocking.bodies.formats", "rocking.restitution.from_file", "matplotlib.backends.backend_pdf",
+    "matplotlib.backends.backend_svg", "scipy.signal", "rocking.plots.style", "trimesh", "rocking.reports",
+)  # fmt: skip
+"""Common modules, which a process loads before it has a command."""
 _SYSTEM = ("/usr", "/lib", "/lib64", "/opt", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/mime.types")
-
-
-def _imports() -> Iterator[None]:
-    """Import common modules step by step."""
-    import typer
-
-    import rocking.spec.documents.prediction
-
-    yield
-    import rocking.decision.prediction
-    import rocking.spec.construction
-
-    yield
-    import rocking.bodies.formats
-    import rocking.restitution.from_file
-
-    yield
-    import matplotlib.backends.backend_pdf
-    import matplotlib.backends.backend_svg
-    import scipy.signal
-
-    import rocking.plots.style
-
-    yield
-    import trimesh
-
-    import rocking.reports
 
 
 def main() -> None:
@@ -64,9 +42,9 @@ def main() -> None:
 
     threading.Thread(target=listen, daemon=True).start()
     _limit()
-    imports = _imports()
-    while not received.is_set() and next(imports, "done") is None:
-        pass
+    for module in _COMMON:
+        if not received.is_set():
+            import_module(module)
     received.wait()
     _answer(**json.loads(question))
 

@@ -13,7 +13,7 @@ from rocking_workbench.errors import Busy, NotFound
 from rocking_workbench.runs.folder import RUNNING, WAITING, RunFolder, folders_in
 from rocking_workbench.runs.process import RunProcess
 
-LOOK = 0.1  # interval between checks of running runs [s]
+LOOK = 0.2  # interval between checks of running runs [s]
 SAVE_AGAIN = 2.0  # time after which a state is written again that the disk did not take [s]
 IDLE = 900.0  # time without runs after which `at_idle` is called [s]
 _LOG = logging.getLogger(__name__)

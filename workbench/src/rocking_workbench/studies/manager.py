@@ -32,16 +32,14 @@ class StudyManager:
         folder: Path,
         limits: Limits,
         records: RecordStore,
-        runner: Runner | None = None,
-        *,
+        queue: Runner | None = None,
         workers: int | None = None,
-        at_once: int = 1,
     ) -> None:
         self._folder, self._limits, self._records = folder / "studies", limits, records
         self._workers = workers or processors()
         self.opened: Remembered[OpenStudy] = Remembered(_RESULTS, lambda study: study.size)
         self.answers: Remembered[bytes] = Remembered(_ANSWERS, len)
-        self.queue = runner or Runner(at_once)
+        self.queue = queue or Runner()
         self.queue.add(HostedStudy, self._folder, limits.studies_waiting, self._start)
 
     def create(self, name: str | None, job: object, project: str = "", *, brought: bool = False) -> str:

@@ -13,6 +13,7 @@ from waiting import HANG
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking_workbench.records import RecordStore
 from rocking_workbench.runs.folder import new_id
+from rocking_workbench.runs.runner import Runner
 from rocking_workbench.settings import Limits
 from rocking_workbench.studies.finished import OpenStudy
 from rocking_workbench.studies.job_document import JobDocument
@@ -75,7 +76,7 @@ def manager(tmp_path: Path, records: RecordStore) -> Iterator[StudyManager]:
 @pytest.fixture
 def idle(tmp_path: Path, records: RecordStore) -> Callable[..., StudyManager]:
     """Return a function that makes a manager which runs nothing, with some limits replaced."""
-    return lambda **limits: StudyManager(tmp_path, Limits(**limits), records, workers=1, at_once=0)
+    return lambda **limits: StudyManager(tmp_path, Limits(**limits), records, Runner(at_once=0), workers=1)
 
 
 @pytest.fixture(scope="session")

@@ -21,6 +21,7 @@ from rocking_workbench.inputs import MOTION_KEYS
 from rocking_workbench.plain_text import shown
 from rocking_workbench.records import RecordStore
 from rocking_workbench.runs.folder import is_id, new_id
+from rocking_workbench.runs.runner import Runner
 from rocking_workbench.settings import Limits
 from rocking_workbench.studies import job_document
 from rocking_workbench.studies.job_document import JobDocument, launched_kinds
@@ -260,7 +261,7 @@ def test_anything_in_any_place_is_refused_or_launched(place, value):
     inside[last] = value
     with tempfile.TemporaryDirectory() as folder:
         limits = Limits(histories=1000)
-        manager = StudyManager(Path(folder), limits, RecordStore(Path(folder), limits), workers=1, at_once=0)
+        manager = StudyManager(Path(folder), limits, RecordStore(Path(folder), limits), Runner(0), workers=1)
         refusal = _refusal(manager, job)
         assert folder not in refusal
         assert bool(refusal) != bool(list((Path(folder) / "studies").iterdir()))
@@ -269,7 +270,7 @@ def test_anything_in_any_place_is_refused_or_launched(place, value):
 
 def test_the_jobs_themselves_are_launched(tmp_path):
     """What is mutated is no wreck to begin with, and every place of it was reached."""
-    manager = StudyManager(tmp_path, Limits(), RecordStore(tmp_path, Limits()), workers=1, at_once=0)
+    manager = StudyManager(tmp_path, Limits(), RecordStore(tmp_path, Limits()), Runner(0), workers=1)
     assert len({manager.create(None, job) for job in JOBS}) == 3
     assert len(PLACES) == sum(1 for job in JOBS for _ in itertools.islice(_places(job), 1000)) > 60
     manager.close()
