@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import astuple, dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,9 @@ from rocking.restitution import ImpactGeometry
 from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import scatter
 from rocking.restitution.shifted_impulse import shifted
-from rocking.studies.sensitivity.restitutions import SampledRestitution
+
+if TYPE_CHECKING:
+    from rocking.studies.sensitivity.restitutions import SampledRestitution
 
 _POINTS = 1025
 _GRID = 2001
@@ -126,7 +128,7 @@ class RestitutionDistribution:
         """
         return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))), foot)
 
-    def per_history(self, seed: int) -> SampledRestitution:
+    def per_history(self, seed: int) -> "SampledRestitution":
         """Return a restitution with one sampled coefficient per history.
 
         Both feet have the same probability: a high coefficient on one foot means a high one on the other.
@@ -141,6 +143,8 @@ class RestitutionDistribution:
         SampledRestitution
             Restitution for `simulate`, maps, spectra and fragility analyses.
         """
+        from rocking.studies.sensitivity.restitutions import SampledRestitution
+
         return SampledRestitution(dict(self.tables), seed, cut=(self.cut["left"], self.cut["right"]))
 
     def per_impact(self, seed: int) -> RandomRestitution:

@@ -50,6 +50,21 @@ def test_json_is_the_python_call(run):
     assert json.loads(out) == plain(found.answer().plain())
 
 
+def test_a_class_of_bodies_is_no_file(printed, run):
+    """The class of a body is a value of the model error; other text is the path of a file."""
+    given = (*SIZE, PULSE, "--friction", "0.6", *FEW, "--json")
+    texts = {}
+    for kind in ("machined", "object"):
+        texts[kind] = json.loads(printed(*given, "--set", f"predict.model_error={kind}"))["inputs"]["model_error"]
+        assert texts[kind] == rk.predict(
+            rk.Block(width=0.5, height=2.0), rk.pulses.sine(4.2, 0.8), friction=0.6, model_error=kind, count=16
+        ).inputs["model_error"]  # fmt: skip
+    assert texts["machined"] != texts["object"]
+    code, _, err = run(*given, "--set", "predict.model_error=sculpture")  # negative control: no class
+    assert code != 0
+    assert "sculpture" in err
+
+
 def test_a_file_says_everything(printed, tmp_path):
     path = tmp_path / "question.toml"
     path.write_text(FILE, "utf-8")
