@@ -114,9 +114,8 @@ _LIMITS = (
         " of a building, a pedestal or a shelf."
     ),
     Message(
-        "The direction of a motion to an object is unknown. Each motion acts once along the width and once along the "
-        "depth; the worse direction decides. Simultaneous rocking in both directions, twisting and rolling on the rim "
-        "of a round base are not computed."
+        "Each motion acts once along the width and once along the depth; the worse direction decides. Simultaneous "
+        "rocking in both directions, twisting and rolling on the rim of a round base are not computed."
     ),
     Message(
         "Each direction is a body of the outer size on the base of the list. The default height of the centre of mass"
