@@ -5,7 +5,7 @@ const OURS = ["token", "in", "view"];
 /** Content of the fragment as an object. @returns {{ [key: string]: string | undefined }} */
 export const read = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
 
-/** Whether a fragment is for the application: empty, or with one of its words.
+/** True if a fragment is for the application: it is empty, or begins with a name of the application.
  * @param {{ [key: string]: string | undefined }} parts */
 export const isOurs = (parts) => !Object.keys(parts).length || OURS.some((key) => parts[key] !== undefined);
 

@@ -1,4 +1,4 @@
-/** The page of the API: reads the server's own schema and shows it, with calls to copy. */
+/** Page of the API: shows the schema of the server, with calls to copy. */
 
 import { html, render, useSignal } from "/parts/preact.js";
 import { call } from "/app/api.js";

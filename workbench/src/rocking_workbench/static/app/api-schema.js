@@ -21,7 +21,7 @@ const EXAMPLES = {
   },
 };
 
-/** Every operation of a schema, in its order. @param {any} schema */
+/** All operations of a schema, in their order. @param {any} schema */
 export const operationsOf = (schema) =>
   Object.entries(schema.paths).flatMap(([path, item]) =>
     METHODS.filter((method) => item[method])

@@ -4,7 +4,7 @@
 
 const KEY_HELP = "The file api-key in the data folder contains the key. Each start writes a new key.";
 
-/** The same call in every language: [{value, text, code}]. @param {Operation} operation @param {string} origin */
+/** A call in each language: [{value, text, code}]. @param {Operation} operation @param {string} origin */
 export const snippetsOf = (operation, origin) => [
   { value: "curl", text: "curl", code: curl(operation, origin) },
   { value: "python", text: "Python", code: python(operation, origin) },

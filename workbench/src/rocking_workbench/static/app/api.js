@@ -1,9 +1,9 @@
-/** The one door to the server: JSON calls, calls where only the newest counts, and files to keep. */
+/** All communication with the server: JSON calls, calls where only the newest counts, and files to keep. */
 
 import { spelt } from "/app/refusal.js";
 import { learnMessages, t } from "/app/words.js";
 
-/** A refusal of the server, in its own words. */
+/** Error of the server, with the text of the server. */
 export class ApiError extends Error {
   /** @param {number} status @param {{ kind?: string, message?: string, needs?: string[], [more: string]: any }} [details] */
   constructor(
@@ -25,7 +25,7 @@ export const call = async (path, options) => {
 /** A file of the server as a blob. @param {string} path */
 export const fetchFile = async (path) => (await send(path)).blob();
 
-/** Call by POST and let only the newest call of a key follow the one in flight.
+/** Call by POST; of several waiting calls with one key only the newest is sent.
  * @type {<const Path extends string>(key: string, path: Path, json: unknown) => Promise<Server.Answer<"POST", Path>>} */
 export const latest = (key, path, json) =>
   new Promise((resolve, reject) => {
@@ -37,10 +37,10 @@ export const latest = (key, path, json) =>
     if (!line.busy) follow(line);
   });
 
-/** Whether an error is the abort by a newer call. @param {any} error */
+/** True if a newer call caused the abort. @param {any} error */
 export const superseded = (error) => error?.name === "AbortError";
 
-/** Save the answer as a file; the server's file name wins over the fallback.
+/** Save the result as a file; the file name of the server has priority.
  * @param {string} path @param {unknown} [json] @param {string} [fallbackName] */
 export const download = async (path, json, fallbackName) => {
   const answer = await send(path, json === undefined ? { method: "GET" } : { json });

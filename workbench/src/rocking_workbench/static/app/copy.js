@@ -1,4 +1,4 @@
-/** Tables to the clipboard: tab-separated, every digit, as Excel takes them. */
+/** Tables to the clipboard: tab-separated text with all digits, for Excel. */
 
 import { say } from "/app/say.js";
 import { t } from "/app/words.js";

@@ -1,4 +1,4 @@
-/** Building HTML and SVG from script: no markup is ever parsed from text. */
+/** Creation of HTML and SVG elements; text is never parsed as markup. */
 
 import { attributesInWords, childrenInWords } from "/app/words.js";
 
@@ -15,7 +15,7 @@ export const el = (tag, attributes, ...children) => furnish(
 export const svg = (tag, attributes, ...children) =>
   furnish(document.createElementNS(SVG, tag), attributes, children);
 
-/** Replace everything inside a node.
+/** Replace the content of a node.
  * @type {<Place extends Element | DocumentFragment>(node: Place, ...children: Child[]) => Place} */
 export const fill = (node, ...children) => {
   node.replaceChildren();
@@ -31,7 +31,7 @@ export const set = (node, attributes) => {
 
 let count = 0;
 
-/** A fresh id, to tie labels and descriptions to their fields. @param {string} stem */
+/** New id, which connects labels and descriptions with their fields. @param {string} stem */
 export const freshId = (stem) => `${stem}-${(count += 1)}`;
 
 const PROPERTIES = new Set(["value", "checked", "disabled", "hidden", "indeterminate", "open", "readOnly"]);

@@ -1,13 +1,13 @@
-/** Extremes of data: a call that takes all values as its arguments ends at some 100,000 of them. */
+/** Extremes of data. `Math.max(...values)` fails for about 100,000 values. */
 
-/** Largest of some values, at least `most`; NaN is ignored.
+/** Largest value, and not less than `most`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [most] */
 export const highest = (values, most = -Infinity) => {
   for (const value of values) if (value !== null && value > most) most = value;
   return most;
 };
 
-/** The smallest of some values, not above `least`.
+/** Smallest value, and not more than `least`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [limit] */
 export const lowest = (values, limit = Infinity) => {
   for (const value of values) if (value !== null && value < limit) limit = value;

@@ -1,4 +1,4 @@
-/** Properties of the body, requested once per change of the body, for all views. */
+/** Properties of the body for all views, requested once per change of the body. */
 
 import { superseded } from "/app/api.js";
 

@@ -18,14 +18,14 @@ const mark = (input, label, text) => {
   tell();
 };
 
-// Only fields that someone can see count: those of a shape or a choice that was left are gone.
+// Only visible fields count; the fields of a former shape or choice do not exist any more.
 /** @param {Element} input */
 const counts = (input) => input.isConnected && !input.closest("[hidden]:not([role=tabpanel])");
 
 /** @param {Element} input */
 const viewOf = (input) => input.closest("[role=tabpanel]")?.id.replace("view-", "") ?? "";
 
-/** Every field in error: {label, text, view, input}; of one view, or `inputs` for all but the studies.
+/** All fields with errors: {label, text, view, input}; of one view, or with `inputs` of all views except the studies.
  * @param {Which} [which] */
 const list = ({ inputs = false, view } = {}) =>
   [...faultsByInput].filter(([input]) => counts(input))
@@ -50,5 +50,5 @@ const subscribe = (watcher) => {
   return () => watchers.delete(watcher);
 };
 
-/** The register that every field of the page writes to. */
+/** Register of the errors of all fields. */
 export const faults = { mark, list, any, sentence, subscribe, refresh: tell };

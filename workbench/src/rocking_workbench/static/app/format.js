@@ -1,5 +1,5 @@
-/** Numbers as people read them: the decimal mark of their language, a real minus sign, thin spaces, powers of ten.
- * Inputs, files, links and code have points: they take numbers as they are. */
+/** Numbers for readers: decimal mark of the language, minus sign, thin spaces, powers of ten.
+ * Inputs, files, links and code use decimal points. */
 
 import { language } from "/app/language.js";
 
@@ -9,7 +9,7 @@ const NONE = "\u2013";
 const MARK = new Intl.NumberFormat(language).formatToParts(0.5).find(({ type }) => type === "decimal")?.value ?? ".";
 const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
-/** A number with so many significant digits.
+/** Number with a number of significant digits.
  * @param {number | string | null | undefined} value @param {number} [digits] */
 export const number = (value, digits = 4) => {
   if (value === null || value === undefined || !Number.isFinite(Number(value))) return NONE;
@@ -20,13 +20,13 @@ export const number = (value, digits = 4) => {
   return numeric < 0 ? MINUS + text : text;
 };
 
-/** A number with so many decimals. @param {number} value @param {number} digits */
+/** Number with a number of decimals. @param {number} value @param {number} digits */
 export const fixed = (value, digits) => {
   const text = Math.abs(value).toFixed(digits);
   return (value < 0 && Number(text) > 0 ? MINUS : "") + text.replace(".", MARK);
 };
 
-/** Numbers in one line, with a separator that none of them contains. @param {(number | string)[]} values */
+/** Numbers in one line, with a separator that the numbers do not contain. @param {(number | string)[]} values */
 export const numbers = (values) => values.map((value) => number(value)).join(MARK === "," ? "; " : ", ");
 
 /** A number and its unit; a pure number has the unit "" or "-".

@@ -1,4 +1,4 @@
-/** The one document of everything the user chose: frozen, watched, and carried by a link. */
+/** Document of all inputs of the user: immutable, observable, and part of links. */
 
 import { inputsOf } from "/app/shape.js";
 
@@ -40,9 +40,9 @@ export const createInputs = (start) => {
   };
   return {
     get: () => current,
-    /** Whether this tab held inputs before it was loaded. */
+    /** True if this tab had inputs before it was loaded. */
     wereKept,
-    /** Load the inputs of a project; nothing is set aside. @param {Server.Inputs} document */
+    /** Load the inputs of a project; the present inputs are discarded. @param {Server.Inputs} document */
     take: (document) => {
       put(null);
       replace(document);
@@ -53,7 +53,7 @@ export const createInputs = (start) => {
       const [before, next] = [/** @type {any} */ (current), changedAt(current, path.split("."), value)];
       if (JSON.stringify(next[top]) !== JSON.stringify(before[top])) become(next, new Set([top]));
     },
-    /** Show inputs from elsewhere; the user's own go aside: {inputs, label, mine}, or null while there are none.
+    /** Show other inputs and keep those of the user: {inputs, label, mine}; null if there are no others.
      * @param {Server.Inputs} document @param {string} text */
     lend: (document, text) => {
       const own = aside?.mine ? aside.inputs : current;
@@ -83,14 +83,14 @@ export const createInputs = (start) => {
   };
 };
 
-/** The inputs as a part of a link. @param {Server.Inputs} inputs */
+/** Inputs as text in a link. @param {Server.Inputs} inputs */
 export const encode = (inputs) => {
   const bytes = new TextEncoder().encode(JSON.stringify(inputs));
   const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
   return text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 };
 
-/** The inputs of a link; null if the text is none. @param {string} text */
+/** Inputs of a link; null if the text is not valid. @param {string} text */
 export const decode = (text) => {
   try {
     const raw = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
@@ -123,11 +123,11 @@ export const keep = (key, value) => {
   try {
     sessionStorage.setItem(key, JSON.stringify(value));
   } catch {
-    // A browser that keeps nothing still works; only a reload forgets.
+    // Browsers without storage work too; a reload discards their inputs.
   }
 };
 
-/** A tree with one value changed, at a path of keys; undefined takes it away, and makes no table where there is none.
+/** Tree with one changed value at a path of keys; undefined removes the value and does not create tables.
  * @param {any} tree @param {string[]} path @param {unknown} value @returns {any} */
 export const changedAt = (tree, [key, ...path], value) => {
   const next = { ...(tree ?? {}) };

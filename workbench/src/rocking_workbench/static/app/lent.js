@@ -4,7 +4,7 @@ import { html, render, signal } from "/parts/preact.js";
 import { Button, Note } from "/parts/fields.js";
 import { t } from "/app/words.js";
 
-/** Show above the views whose inputs are loaded, with a button to exchange them.
+/** Show the origin of the loaded inputs above the views, with a button to exchange them.
  * @param {Element} views @param {App["inputs"]} inputs */
 export const mountLent = (views, inputs) => {
   const aside = signal(inputs.aside());

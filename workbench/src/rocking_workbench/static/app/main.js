@@ -1,6 +1,6 @@
-/** The start: sign in, read the link, build the app object, show the first view. */
+/** Start: sign in, read the link, create the app object, show the first view. */
 
-import { t } from "/app/words.js"; // first: other modules translate their texts with it
+import { t } from "/app/words.js"; // loaded first, because other modules translate their texts with it
 import { language } from "/app/language.js";
 import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
@@ -56,7 +56,7 @@ const createApp = (inputs, info) => {
     const parts = new URLSearchParams({ in: encode(app.inputs.get()), view: app.view() });
     return `${location.origin}/#${parts}`;
   };
-  // A file of inputs that are not those on the screen would mislead whoever gets it.
+  // The file must contain the inputs on the screen.
   app.download = async (path, json, name) => {
     const wrong = json === undefined ? "" : faults.sentence({ inputs: true });
     if (wrong) return say(t("Not saved. Correct these inputs first: {faults}", { faults: wrong }), "error");
@@ -85,7 +85,7 @@ const run = (app, view) => {
   mountProject(document.getElementById("project"), app.project, app);
   mountLent(/** @type {Element} */ (document.querySelector(".views")), app.inputs);
   tabs.show(view && tabs.names.includes(view) ? view : "body");
-  steps.inert = false; // until here a click would have been lost
+  steps.inert = false; // clicks before this line have no effect
   document.body.dataset.started = "true";
   followAddress(app, tabs);
   signingIn(app, views, tabs);

@@ -5,7 +5,7 @@ import { decode } from "/app/inputs.js";
 import { showDoor, exchange } from "/app/session.js";
 import { t } from "/app/words.js";
 
-/** Follow the address from now on: Back, Forward and links pasted into the tab.
+/** Observe the address: Back, Forward and links pasted into the tab.
  * @param {App} app @param {ReturnType<typeof import("/app/tabs.js").createTabs>} tabs */
 export const followAddress = (app, tabs) => {
   const follow = async () => {
@@ -22,7 +22,7 @@ export const followAddress = (app, tabs) => {
   addEventListener("hashchange", follow);
 };
 
-/** The words when a link's inputs cannot be read. */
+/** Message if the inputs of a link cannot be read. */
 export const UNREADABLE = "The link contains no readable inputs";
 
 /** @param {App} app @param {string} shared */

@@ -1,10 +1,10 @@
-/** When the server stops answering: look for it now and then, and ask again once it is back. */
+/** If the server does not respond: try at intervals, and request the data when it responds. */
 
 import { call } from "/app/api.js";
 
 const EVERY = 2_000;
 
-/** Run a function whenever the server answers again after it did not. @param {() => unknown} again */
+/** Run a function when the server responds again. @param {() => unknown} again */
 export const whenBack = (again) => {
   let looking = false;
   const look = async () => {

@@ -1,11 +1,11 @@
-/** Large tables of answers, which come as bytes. */
+/** Large tables of results, received as bytes. */
 
 /** @type {{ [kind: string]: any }} */
 const KINDS = {
   uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, int16: Int16Array, int32: Int32Array, float32: Float32Array,
 };
 
-/** An answer in which every packed table can be read as others are: rows of rows of rows.
+/** Result with unpacked tables: nested arrays of rows.
  * @param {any} answer @returns {any} */
 export const unpacked = (answer) => Object.fromEntries(Object.entries(answer).map(
   ([name, value]) => [name, value?.base64 === undefined ? value : rowsOf(value)],

@@ -1,4 +1,4 @@
-/** Names, colours and dashes of the restitution models, as the server states them, and looks of all that is none. */
+/** Names, colours and dashes of the restitution models from the server, and styles of other curves. */
 
 import { svg } from "/app/dom.js";
 import { t } from "/app/words.js";
@@ -6,7 +6,7 @@ import { t } from "/app/words.js";
 /** @type {Map<string, Server.ModelFacts>} */
 const models = new Map();
 
-/** Register the models of the server; once, before the first drawing. @param {Server.ModelFacts[]} facts */
+/** Register the models of the server, once before the first drawing. @param {Server.ModelFacts[]} facts */
 export const learnModels = (facts) => {
   models.clear();
   for (const model of facts) models.set(model.name, model);
@@ -29,7 +29,7 @@ export const modelStyle = (label) => {
   return model?.colour ? model : spare(String(label));
 };
 
-/** The model's name in words, with its parameter if it has one. @param {string | number} label */
+/** Title of the model, with its parameter if it has one. @param {string | number} label */
 export const modelWords = (label) => {
   const text = String(label);
   const name = models.get(family(text))?.short_name;
@@ -56,7 +56,7 @@ export const dashKey = ({ colour, dash = [], dots = false }) => {
 const ANGLES = ["#7F5CB9", "#69994D", "#8C6900", "#C6317C", "#237F8C", "#796E5B"];
 const DASHES = [[], [9, 3], [3, 3], [9, 3, 3, 3], [6, 2], [2, 2, 6, 2]];
 
-/** Look of a curve of one of several angles: the model's own, or a colour of the angle that no model has.
+/** Style of the curve of an angle: that of its model, or a colour that no model has.
  * @param {string} model @param {number} index @param {{ angles: number, models: number }} given2 */
 export const angleStyle = (model, index, { angles, models }) => {
   const own = modelStyle(model);
@@ -65,13 +65,13 @@ export const angleStyle = (model, index, { angles, models }) => {
   return { colour: ANGLES[at], dash: models < 2 ? DASHES[at] : own.dash };
 };
 
-/** Colour for the n-th of several curves that are no models. @param {number} index @returns {Look} */
+/** Colour of the n-th curve that is not of a model. @param {number} index @returns {Look} */
 export const seriesStyle = (index) => {
   const looks = [...models.values()].filter(({ colour }) => colour);
   return looks[index % looks.length];
 };
 
-/** Marker and words of the groups of published measurements. */
+/** Markers and titles of the groups of published measurements. */
 /** @type {{ [group: string]: { marker: string, label: string } | undefined }} */
 export const GROUPS = {
   table1: { marker: "square", label: "literature (Table 1)" },

@@ -1,4 +1,4 @@
-/** Refusals of the server as texts of the page: names of fields, regions from 1, units of the page. */
+/** Errors of the server as texts of the page: names of fields, regions from 1, units of the page. */
 
 import { number, numbers, pretty } from "/app/format.js";
 import { t, messageText } from "/app/words.js";
@@ -9,8 +9,8 @@ const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 const FIELDS = { "settings.gravity": "gravity", "body.units": "unit of length", "motion.time_step": "time between two samples", "motion.units": "unit",
   time_step: "time between two samples", units: "unit" };
 
-/** A refusal in plain words, the field of the body that it is about, and where in the drawing it is; lengths are in the
- * unit of the body. @param {any} error @param {Server.BodyInput} [body] */
+/** Text of an error, its field of the body, and its location in the drawing; lengths are in the unit of the body.
+ * @param {any} error @param {Server.BodyInput} [body] */
 export const inPlainWords = (error, body) => {
   if (!error.text) error.message = capital(t(error.message));
   if (!error.text) return;
@@ -36,16 +36,16 @@ export const whyLeftOut = ({ reason, hint, to_state: path }) => {
   return hint ? t("{fault}; {hint}", { fault: reason, hint }) : t(reason);
 };
 
-/** A message as the page spells its facts. @param {any} message
+/** Message with its values in the notation of the page. @param {any} message
  * @param {Server.BodyInput["units"]} [units] @returns {string} */
 export const spelt = (message, units = "m") => {
   const kinds = Object.values(message.facts);
-  if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for it
+  if (kinds.some((fact) => fact?.kind === "writtenfile")) return ""; // the page has a button for this
   const way = kinds.map((fact) => (fact?.kind === "option" ? WAYS[fact.path] : undefined)).find(Boolean);
   return way ? t(way) : messageText(message, (fact) => spelling(fact, units));
 };
 
-/** Files, with their lines, and steps in which something is refused. @param {Required<Server.Refusal>} refusal @returns {string[]} */
+/** Files with their lines, and steps, with errors. @param {Required<Server.Refusal>} refusal @returns {string[]} */
 const outerPlaces = ({ places }) => places.filter(({ kind }) => kind === "file" || kind === "step")
   .map(({ name, kind, number: line }) => (kind === "file" && line ? `${name}, ${t("line {number}", { number: line })}` : name));
 
@@ -58,9 +58,9 @@ export const refusalWords = (refusal) => {
   return hint && isWay ? t("{location}: {fault}", { location: fault, fault: hint }) : hint ? t("{fault}; {hint}", { fault, hint }) : fault;
 };
 
-/** The key of a form that a refusal is about. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
+/** Key of the form with the error. @param {Required<Server.Refusal>} refusal @returns {string | undefined} */
 export const keyOf = (refusal) => {
-  const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the field is that of a key of one file
+  const ofOneFile = /^motions\[\d+\]\.files\.(.+\.\w+)$/.exec(refusal.parameter)?.[1]; // the field is of a key of one file
   return (ofOneFile ?? nameOf(refusal.parameter)).toLowerCase() || undefined;
 };
 
@@ -125,7 +125,7 @@ const range = ({ low, high, low_open: lowOpen, high_open: highOpen, unit }, unit
   return t("in {interval}", { interval: `${lowOpen ? "(" : "["}${numbers([low / scale, high / scale])}${highOpen ? ")" : "]"}${behind}` });
 };
 
-/** Where in the drawing a refusal is: a point in metres (x or y may be unknown), regions and a hole by their index.
+/** Location of an error in the drawing: a point in metres (x or y may be unknown), regions and a hole by index.
  * @param {Required<Server.Refusal>} error */
 const placeOf = (error) => {
   const { x, y, first, second, ring } = error.facts;
@@ -136,7 +136,7 @@ const placeOf = (error) => {
   return location.x === undefined && location.y === undefined && !regions.length ? null : location;
 };
 
-/** The region of a section in which something is refused. @param {Required<Server.Refusal>} error @returns {number | undefined} */
+/** Region of a section with an error. @param {Required<Server.Refusal>} error @returns {number | undefined} */
 const regionOf = (error) => {
   const index = [...error.places.map(({ name }) => name), error.parameter].map(indexOf).find((position) => position !== undefined);
   return index;

@@ -7,7 +7,7 @@ const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
 let timer = 0;
 let shownText = "";
 /** @type {HTMLElement | null} */
-let kept = null; // it may have gone with the dialog that it was in
+let kept = null; // a closed dialog may have removed the line
 const statusLine = () => (kept ??= document.getElementById("status"));
 
 /** Show a text in the status line. @param {string} text @param {string} [kind] */

@@ -1,4 +1,4 @@
-/** Signing in: a one-time link from the terminal becomes a cookie that no script can read. */
+/** Sign-in: exchange the one-time link from the terminal for a cookie that scripts cannot read. */
 
 import { html, render, signal, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { call } from "/app/api.js";
@@ -33,7 +33,7 @@ export const showDoor = (message) => {
   onSignedIn(() => location.reload());
 };
 
-// Over the running application: typed and drawn inputs are kept.
+// Sign-in over the running application: typed and drawn inputs are kept.
 const openOver = () => {
   const close = over("Sign in again", html`<${Door} running />`, { stays: true });
   const look = async () => {
@@ -49,7 +49,7 @@ const openOver = () => {
   });
 };
 
-/** A dialog over the page; returns how to close it.
+/** Dialog over the page; returns a function that closes it.
  * @param {string} label @param {VNode} content @param {{ stays?: boolean }} [how] */
 const over = (label, content, { stays = false } = {}) => {
   const holder = document.body.appendChild(document.createElement("div"));
@@ -89,7 +89,7 @@ const Door = ({ running = false }) => {
     </form>`;
 };
 
-/** Show a new one-time link for another browser, on the clipboard where that is allowed. @param {App} app */
+/** Show a new one-time link for another browser, and copy it if the browser allows that. @param {App} app */
 export const linkForAnother = async (app) => {
   const { url } = await app.call("session/link", { method: "POST" });
   const close = over("Link for another browser", html`<${Another} app=${app} url=${url} close=${() => close()} />`);

@@ -1,10 +1,10 @@
-/** Inputs that come from outside, checked before a view reads them: the right kinds in the right places. */
+/** Inputs from other sources: their types are checked before a view reads them. */
 
 import { SHAPES } from "/app/shapes.js";
 
 const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
 
-/** The inputs of a document from outside, empty tables left out; null if they cannot be such a document.
+/** Inputs of a document from another source, without empty tables; null if the document is not valid.
  * @param {unknown} document @returns {Server.Inputs | null} */
 export const inputsOf = (document) => {
   if (!isTable(document)) return null;

@@ -1,6 +1,6 @@
-/** The steps as tabs: arrow keys move between them, as the ARIA practice has it. */
+/** Steps as tabs; arrow keys move between them, by the ARIA practice. */
 
-/** Wire tabs to panels; calls onShow(name, before, quiet) after a change, and returns {show, current}.
+/** Connect tabs and panels; calls onShow(name, before, quiet) after a change, and returns {show, current}.
  * @param {HTMLElement} list @param {(name: string, before: string | null, quiet: boolean) => unknown} onShow */
 export const createTabs = (list, onShow) => {
   const tabs = /** @type {HTMLElement[]} */ ([...list.querySelectorAll("[role=tab]")]);

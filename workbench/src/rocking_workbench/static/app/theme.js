@@ -1,5 +1,5 @@
-/** Light or dark: the system's choice, or the user's, kept in this browser. */
-// A classic script, loaded before the first paint so that the page never flashes.
+/** Light or dark theme: the setting of the system, or of the user in this browser. */
+// A classic script, loaded before the first paint, so that the page does not flash.
 
 (() => {
   const KEY = "rocking.theme";
@@ -23,7 +23,7 @@
     try {
       localStorage.setItem(KEY, root.dataset.theme === "dark" ? "light" : "dark");
     } catch {
-      // Nothing is kept; the choice lasts for nothing but this page.
+      // Without storage the choice applies to this page only.
     }
     apply();
   };

@@ -5,7 +5,7 @@ import { Button, Note } from "/parts/fields.js";
 import { html } from "/parts/preact.js";
 import { t } from "/app/words.js";
 
-/** Keeper of views: show(name, before) mounts them. @param {App} app */
+/** Set of views: show(name, before) mounts them. @param {App} app */
 export const createViews = (app) => {
   const mounted = new Map();
   /** @param {string} name */

@@ -5,15 +5,15 @@ import { KEY, NAMES, choose, language } from "/app/language.js";
 
 const ATTRIBUTES = ["aria-label", "title", "placeholder", "alt", "aria-description", "aria-valuetext", "label"];
 const UNTOUCHED = ["pre", "code", "textarea", "script", "style"]; // elements with unchanged text
-const PLACE = /\{(\w+)(!r)?(?::\.?(\d*)(\w?))?\}/g; // {name}, {name:.3g} of a number, {name!r:.40} of a name in quotes
+const PLACE = /\{(\w+)(!r)?(?::\.?(\d*)(\w?))?\}/g; // fields: {name}, {name:.3g} for a number, {name!r:.40} for a name in quotes
 
 /** @type {Map<string, string | string[]>} */
-const catalogue = new Map(); // translations by their English texts; of a text with plural forms a list of them
+const catalogue = new Map(); // translations by their English texts; a list if a text has plural forms
 
 const plurals = new Intl.PluralRules(language);
 const lists = new Intl.ListFormat(language === "en" ? "en-GB" : language);
 
-/** An English text in the language of the page, with its facts; of [singular, plural] the form for the fact `count`.
+/** Translation of an English text with its values; for [singular, plural] the form for the value `count`.
  * @param {string | [string, string]} text @param {{ [name: string]: any }} [facts] @returns {string} */
 export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), facts) : translatedText(/** @type {string} */ (text)));
 
@@ -22,7 +22,7 @@ export const t = (text, facts) => (facts ? filled(formOf(text, facts.count), fac
 /** A message of the server. @param {Message} message @param {(fact: any) => string} spelling */
 export const messageText = ({ text, many, context, facts }, spelling) => filled(formOf(many ? [text, many] : text, facts.count, context), facts, spelling);
 
-/** A text in the language of the page without its places filled.
+/** Translation of a text; its fields are not filled.
  * @param {string | [string, string]} text @param {number} [count] @param {string} [context] @returns {string} */
 const formOf = (text, count = 1, context = "") => {
   const singular = typeof text === "string" ? text : text[0];
@@ -38,14 +38,14 @@ const filled = (form, facts, spelling = spelled) => form.replace(PLACE, (match, 
   return spelling(facts[name]);
 });
 
-// A word in a place has its translation too.
+// A word in a field is translated too.
 /** @param {any} fact @returns {string} */
 const spelled = (fact) => (typeof fact === "string" ? translatedText(fact) : String(fact));
 
 /** Name of a user in a text: t() does not translate it. @param {string} name */
 export const userText = (name) => new String(name);
 
-/** Learn the messages of an answer, so that their sentences are found.
+/** Register the messages of a result, so that their sentences are translated.
  * @param {any} answer @param {(message: any) => string} spelling */
 export const learnMessages = (answer, spelling) => {
   if (!catalogue.size) return;
@@ -57,10 +57,10 @@ const locale = navigator.languages.find((code) => code.slice(0, 2) === language)
 /** A date and its time of day. @param {string} time */
 export const dateTime = (time) => new Date(time).toLocaleString(locale, { dateStyle: "medium", timeStyle: "short" });
 
-/** Some parts as one list: a, b and c. @param {string[]} parts */
+/** Items as one list: a, b and c. @param {string[]} parts */
 export const listed = (parts) => lists.format(parts);
 
-/** A text of the page in its language, with the spaces around it. @param {string} text */
+/** Translation of a text of the page, with the surrounding spaces. @param {string} text */
 const translatedText = (text) => {
   const bare = text.trim();
   const translated = bare && catalogue.get(bare.replace(/[ \n\t]+/g, " "));
@@ -71,11 +71,11 @@ const translatedText = (text) => {
  * @type {<Of>(tag: unknown, attributes: any, children: readonly Of[]) => readonly Of[]} */
 export const childrenInWords = (tag, attributes, children) => (!catalogue.size || stays(tag, attributes) ? children : children.map(inWords));
 
-/** The attributes of an element in the language of the page. @param {unknown} tag @param {any} attributes */
+/** Translate the attributes of an element. @param {unknown} tag @param {any} attributes */
 export const attributesInWords = (tag, attributes) => {
   if (!catalogue.size || !attributes || stays(tag, attributes)) return attributes;
   const texts = ATTRIBUTES.filter((name) => typeof attributes[name] === "string").map((name) => [name, translatedText(attributes[name])]);
-  if (attributes.children !== undefined) texts.push(["children", inWords(attributes.children)]); // those that a component hands on
+  if (attributes.children !== undefined) texts.push(["children", inWords(attributes.children)]); // attributes that a component passes on
   return texts.length ? { ...attributes, ...Object.fromEntries(texts) } : attributes;
 };
 

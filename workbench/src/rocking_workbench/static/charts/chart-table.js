@@ -1,4 +1,4 @@
-/** The same chart as a table, thinned for reading and whole for copying. */
+/** Chart as a table: some rows for reading, all rows for copying. */
 
 import { html, render } from "/parts/preact.js";
 import { el } from "/app/dom.js";
@@ -7,7 +7,7 @@ import { t } from "/app/words.js";
 
 const MOST = 60;
 
-/** A "show as table" part under a chart; refresh() after new data.
+/** Element "show as table" under a chart; refresh() after new data.
  * @param {ChartOptions} options @param {() => Columns} dataOf */
 export const chartTable = ({ title, x, y, series }, dataOf) => {
   const holder = el("div", {});

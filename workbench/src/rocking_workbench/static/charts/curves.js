@@ -28,7 +28,7 @@ export const under = (legend, width, height, ...drawing) => {
     legend, svg("g", { transform: `translate(0 ${head})` }, ...drawing));
 };
 
-/** Axes, bands, marks and curves where uPlot has placed them, in dots of the page.
+/** Axes, bands, marks and curves at the positions of uPlot, in pixels of the page.
  * @param {CanvasRenderingContext2D} pen @param {uPlot} plot @param {ChartOptions} options @param {Columns} all @param {Marks} marks */
 export const drawChart = (pen, plot, { series, bands = [] }, all, marks) => {
   const [frame, data] = [frameOf(plot), inSight(plot.scales.x, all)];
@@ -68,7 +68,7 @@ const frameOf = (plot) => {
 
 /** @param {CanvasRenderingContext2D} pen @param {string} paint @param {number} width @param {number[]} dash @param {...number} ends */
 const line = (pen, paint, width, dash, ...ends) => {
-  if (!ends.every(Number.isFinite)) return; // on an axis that is not there
+  if (!ends.every(Number.isFinite)) return; // on a missing axis
   Object.assign(pen, { strokeStyle: colour(paint), lineWidth: width });
   pen.setLineDash(dash);
   pen.beginPath();
@@ -87,7 +87,7 @@ const drawAxes = (pen, plot, { left, top, width, height, x, y }) => {
     pen.fillText(across._values?.[k] ?? "", x(value), bottom + 19);
   });
   if (across._show) pen.fillText(across.label, left + width / 2, across._lpos + 11);
-  if (!up._show) return; // there is no value, nor a place for words
+  if (!up._show) return; // no value, no place for a text
   pen.save();
   pen.translate(up._lpos - 3, top + height / 2);
   pen.rotate(-Math.PI / 2);
@@ -110,7 +110,7 @@ const drawMarks = (pen, { left, top, width, height, x, y }, { vertical = [], hor
   });
 };
 
-/** Runs of neighbouring samples that all have values. @param {(number | null)[]} xs @param {...(number | null)[]} columns */
+/** Sequences of samples that all have values. @param {(number | null)[]} xs @param {...(number | null)[]} columns */
 const runsOf = (xs, ...columns) => {
   /** @type {number[][]} */
   const runs = [[]];
@@ -135,7 +135,7 @@ const drawCurve = (pen, { x, y }, { colour: paint, dash = [], width = 1.6 }, xs,
   pen.stroke();
 };
 
-// Whole where they lie on the edge of the frame.
+// Not clipped if they are on the edge of the frame.
 /** @param {CanvasRenderingContext2D} pen @param {Frame} frame @param {ChartSeries} series @param {(number | null)[]} xs @param {(number | null)[]} ys */
 const drawDots = (pen, { left, top, width, height, x, y }, { colour: paint }, xs, ys) => {
   pen.fillStyle = colour(paint);
@@ -160,7 +160,7 @@ const drawBand = (pen, { x, y }, { series: [high, low], fill }, data) => {
   pen.fill();
 };
 
-/** Keys and words of several curves, in rows. @param {ChartSeries[]} series @param {number} width */
+/** Symbols and labels of several curves, in rows. @param {ChartSeries[]} series @param {number} width */
 export const legendOf = (series, width) => {
   let [x, row] = [0, 0];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {

@@ -1,4 +1,4 @@
-/** Line charts as components, several of them under one time. */
+/** Line charts as components, with a common time. */
 
 import { html, useLayoutEffect, useRef } from "/parts/preact.js";
 import { lineChart } from "/charts/line.js";
@@ -13,7 +13,7 @@ export const createTime = (onInstant, onZoom) => {
   /** @param {number} instant */
   const point = (instant) => charts.forEach((chart) => chart !== leading && chart.point(instant));
   return {
-    /** Shows an instant that is played or sought elsewhere. @param {number} instant */
+    /** Show an instant of the animation or of another chart. @param {number} instant */
     show: (instant) => leading || point(instant),
     onZoom,
     /** @param {Chart} chart */

@@ -1,17 +1,17 @@
-/** How wide words are, and where lines end. */
+/** Widths of words, and line breaks. */
 
 const pen = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /** @param {{ fontWeight: string, fontSize: string, fontFamily: string }} style */
 export const fontOf = ({ fontWeight, fontSize, fontFamily }) => `${fontWeight} ${fontSize} ${fontFamily}`;
 
-/** Words in letters of a font. @param {string} text @param {string} [font] */
+/** Words in a font. @param {string} text @param {string} [font] */
 export const measured = (text, font = "12px system-ui, sans-serif") => {
   pen.font = font;
   return pen.measureText(text);
 };
 
-/** Words in lines of no more than a width. @param {string} text @param {number} width @param {string} font */
+/** Words in lines up to a width. @param {string} text @param {number} width @param {string} font */
 export const wrapped = (text, width, font) => {
   /** @type {string[]} */
   const lines = [];

@@ -1,4 +1,4 @@
-/** Line charts: uPlot inside, the page's colours outside, a table for those who do not see curves. */
+/** Line charts with uPlot, in the colours of the page, with a table for screen readers. */
 
 import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";

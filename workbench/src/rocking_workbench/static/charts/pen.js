@@ -5,7 +5,7 @@ import { freshId, svg } from "/app/dom.js";
 /** @type {WeakMap<Path2D, string>} */
 const written = new WeakMap();
 
-/** A path that either pen takes. @param {string} d */
+/** A path for both pens. @param {string} d */
 export const pathOf = (d) => {
   const path = new Path2D(d);
   written.set(path, d);
@@ -15,9 +15,9 @@ export const pathOf = (d) => {
 /** @type {{ [word: string]: string | undefined }} */
 const ANCHORS = { center: "middle", right: "end" };
 /** @type {{ [word: string]: number | undefined }} */
-const BELOW = { top: 0.8, middle: 0.35 }; // of the size of the letters
+const BELOW = { top: 0.8, middle: 0.35 }; // fraction of the size of the letters
 
-// Metres of a small body or dots of the page.
+// Metres of a small body, or pixels of the page.
 /** @param {...number} values */
 const at = (...values) => values.map((value) => Number(value.toPrecision(7))).join(" ");
 

@@ -1,4 +1,4 @@
-/** Figures that are no line charts, with the menus that save them as they are seen. */
+/** Figures other than line charts, with menus that save their shown content. */
 
 import { html, useMemo, useRef } from "/parts/preact.js";
 import { fetchFile } from "/app/api.js";

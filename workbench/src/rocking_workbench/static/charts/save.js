@@ -23,7 +23,7 @@ export const saveFile = (file, title, kind) => saveBlob(file, `${slug(t(title))}
 /** Save a picture as SVG. @param {Element} picture @param {string} title */
 export const saveSvg = (picture, title) => saveFile(blobOf(picture), title, "svg");
 
-/** Save a drawing that is a file already as PNG. @param {Blob} drawing @param {string} title */
+/** Save an existing image file as PNG. @param {Blob} drawing @param {string} title */
 export const savePngOf = async (drawing, title) => {
   const address = URL.createObjectURL(drawing);
   try {
@@ -65,7 +65,7 @@ export const menuOf = (title, subject, kinds) => {
   }, kind));
   const head = el("summary", { class: "button quiet", "aria-label": t(SAVE[subject], { title }) }, "Save");
   const menu = el("details", { class: "chart-files" }, head, el("div", {}, items));
-  const leave = () => { // and the keyboard stays at the menu
+  const leave = () => { // and the focus remains on the menu
     menu.open = false;
     head.focus();
   };

@@ -52,7 +52,7 @@ const dress = (from, to) => {
   [...from.children].forEach((child, k) => dress(child, to.children[k]));
 };
 
-// The ground and the edge of a box, if it has any.
+// Background and border of a box, if present.
 /** @param {CSSStyleDeclaration} style @param {ReturnType<Placing>} where */
 const plateOf = ({ backgroundColor: fill, borderTopWidth: width, borderTopColor: stroke, borderTopStyle: kind, borderRadius: r }, where) => {
   const [bare, edged] = [/^rgba\(.*, 0\)$/.test(fill), kind === "solid"];
@@ -61,9 +61,9 @@ const plateOf = ({ backgroundColor: fill, borderTopWidth: width, borderTopColor:
   return svg("rect", { ...where, rx: Math.min(parseFloat(r) || 0, where.height / 2), fill: bare ? "none" : fill, ...edge });
 };
 
-const PIECES = /[\u2e80-\u9fff\uff00-\uffef]|[^\s\u2e80-\u9fff\uff00-\uffef]+/g; // between which a line may end
+const PIECES = /[\u2e80-\u9fff\uff00-\uffef]|[^\s\u2e80-\u9fff\uff00-\uffef]+/g; // possible line breaks are between these
 
-/** The lines of a text as the page breaks them. @param {Text} node @param {Placing} at */
+/** Lines of a text, as on the page. @param {Text} node @param {Placing} at */
 const linesOf = (node, at) => {
   /** @type {{ from: number, to: number, rect: DOMRect }[]} */
   const lines = [];

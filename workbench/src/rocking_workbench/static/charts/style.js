@@ -1,11 +1,11 @@
-/** The page's colours for canvases, and the look of the axes. */
+/** Colours of the page for canvases, and style of the axes. */
 
 import { number, pretty } from "/app/format.js";
 import { t } from "/app/words.js";
 
 const resolved = new Map();
 
-/** A colour as a canvas takes it; "--name" is a variable of the page. @param {string} [paint] @returns {string} */
+/** Colour for a canvas; "--name" is a variable of the page. @param {string} [paint] @returns {string} */
 export const colour = (paint) => {
   if (!paint?.startsWith("--") && !paint?.startsWith("var(")) return paint ?? colour("--ink");
   const name = paint.replace(/^var\(|\)$/g, "");
@@ -21,7 +21,7 @@ document.addEventListener("rocking:theme", () => {
   listeners.forEach((listener) => listener());
 });
 
-/** Run a function whenever the page turns light or dark; returns how to stop. @param {() => unknown} listener */
+/** Run a function at each change of the theme; returns a function that stops this. @param {() => unknown} listener */
 export const onTheme = (listener) => {
   listeners.add(listener);
   return () => listeners.delete(listener);

@@ -8,7 +8,7 @@ import { arc, centreMark, footMark, groundLine, label } from "/drawing/symbols.j
 import { boxOf, roundStep, viewport } from "/drawing/viewport.js";
 import { listed, t } from "/app/words.js";
 
-/** Draw a body from its facts; `plain` leaves out the words.
+/** Draw a body from its properties; `plain`: without text.
  * @param {Drawn} body @param {{ width?: number, height?: number, plain?: boolean }} [how] */
 export const bodyPicture = (body, { width = 208, height = 360, plain = false } = {}) => {
   const view = viewport(boxOf(everything(body)), {
@@ -38,7 +38,7 @@ const everything = (body) => [
   ),
 ];
 
-/** Whether both feet see the same body, rounding aside. @param {Server.Sides} sides */
+/** True if both sides of the body are equal within rounding. @param {Server.Sides} sides */
 export const sameSides = ({ left, right }) =>
   /** @type {(keyof Server.SideFacts)[]} */ (Object.keys(left)).every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(right[key]));
 

@@ -14,7 +14,7 @@ const SHAPES = {
   circle: (r) => `M${-r} 0A${r} ${r} 0 1 0 ${r} 0A${r} ${r} 0 1 0 ${-r} 0Z`,
 };
 
-/** A marker at a place.
+/** Marker at a location.
  * @param {string} shape @param {number} x @param {number} y @param {number} [radius] @param {Attributes} [attributes] */
 export const marker = (shape, x, y, radius = 4.5, attributes = {}) =>
   svg(

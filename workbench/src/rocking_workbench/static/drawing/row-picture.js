@@ -1,4 +1,4 @@
-/** One row for each model: a dot, its interval, and its value in figures. */
+/** One row per model: a dot, its interval, and its value. */
 
 import { svg } from "/app/dom.js";
 import { number } from "/app/format.js";

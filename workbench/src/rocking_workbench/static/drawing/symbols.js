@@ -1,4 +1,4 @@
-/** The signs of mechanics: centre of mass, feet, ground, arrows, angles. */
+/** Symbols of mechanics: centre of mass, feet, ground, arrows, angles. */
 
 import { svg } from "/app/dom.js";
 
@@ -31,7 +31,7 @@ export const groundLine = (left, right, y) => {
     svg("path", { class: "ground", d: `M${left} ${y}H${right}` }));
 };
 
-/** An arrow with its head, from one point by a vector; nothing if it is too short to see.
+/** Arrow from a point along a vector; empty if the arrow is too short to be visible.
  * @param {number} x @param {number} y @param {number} dx @param {number} dy @param {Attributes} [attributes] */
 export const arrow = (x, y, dx, dy, attributes = {}) => {
   const length = Math.hypot(dx, dy);

@@ -4,7 +4,7 @@
  * @param {Box} box @param {{ width: number, height: number, margin?: Partial<Box> }} size @returns {Viewport} */
 export const viewport = (box, { width, height, margin }) => {
   const sides = { left: 12, right: 12, top: 12, bottom: 12, ...margin };
-  // at least one pixel: a page may lay out a picture narrower than its margins
+  // at least one pixel: a picture may be narrower than its margins
   const inner = { width: Math.max(width - sides.left - sides.right, 1), height: Math.max(height - sides.top - sides.bottom, 1) };
   const spanX = Math.max(box.right - box.left, 1e-12);
   const spanY = Math.max(box.top - box.bottom, 1e-12);

@@ -120,14 +120,14 @@ export const Choice = ({ label, name, value, on, chosen, options, own = false, h
   const take = ({ target }) => {
     changed();
     put(options[target.selectedIndex][0]);
-    target.value = shown; // until its owner has accepted it
+    target.value = shown; // until the form has accepted it
   };
   return html`<${Frame} id=${id} label=${label} help=${help} error=${error} hidden=${hidden}>
     <select ...${saidOf(id, error)} value=${shown} onChange=${take} ...${more}>
       ${options.map(([key, text]) => html`<option key=${key} value=${String(key)} translate=${own ? "no" : null}>${text}</option>`)}</select><//>`;
 };
 
-/** A choice of one value from a few [value, label], all visible.
+/** Choice of one value from [value, label], all visible.
  * @param {FieldProps<any> & { options: [any, string][] }} props */
 export const Segmented = ({ label, value, on, options, hidden }) => {
   const name = useId("choice");
@@ -164,7 +164,7 @@ export const Slider = ({ label, unit = "", value, on, min, max, step, log = fals
 /** @type {{ [word: string]: string | undefined }} */
 const YES = { true: "yes", false: "no" };
 
-/** A field of a key, with the unit, the description and the allowed values of the key.
+/** Field of a key, with its unit, description and allowed values.
  * @param {FieldProps<string> & { name: string, facts: Server.KeyFacts }} props */
 export const KeyField = ({ name, facts, ...more }) => {
   const label = name.replaceAll("_", " ");
@@ -180,7 +180,7 @@ export const KeyField = ({ name, facts, ...more }) => {
 /** A text with a capital letter at its start. @param {string} text */
 const capital = (text) => text.slice(0, 1).toUpperCase() + text.slice(1);
 
-/** A text with a full stop at its end, in the language of the page; the catalogue may have it as a sentence. @param {string} text */
+/** Translated text with a full stop; the catalogue may contain it as a sentence. @param {string} text */
 export const stopped = (text) => {
   const sentenceText = [`${text}.`, `${capital(text)}.`].find((form) => t(form) !== form);
   if (sentenceText) return t(sentenceText);
@@ -190,19 +190,19 @@ export const stopped = (text) => {
 /** Text as a sentence; a file name at its beginning is unchanged. @param {string} text */
 export const sentence = (text) => (/^\S*\.\w/.test(text) ? stopped(text) : capital(stopped(text)));
 
-/** The first field of a form that someone sees and that is wrong. @param {Element} form */
+/** The first visible field of a form with an error. @param {Element} form */
 export const wrongIn = (form) => /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[aria-invalid=true], .drop.wrong .button")]).find((box) => box.offsetParent !== null);
 
 /** Focus the first invalid field after drawing. @param {Element} form */
 export const toWrong = (form) => setTimeout(() => {
-  for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // else nobody sees it
+  for (const box of form.querySelectorAll("details [aria-invalid=true]")) /** @type {HTMLDetailsElement} */ (box.closest("details")).open = true; // otherwise it is not visible
   wrongIn(form)?.focus();
 });
 
 /** A button; kind is "primary", "quiet", "danger", "icon" or nothing. */
 export const Button = ({ kind = "", ...more }) => html`<button type="button" class=${`button ${kind}`} ...${more} />`;
 
-/** A titled part of a view. @param {{ title: string, kind?: string, children?: any, [more: string]: any }} props */
+/** Section of a view with a title. @param {{ title: string, kind?: string, children?: any, [more: string]: any }} props */
 export const Card = ({ title, kind = "", children, ...more }) => {
   const id = useId("card");
   return html`<section class=${`card ${kind}`} aria-labelledby=${id} ...${more}><h2 id=${id}>${title}</h2>${children}</section>`;
@@ -237,7 +237,7 @@ const checked = (text, { min, above, max, integer, moves, optional, unit }) => {
   return integer && !Number.isInteger(parsed) ? { fault: "Enter a whole number." } : { parsed };
 };
 
-// "1,000" is 1 here and 1000 elsewhere: show the interpreted value.
+// "1,000" is 1 in this notation and 1000 in others: show the interpreted value.
 /** @param {string} text */
 const decimalWords = (text) => /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
   && t("Read as {number}: the comma is the decimal sign. Enter thousands without a comma.", { number: number(parseNumber(text), 6) });

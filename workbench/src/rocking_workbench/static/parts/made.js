@@ -1,9 +1,9 @@
-/** Components around functions of the page: a node, a picture. */
+/** Components for existing nodes and for pictures. */
 
 import { html, useLayoutEffect, useRef, useSignal } from "/parts/preact.js";
 import { fill } from "/app/dom.js";
 
-/** A node that was made elsewhere. @param {{ node: Child, [more: string]: any }} props */
+/** An existing node. @param {{ node: Child, [more: string]: any }} props */
 export const Made = ({ node, ...more }) => {
   const element = useRef(null);
   useLayoutEffect(() => void fill(element.current, node), [node]);

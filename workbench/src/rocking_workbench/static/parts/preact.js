@@ -12,5 +12,5 @@ export const html = htm.bind((/** @type {any} */ tag, /** @type {any} */ attribu
 
 export { batch, computed, createContext, render, signal, useContext, useEffect, useLayoutEffect, useMemo, useRef, useState };
 
-/** A signal that lives as long as its component. */
+/** Signal with the lifetime of its component. */
 export const useSignal = /** @type {typeof signal} */ ((/** @type {any} */ first) => useRef(signal(first)).current);

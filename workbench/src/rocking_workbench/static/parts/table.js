@@ -1,4 +1,4 @@
-/** Tables that anyone can read: a caption, headings with units, and a copy button where there are numbers. */
+/** Tables with a caption, headings with units, and a copy button if there are numbers. */
 
 import { html, useRef } from "/parts/preact.js";
 import { copyTable } from "/app/copy.js";
@@ -8,10 +8,10 @@ import { Button } from "/parts/fields.js";
 import { t } from "/app/words.js";
 
 const LONG = 20;
-const SENTENCE = 40; // letters, from which a cell has room for several words
+const SENTENCE = 40; // number of letters from which a cell has several lines
 
-/** A table of columns (text or {label, unit, digits}) and rows of numbers, texts or templates; `copied` are the rows as
- * text and numbers where they are others.
+/** Table of columns (text or {label, unit, digits}) and rows of numbers, texts or templates; `copied`: rows for the
+ * clipboard, if they are different.
  * @param {{ columns: (string | Column)[], rows: any[][], caption?: string, csv?: () => unknown, testid?: string, copied?: () => unknown[][], actions?: any }} props */
 export const Table = ({ columns, rows, caption, csv, testid, copied = () => rows, actions }) => {
   const id = useRef(freshId("table")).current;
@@ -40,7 +40,7 @@ const Cell = ({ value, digits, numeric, nowrap, first }) => {
   return first ? html`<th scope="row" class=${kind} title=${title}>${shown}</th>` : html`<td class=${kind} title=${title}>${shown}</td>`;
 };
 
-/** A table of words; cells are text, or `[text, kind]`: the colour of a light, or "own" of words of the user.
+/** Table of text; cells are text or `[text, kind]`: a rating colour, or "own" for text of the user.
  * @param {{ caption: string, head: string[], rows: (string | [string, string | null])[][] }} props */
 export const Rows = ({ caption, head, rows }) => html`
   <div class="table-scroll" tabindex="0" role="region" aria-label=${caption}>

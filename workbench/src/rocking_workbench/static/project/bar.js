@@ -1,4 +1,4 @@
-/** The line of the open project: its name, whether it is saved, undo and redo. */
+/** Line of the open project: name, saving state, undo and redo. */
 
 import { html, render, useEffect, useRef } from "/parts/preact.js";
 import { Button } from "/parts/fields.js";

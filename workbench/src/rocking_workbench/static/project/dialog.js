@@ -1,4 +1,4 @@
-/** All projects: open, begin, rename, copy, take away, delete and bring back; and the history of the open one. */
+/** All projects: open, create, rename, copy, export, delete and restore; history of the open project. */
 
 import { html, signal, useRef } from "/parts/preact.js";
 import { dateTime, t, userText } from "/app/words.js";

@@ -1,4 +1,4 @@
-/** The project that is open: saved by itself, with undo and redo, in agreement with other tabs. */
+/** The open project: automatic saving, undo and redo, synchronization with other tabs. */
 
 import { signal } from "/parts/preact.js";
 import { hush } from "/app/say.js";
@@ -15,7 +15,7 @@ export const PARTS = {
   inventory: "Inventory", measure: "Identification", records: "Records", space: "3D", bed: "contact bed",
 };
 
-/** Keeper of the open project; `first`: content of a new project. @param {App} app @param {Server.Inputs} first */
+/** State of the open project; `first`: content of a new project. @param {App} app @param {Server.Inputs} first */
 export const createProjects = (app, first) => {
   /** @type {Signal<Server.ProjectFacts>} */
   const here = signal(null); // until `start`
@@ -71,10 +71,10 @@ export const createProjects = (app, first) => {
     if (changed.size && !refused) save();
     else show(document);
   };
-  let leaving = false; // requests after this outlive the page
+  let leaving = false; // later requests continue after the page is closed
   /** @param {string} suffix @param {unknown} [json] @returns {Promise<any>} */
   const ask = (suffix, json) => app.call(`projects/${here.value.id}${suffix}`, { json, keepalive: leaving });
-  // One after the other: every change names the version that it follows.
+  // In order: each change contains the number of the previous version.
   /** @type {<Of>(work: () => Promise<Of>) => Promise<Of>} */
   const inLine = (work) => {
     line = line.then(work, work);
@@ -110,7 +110,7 @@ export const createProjects = (app, first) => {
   const differ = async (mine) => {
     let theirs = await ask("");
     if (theirs.deleted) {
-      const alone = theirs.version === here.value.version + 1; // nothing else happened to it
+      const alone = theirs.version === here.value.version + 1; // no other change happened
       theirs = { ...theirs, ...(await app.call(`projects/${theirs.id}/back`, { method: "POST" })) };
       app.say("The project was deleted elsewhere. It is restored with your changes.");
       if (alone) {
@@ -124,7 +124,7 @@ export const createProjects = (app, first) => {
       clash.value = { theirs, mine };
       return;
     }
-    const all = done && same(own(), mine); // nothing was typed meanwhile
+    const all = done && same(own(), mine); // no input in the meantime
     sent = [];
     if (all) changed.clear();
     last = theirs.document;
@@ -167,7 +167,7 @@ export const createProjects = (app, first) => {
       }
     });
   };
-  // Another project takes the place of this one only when all of this one is saved.
+  // Another project is opened only after this project is saved.
   /** @param {() => Promise<Server.WholeProject>} get */
   const change = async (get) => {
     await save();
@@ -204,7 +204,7 @@ export const createProjects = (app, first) => {
       // Changes in the meantime are based on the previous version: saving merges them, or needs a decision.
       if (changed.size) save();
       else show(adopt(theirs));
-    }).catch(() => {}); // it is looked at again with the next change
+    }).catch(() => {}); // it is checked again at the next change
   });
   addEventListener("pagehide", () => {
     leaving = true;
@@ -215,7 +215,7 @@ export const createProjects = (app, first) => {
 
   return {
     here, saving, clash, open, save,
-    /** Wait for data of the open project; after a change of project they are in neither.
+    /** Wait for data of the open project; they are discarded after a change of the project.
      * @type {<Of>(work: Promise<Of>) => Promise<Of>} */
     within: async (work) => {
       const { id } = here.value;
@@ -230,7 +230,7 @@ export const createProjects = (app, first) => {
     /** Start a new project: with the default content, or with the shown content.
      * @param {string} name @param {unknown} [document] */
     begin: (name, document) => change(() => app.call("projects", { json: { name, document: document ?? {} } })),
-    /** A copy of a project, called otherwise. @param {string} id @param {string} name @param {string} of */
+    /** Copy of a project under another name. @param {string} id @param {string} name @param {string} of */
     copy: (id, name, of) => change(() => app.call("projects", { json: { name, copy_of: id, description: t("copy of {name}", { name: userText(of) }) } })),
     /** @param {File} file */
     bring: (file) => change(async () => app.call("projects/import", { body: await file.arrayBuffer() })),
@@ -264,7 +264,7 @@ export const createProjects = (app, first) => {
         app.say(t("Not saved: {reason}", { reason: error.message }), "error");
       }
     }),
-    /** Open the project of this tab, else the one that was changed last, else a first one.
+    /** Open the project of this tab, otherwise the last changed project, otherwise a new project.
      * @param {Server.Inputs | null} fromLink */
     start: async (fromLink) => {
       const { projects } = await app.call("projects");
@@ -278,7 +278,7 @@ export const createProjects = (app, first) => {
       }
       const mine = own();
       const project = await app.call(`projects/${id}`);
-      // After a reload the tab may contain unsaved changes; inputs of a link cover those of the project.
+      // After a reload the tab may contain unsaved changes; inputs of a link are shown in place of those of the project.
       if (id === kept?.id && kept.more && app.inputs.wereKept && !same(mine, project.document)) {
         const ours = project.version === kept.version || isOwn(project, kept.version, kept.sent);
         last = ours ? /** @type {Own} */ (project.document) : kept.last ?? null;
@@ -301,12 +301,12 @@ export const createProjects = (app, first) => {
   };
 };
 
-// A version saved without knowledge of this tab is its own.
+// A version that was saved without this tab remains separate.
 /** @param {Server.WholeProject} theirs @param {number} version @param {Own[]} [sent] */
 const isOwn = (theirs, version, sent = []) =>
   theirs.version === version + 1 && sent.some((document) => same(document, theirs.document));
 
-// The parts of a document that are changed on their own: tables of the inputs, forms of views.
+// Parts of a document that change independently: tables of the inputs, forms of views.
 /** @param {any} document @returns {{ [key: string]: any }} */
 const partsOf = (document) => Object.fromEntries(
   [["inputs", inputsOf(document?.inputs)], ["forms", formsOf(document?.forms)]].flatMap(([kind, all]) =>

@@ -2,7 +2,7 @@
 
 import { computed, signal } from "/parts/preact.js";
 
-const [SOON, EVERY] = [100, 500]; // between looks at a question that is being answered, the first and the last [ms]
+const [SOON, EVERY] = [100, 500]; // intervals between requests for the state of a run, first and last [ms]
 const ENDED = new Set(["done", "refused", "stopped"]);
 
 /** Runs of some commands in the open project; the default command is the first.
@@ -35,7 +35,7 @@ export const createQuestions = (app, ...commands) => {
       if (error.kind !== "offline") throw error;
       return null; // the server restarts and continues the run
     });
-    if (mine !== ticket) return; // another one is shown by now
+    if (mine !== ticket) return; // another run is shown now
     if (question) shown.value = question;
     if (question && ENDED.has(question.state)) await look();
     else timer = setTimeout(() => follow(id, mine, Math.min(EVERY, 1.5 * pause)).catch(tell), pause);
@@ -47,10 +47,10 @@ export const createQuestions = (app, ...commands) => {
 
   return {
     app, shown, all, busy,
-    /** Whether a run was started from the present form. @param {string} id */
+    /** True if a run was started from the present form. @param {string} id */
     isOfForm: (id) => id === mine,
     look: safely(look),
-    /** Look, and show the last one again after a reload. */
+    /** Request the state, and show the last run after a reload. */
     reopen: safely(async () => {
       await look();
       if (!shown.value && all.value.length) await follow(all.value[0].id);
@@ -87,7 +87,7 @@ export const createQuestions = (app, ...commands) => {
   };
 };
 
-/** Send a file for questions; resolves to its hash, and the plain name that tables call it.
+/** Upload a file for runs; resolves to its hash and its name in tables.
  * @param {App} app @param {File} file @returns {Promise<SentFile>} */
 export const sendFile = async (app, file) => {
   const kept = await app.project.within(file.arrayBuffer().then((body) => app.call("files", { method: "POST", body, query: { name: file.name } })));
@@ -97,15 +97,15 @@ export const sendFile = async (app, file) => {
 
 const atHand = new Map();
 
-/** A file that this tab has sent, by its hash; undefined of any other. @param {string} sha */
+/** File uploaded by this tab, by its hash; undefined for other files. @param {string} sha */
 export const fileAtHand = (sha) => atHand.get(sha);
 
-// Names that answers have.
+// Names of results.
 const TAKEN = /^(inventory|table|report|picture|space|answer|state|log|question|record|provenance)\.|^(matplotlibrc|records$)/i;
 /** @param {string} name @param {string} sha */
 const apart = (name, sha) => (TAKEN.test(name) ? `${sha.slice(0, 8)}-${name}` : name);
 
-/** The motion of the inputs as a question has it, and the files that it needs. @param {Server.Inputs} inputs */
+/** Motion of the inputs in the form of a run, and its files. @param {Server.Inputs} inputs */
 export const motionOf = (inputs) => {
   if (!inputs.motion) return null;
   const { record, file_name: name, ...keys } = inputs.motion;

@@ -8,7 +8,7 @@ import { Drop } from "/parts/drop.js";
 import { Button, Note, Refused, sentence, toWrong, useRefused } from "/parts/fields.js";
 import { dateTime, t, userText } from "/app/words.js";
 
-/** The fields of the form of a view, which belong to the project; `form.at(...path)` is a signal of one of them.
+/** Fields of the form of a view, stored in the project; `form.at(...path)` is the signal of a field.
  * @param {App} app @param {string} view @param {{ [name: string]: any }} first @returns {Form} */
 export const useForm = (app, view, first) => useRef(app.forms.of(view, first)).current;
 
@@ -31,7 +31,7 @@ const valueOf = (text, kind) => {
 const apart = (text) => text.trim().split(/\s*;\s*|,\s+|\s+/);
 /** @param {string} text */
 const partsOf = (text) => (apart(text).length > 1 ? apart(text) : text.split(","));
-// One number, or several, which blanks too hold apart; null where something is none.
+// One number or several, separated by commas or blanks; null if one is not valid.
 /** @param {string} text */
 const numbersOf = (text) => {
   const numbers = (apart(text).length > 1 ? null : parseNumber(text)) ?? partsOf(text).map(parseNumber);
@@ -60,7 +60,7 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
         sent = [...sent, ...await Promise.all(chosen.slice(k, k + AT_ONCE).map((file) => questions.send(file)))];
       }
       const all = adds ? [...(files.value || []), ...sent] : sent;
-      // two files of one name are two files
+      // two files with one name are different files
       const named = all.map((file, k) => (all.slice(0, k).some((other) => other.name === file.name && other.sha !== file.sha)
         ? { ...file, name: `${file.sha.slice(0, 8)}-${file.name}` } : file));
       files.value = named.filter((file, k) => named.findIndex((other) => other.sha === file.sha) === k);
@@ -82,7 +82,7 @@ export const FileDrop = ({ files, name = "files", many = false, adds = many, que
 
 const AT_ONCE = 6; // parallel uploads
 
-/** Why a question is refused, in words of the page. @param {{ message: string, refusal?: any }} question */
+/** Error of a run, as text of the page. @param {{ message: string, refusal?: any }} question */
 export const reasonOf = ({ message, refusal }) => sentence(refusal ? refusalWords(refusal) : message);
 
 // State of a run: computing, rejected, or its answer.
@@ -141,13 +141,13 @@ const Files = ({ questions, question }) => html`
     <pre tabindex="0">rocking ${question.command} question.toml${question.format && ` -o ${question.format}=${question.files.at(-1)}`}</pre><pre tabindex="0">${question.toml}</pre>`}
   </details>`;
 
-/** The picture of an answer, if it has one. @param {{ question: Server.WholeQuestion, alt: string }} props */
+/** Picture of a result, if it has one. @param {{ question: Server.WholeQuestion, alt: string }} props */
 export const Drawing = ({ question, alt }) => question.files.includes(DRAWING)
   && html`<${Fetched} title=${question.name} path=${`questions/${question.id}/${DRAWING}`} alt=${alt} />`;
 
 const DRAWING = "picture.svg";
 
-// Earlier questions of the project.
+// Previous runs of the project.
 /** @param {{ questions: Questions }} props */
 const Earlier = ({ questions }) => questions.all.value.length > 0 && html`
   <section class="card" aria-labelledby="earlier-title">

@@ -1,13 +1,13 @@
-/** From metres to pixels: where the ground is on the canvas, and how large a metre is. */
+/** From metres to pixels: position of the ground on the canvas, and scale. */
 
 const MARGIN = 0.08;
 const FLOOR = 40;
 const HEADROOM = 14;
 
-/** Returns a camera; `fit` places it, and its fields are then read by the drawing in every frame. */
+/** Returns a camera; `fit` sets its fields, which the drawing reads in each frame. */
 export const newCamera = () => ({ width: 0, height: 0, ratio: 1, scale: 1, middle: 0, floor: 0 });
 
-/** Places the camera so that a box of metres fills a canvas of so many CSS pixels.
+/** Sets the camera so that a box in metres fills a canvas, with its size in CSS pixels.
  * @param {Camera} camera @param {Reach} box @param {number} width @param {number} height @param {number} ratio */
 export const fit = (camera, box, width, height, ratio) => {
   const wide = (box.right - box.left) * (1 + 2 * MARGIN);

@@ -2,7 +2,7 @@
 
 const LONGEST_FRAME = 0.1;
 
-/** Seconds of the history, run by the seconds of the screen. */
+/** Time of the history, advanced by the time of the screen. */
 export class Clock {
   constructor() {
     this.now = 0;
@@ -19,7 +19,7 @@ export class Clock {
     this.before = -1;
   }
 
-  /** Stops where it is. */
+  /** Stops at the present time. */
   stop() {
     this.running = false;
   }

@@ -4,7 +4,7 @@ const KEPT = 4096;
 const meter = { count: 0, lastMs: 0, meanMs: 0, worstMs: 0, times: new Float32Array(KEPT) };
 window.rockingFrames = meter;
 
-/** Notes one frame that took so many milliseconds of script. @param {number} milliseconds */
+/** Records a frame and its script time in milliseconds. @param {number} milliseconds */
 export const noteFrame = (milliseconds) => {
   meter.times[meter.count % KEPT] = milliseconds;
   meter.count += 1;

@@ -1,4 +1,4 @@
-/** Where the points of a rocking body are: positive rotation is clockwise, about the right foot. */
+/** Positions of the points of a rocking body; a positive rotation is clockwise about the right foot. */
 
 /** Position of a point of the body after a rotation about the foot of support.
  * @param {number} x @param {number} y @param {number} rotation @param {number[]} feet */
@@ -9,7 +9,7 @@ export const turned = (x, y, rotation, feet) => {
   return [pivot + c * (x - pivot) + s * y, -s * (x - pivot) + c * y];
 };
 
-/** Returns every vertex and mass point of a shape, its feet and its centre, as [[x, y]].
+/** Returns all vertices and mass points of a shape, its feet and its centre of mass, as [[x, y]].
  * @param {Pick<Shape, "regions" | "feet" | "points" | "centre">} shape */
 export const cornersOf = (shape) => {
   const corners = shape.regions.flatMap((region) => region.outline);
@@ -19,7 +19,7 @@ export const cornersOf = (shape) => {
 
 const DIRECTIONS = 48;
 
-/** Returns the few points of many that reach farthest, one for each of some directions. @param {number[][]} corners */
+/** Returns the farthest point in each of several directions. @param {number[][]} corners */
 export const farthest = (corners) => {
   const extreme = new Set();
   for (let k = 0; k < DIRECTIONS; k += 1) {

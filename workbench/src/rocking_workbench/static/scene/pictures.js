@@ -1,4 +1,4 @@
-/** Drawings of one frame of the scene. No allocation: frames leave no garbage. */
+/** Drawings of one frame of the scene. Frames allocate no memory. */
 import { fixed } from "/app/format.js";
 import { holdBody, pixelOf } from "/scene/camera.js";
 
@@ -8,13 +8,13 @@ const HATCH = 14;
 const NO_DASH = [];
 const TICKS = new Map();
 
-/** Metres between two ticks of the ruler at so many pixels a metre. @param {number} scale */
+/** Distance of the ticks of the ruler in metres, for a scale in pixels per metre. @param {number} scale */
 export const tickStep = (scale) => {
   for (let k = 0; k < STEPS.length; k += 1) if (STEPS[k] * scale > 72) return STEPS[k];
   return 5000;
 };
 
-/** A place on the ruler in words. @param {number} value @param {number} step */
+/** Label of a tick of the ruler. @param {number} value @param {number} step */
 export const tickText = (value, step) => {
   const key = Math.round(value / step) * step;
   let text = TICKS.get(key);
@@ -27,7 +27,7 @@ export const tickText = (value, step) => {
   return text;
 };
 
-/** Sets a pen to CSS pixels. @param {CanvasRenderingContext2D} pen @param {Camera} camera */
+/** Sets the scale of a pen to CSS pixels. @param {CanvasRenderingContext2D} pen @param {Camera} camera */
 export const holdScreen = (pen, camera) => pen.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
 
 /** Draw the ground with moving hatches and a fixed ruler.

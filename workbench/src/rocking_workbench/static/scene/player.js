@@ -10,7 +10,7 @@ import { Strip } from "/scene/strip.js";
 
 const READOUT_MS = 66;
 
-/** A rocking body that one can play, slow down and scrub. */
+/** Animation of a rocking body, with speed and position. */
 export class Player {
   constructor(onInstant = (/** @type {number} */ _) => {}) {
     this.onInstant = onInstant;
@@ -55,7 +55,7 @@ export class Player {
     this.draw();
   }
 
-  /** Shows the ground as it moves, larger than it moves, or rides with it. @param {string} mode */
+  /** Shows the ground motion, magnifies it, or moves the picture with the ground. @param {string} mode */
   setGround(mode) {
     this.groundMode = mode;
     if (!this.play) return;
@@ -63,7 +63,7 @@ export class Player {
     this.controls.tellGround(mode, this.stage.factor, this.stage.rides);
   }
 
-  /** Runs at so many seconds of the history in a second of the screen. @param {number} speed */
+  /** Sets the speed: seconds of the history per second of the screen. @param {number} speed */
   setSpeed(speed) {
     this.clock.speed = speed;
     if (!this.clock.running) this.draw();
@@ -75,7 +75,7 @@ export class Player {
     else this.start();
   }
 
-  /** Starts; from the beginning the first time, whatever was shown to look at. */
+  /** Starts; the first time from the beginning. */
   start() {
     if (!this.play) return;
     if (!this.touched) this.clock.now = 0;
@@ -101,7 +101,7 @@ export class Player {
     this.draw();
   }
 
-  /** Shows an instant that a pointer rests on elsewhere, unless the animation runs. @param {number} instant */
+  /** Shows the instant of the pointer in another chart, unless the animation runs. @param {number} instant */
   glance(instant) {
     if (this.clock.running || !this.play) return;
     this.clock.seek(instant);
@@ -126,7 +126,7 @@ export class Player {
     else this.controls.tellRunning(false);
   }
 
-  /** The instant that is shown as a picture of its own; `names` are the models in words. @param {string[]} names */
+  /** The shown instant as a separate picture; `names`: titles of the models. @param {string[]} names */
   still(names) {
     return sceneStill(this.stage, this.clock.now, names);
   }
@@ -159,7 +159,7 @@ export class Player {
     this.draw();
   }
 
-  /** Moves by keys while the stage has the focus. @param {KeyboardEvent} event */
+  /** Moves in time by keys while the stage has the focus. @param {KeyboardEvent} event */
   onKey(event) {
     const { now, end, speed } = this.clock;
     const stride = event.shiftKey ? 0.5 : Math.max(speed, 0.1) / 30;

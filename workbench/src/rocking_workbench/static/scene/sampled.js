@@ -1,8 +1,8 @@
-/** Answers of the API as tracks that the scene plays. */
+/** Results of the API as tracks of the scene. */
 import { fixed } from "/app/format.js";
 import { Track } from "/scene/track.js";
 
-/** Returns one model's history for the scene; of a body that overturned with the fall until it lies on the ground.
+/** Returns the history of a model for the scene, with the fall to the ground after overturning.
  * @param {Server.ResponseFacts} answer @param {Look} style @returns {Actor} */
 export const actorOf = (answer, style) => {
   const { series, fall, impacts = [] } = answer;

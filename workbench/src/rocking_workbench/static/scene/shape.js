@@ -1,4 +1,4 @@
-/** The body as the scene draws it: paths once, so that a frame only moves them. */
+/** The body in the scene: its paths are created once, and each frame moves them. */
 
 import { highest } from "/app/extremes.js";
 import { pathOf } from "/charts/pen.js";
@@ -7,8 +7,8 @@ import { pathOf } from "/charts/pen.js";
 const ringOf = (ring) => `M${ring.map((point) => point.join(" ")).join("L")}Z`;
 
 /**
- * Returns the shape of a body of the API: regions with their shade, mass points, feet and centre in metres, the
- * ground at y = 0 and the middle between the feet at x = 0.
+ * Returns the shape of a body of the API [m]: regions with shades, mass points, feet and centre of mass. The ground is
+ * at y = 0 and the middle between the feet at x = 0.
  * @param {Server.DrawnBody} body @returns {Shape} */
 export const shapeOf = ({ outline, foot_positions: base, ground = 0, points = [], masses = [], centre }) => {
   const middle = 0.5 * (base[0] + base[1]);

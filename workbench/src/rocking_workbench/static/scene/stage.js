@@ -1,4 +1,4 @@
-/** The stage: a canvas on which the bodies rock about their feet on a ground that moves. */
+/** The stage: a canvas with the rocking bodies on the moving ground. */
 import { highest } from "/app/extremes.js";
 import { fit, newCamera, pixelOf } from "/scene/camera.js";
 import { boxOf } from "/scene/geometry.js";
@@ -79,12 +79,12 @@ export class Stage {
     }
   }
 
-  /** Reads the colours of the page again. */
+  /** Updates the colours from the page. */
   repaint() {
     readColours(this.canvas, this.colours);
   }
 
-  /** Draws an instant [s]; flashes last as long for the eye at any speed. @param {number} now @param {number} speed */
+  /** Draws an instant [s]; the duration of flashes does not depend on the speed. @param {number} now @param {number} speed */
   draw(now, speed) {
     const { pen, camera, colours, play } = this;
     if (!play || !camera.width) return;

@@ -1,4 +1,4 @@
-/** One instant of the scene as an SVG: the ground, the bodies of all models, and which is which. */
+/** One instant of the scene as an SVG: the ground, the bodies of all models, and a legend. */
 
 import { fixed } from "/app/format.js";
 import { svg } from "/app/dom.js";
@@ -7,7 +7,7 @@ import { SvgPen } from "/charts/pen.js";
 import { readColours } from "/scene/theme.js";
 import { t } from "/app/words.js";
 
-/** The instant that a stage shows; `names` are the models in words.
+/** The shown instant of a stage; `names`: titles of the models.
  * @param {import("/scene/stage.js").Stage} stage @param {number} now @param {string[]} names */
 export const sceneStill = (stage, now, names) => {
   const play = /** @type {Play} */ (stage.play);

@@ -9,7 +9,7 @@ const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 20;
 
-/** A picture of the histories that one drags along. */
+/** Picture of the histories, with a movable time. */
 export class Strip {
   /** @param {HTMLCanvasElement} canvas @param {(instant: number) => unknown} onSeek */
   constructor(canvas, onSeek) {
@@ -57,7 +57,7 @@ export class Strip {
     this.drawStill();
   }
 
-  /** Reads the colours of the page again. */
+  /** Updates the colours from the page. */
   repaint() {
     readColours(this.canvas, this.colours);
     if (this.width) this.drawStill();

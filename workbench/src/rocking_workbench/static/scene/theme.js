@@ -2,7 +2,7 @@
 
 const NAMES = ["ink", "soft", "line", "body", "ground", "hatch", "impact", "fall"];
 
-/** Reads the colours into an object that the drawing keeps.
+/** Reads the colours into an object of the drawing.
  * @param {Element} element @param {any} [into] */
 export const readColours = (element, into = {}) => {
   const style = getComputedStyle(element);
@@ -12,5 +12,5 @@ export const readColours = (element, into = {}) => {
 
 const reduced = window.matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Whether the user prefers reduced motion. */
+/** True if the user prefers reduced motion. */
 export const calm = () => reduced.matches;

@@ -6,7 +6,7 @@ const increasing = (time) => {
   return true;
 };
 
-/** Values over time, straight between the samples and held at the ends. */
+/** Values over time, linear between the samples and constant beyond the ends. */
 export class Track {
   /** @param {ArrayLike<number>} time @param {ArrayLike<number>} values */
   constructor(time, values) {
@@ -51,7 +51,7 @@ export class Track {
     return low;
   }
 
-  /** Returns the largest size of the values. */
+  /** Returns the largest absolute value. */
   peak() {
     let most = 0;
     for (let k = 0; k < this.values.length; k += 1) most = Math.max(most, Math.abs(this.values[k]));
@@ -59,7 +59,7 @@ export class Track {
   }
 }
 
-/** Returns the instant of the largest size of a track [s]. @param {Track} track */
+/** Returns the instant of the largest absolute value of a track [s]. @param {Track} track */
 export const peakInstant = (track) => {
   let best = 0;
   for (let k = 1; k < track.values.length; k += 1) {

@@ -1,4 +1,4 @@
-/** Restitution of a 3D body: every edge of its base, marked on the body, with every model. */
+/** Restitution of a 3D body with each model, for each edge of its base, which is marked on the body. */
 
 import { html } from "/parts/preact.js";
 import { number } from "/app/format.js";
@@ -6,7 +6,7 @@ import { Rows } from "/parts/table.js";
 import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
-/** The edges of a question's body. @param {{ question: Server.WholeQuestion, answer: any, children: any }} props */
+/** Edges of the body of a run. @param {{ question: Server.WholeQuestion, answer: any, children: any }} props */
 export const Edges = ({ question, answer, children }) => {
   const round = answer.body.base.kind !== "polygon";
   const models = Object.keys(answer.edges[0].coefficients);

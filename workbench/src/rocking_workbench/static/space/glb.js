@@ -1,4 +1,4 @@
-/** Reads the file in which the commands write a body in space: glTF in one piece. */
+/** Reads the binary glTF file that the commands write for a 3D body. */
 
 /** @type {{ [kind: number]: any }} */
 const ARRAYS = { 5126: Float32Array, 5125: Uint32Array, 5121: Uint8Array };

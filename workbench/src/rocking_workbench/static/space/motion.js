@@ -1,4 +1,4 @@
-/** Playing the motion of a body in space: one time for the picture, the curve of the tilt, and the words. */
+/** Animation of a 3D body: common time of the picture, the curve of the tilt, and the text. */
 
 import { fixed } from "/app/format.js";
 import { html, useEffect, useRef, useSignal } from "/parts/preact.js";
@@ -11,14 +11,14 @@ import { Played } from "/space/played.js";
 import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
-const WORTH = 0.01; // of the largest loss
+const WORTH = 0.01; // fraction of the largest loss
 const UPDATE_INTERVAL = 100; // between two updates of text and curve during playback [ms]
 const SPEEDS = [["1", "1\u00d7, real speed"], ["2", "2\u00d7"], ["0.5", "0.5\u00d7"], ["0.1", "0.1\u00d7, slow motion"]];
 /** @type {{ [key: string]: number }} */
 const STRIDES = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 const LEGEND = [["holds", "sticking contact"], ["slides", "sliding contact"], ["plumb", "centre of mass and plumb line"]];
 
-// Impacts that are marked: of thousands, only those that lose something worth seeing.
+// Marked impacts: those with a visible energy loss.
 /** @param {{ time: number, energy_before: number, energy_after: number }[]} impacts */
 const marked = (impacts) => {
   const losses = impacts.map((impact) => impact.energy_before - impact.energy_after);
@@ -26,7 +26,7 @@ const marked = (impacts) => {
   return impacts.filter((_, k) => losses[k] > WORTH * most).map(({ time: at }) => at);
 };
 
-/** The motion that a question found, with its controls.
+/** Motion of a result, with its controls.
  * @param {{ question: Server.WholeQuestion, answer: any }} props */
 export const MotionScene = ({ question, answer }) => {
   const [now, running, text] = [useSignal(0), useSignal(false), useSignal("Loading the motion.")];

@@ -4,7 +4,7 @@ import { t } from "/app/words.js";
 
 const DEGREES = 180 / Math.PI;
 
-/** The place in ordered times of the last that is not after an instant; -1 before all of them.
+/** Index of the last time that is not after an instant; -1 before all times.
  * @param {number} count @param {(k: number) => number} at @param {number} instant */
 export const lastBefore = (count, at, instant) => {
   let [low, high] = [-1, count];
@@ -33,7 +33,7 @@ export class Played {
     this.turn = [0, 0, 0, 1];
   }
 
-  /** Put the body where it is at an instant [s], and draw it. @param {number} instant */
+  /** Draw the body at an instant [s]. @param {number} instant */
   show(instant) {
     const { time, turn, centre: positions, tilt } = this.motion;
     const last = time.length - 1;

@@ -12,7 +12,7 @@ import { Stage } from "/space/stage.js";
 import { markKey, riseKey } from "/space/textures.js";
 import { t } from "/app/words.js";
 
-const LIBRARY = "/vendor/three/three.module.min.js"; // for this view alone, when there is something to show
+const LIBRARY = "/vendor/three/three.module.min.js"; // loaded for this view only, when it shows a body
 const [BY_KEY, BY_PIXEL, CLOSER] = [0.15, 0.008, 0.85];
 /** @type {[string, Aim | null, number?][]} */
 const VIEWS = [
@@ -87,7 +87,7 @@ export const Scene = ({ question, description, title, label, onStage, onSpace, l
         onPointerDown=${(event) => event.currentTarget.setPointerCapture(event.pointerId)}
         onPointerMove=${(event) => event.buttons && turn(-BY_PIXEL * event.movementX, BY_PIXEL * event.movementY)}
         onWheel=${(event) => {
-          if (document.activeElement !== canvas.current) return; // else the page could not be scrolled past it
+          if (document.activeElement !== canvas.current) return; // otherwise the page could not be scrolled
           event.preventDefault();
           nearer(event.deltaY < 0 ? CLOSER : 1 / CLOSER);
         }}></canvas>

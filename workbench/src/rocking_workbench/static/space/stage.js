@@ -4,10 +4,10 @@ import { svg } from "/app/dom.js";
 import { colour } from "/charts/style.js";
 import { labelTexture, markTexture } from "/space/textures.js";
 
-const VIEW = 35; // opening of the camera [degrees]
+const VIEW = 35; // field of view of the camera [degrees]
 const FIRST = { turned: -1.1, raised: 0.3 };
 const [LOWEST, HIGHEST] = [0.03, 1.5];
-const FINEST = 2; // pixels of a canvas for one of the page
+const FINEST = 2; // pixels of the canvas per pixel of the page
 
 /** Picture of one body, rendered on request. */
 export class Stage {
@@ -31,12 +31,12 @@ export class Stage {
     this.turned = 0;
     this.raised = 0;
     this.near = 1;
-    this.fine = 0; // dots of the canvas for one of the page; 0: as the screen has them
+    this.fine = 0; // pixels of the canvas per pixel of the page; 0: those of the screen
     this.look(FIRST);
     this.repaint();
   }
 
-  /** Put everything into the scene that never changes. */
+  /** Add the constant objects to the scene. */
   build() {
     const { three, model, scene, body } = this;
     const skin = new three.BufferGeometry();
@@ -62,7 +62,7 @@ export class Stage {
     this.place(null, [0, 0, model.height]);
   }
 
-  /** Faces that closed holes: a colour of their own, and their edges. @param {Float32Array} corners */
+  /** Faces that closed holes: in another colour, with their edges. @param {Float32Array} corners */
   patch(corners) {
     const { three, body } = this;
     const faces = new three.BufferGeometry().setAttribute("position", new three.BufferAttribute(corners, 3));
@@ -170,7 +170,7 @@ export class Stage {
     return svg("svg", { viewBox: `0 0 ${width} ${height}` }, picture);
   }
 
-  /** Show which vertices of the hull hold, and which slide. @param {number[]} holding @param {number[]} sliding */
+  /** Show the sticking and the sliding vertices of the hull. @param {number[]} holding @param {number[]} sliding */
   touch(holding, sliding) {
     [holding, sliding].forEach((vertices, k) => {
       const { geometry } = this.touching[k];
@@ -207,7 +207,7 @@ export class Stage {
     this.support.geometry = new three.BufferGeometry().setFromPoints(points.map((point) => new three.Vector3(...point)));
   }
 
-  /** Words on a plate, of a size on the screen.
+  /** Text on a plate, of constant size on the screen.
    * @param {string} text @param {number[]} position @param {any} into @param {number} size */
   label(text, position, into, size) {
     const { three } = this;
@@ -230,7 +230,7 @@ export class Stage {
     this.dots(edges.map(({ from }) => from), "dot", "--space-base");
   }
 
-  /** Colour the body by its landscape, or not. @param {boolean} on */
+  /** Colour the body by its energy landscape, or not. @param {boolean} on */
   colourful(on) {
     this.skin.vertexColors = on && Boolean(this.model.colours);
     this.skin.needsUpdate = true;
@@ -244,7 +244,7 @@ export class Stage {
     this.near = Math.min(4, Math.max(0.15, near));
   }
 
-  /** Take the size of the canvas, and draw. */
+  /** Update the size of the canvas, and draw. */
   resize() {
     const { clientWidth: wide, clientHeight: high } = this.canvas;
     if (!wide || !high) return;
@@ -256,7 +256,7 @@ export class Stage {
     this.draw();
   }
 
-  /** Take the colours of the page, and draw. */
+  /** Update the colours from the page, and draw. */
   repaint() {
     for (const [material, paint] of this.paints) {
       material.color.set(material === this.skin && material.vertexColors ? "#ffffff" : colour(paint));

@@ -9,12 +9,12 @@ import { calm } from "/scene/theme.js";
 import { Scene } from "/space/scene.js";
 import { t } from "/app/words.js";
 
-const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a question about a file that has no axes of its own
+const SCANNED = /^file = ".*(?<!\.toml)"$/m; // a run with a file without axes
 /** @typedef {SpaceStage & { setIn: (pose: SpacePose) => void, settleIn: (pose: SpacePose) => void }} Setting */
 
-const SETTLES = 700; // a body that is set down in another pose is seen to turn for so long [ms]
-const FEW = 12; // poses that are listed
-const MOST = 40; // marks of one kind; a rough scan has hundreds of little ones
+const SETTLES = 700; // duration of the rotation into another pose [ms]
+const FEW = 12; // number of listed poses
+const MOST = 40; // largest number of marks of a kind; a rough scan has hundreds
 const COLOURS = [["rise", "height of the centre of mass"], ["plain", "none"]];
 // rounding errors are 0
 /** @param {number} value @param {number} most */
@@ -33,7 +33,7 @@ export const Standing = ({ question, answer, onPose, children }) => {
   /** @type {{ current: Setting | null }} */
   const stage = useRef(null);
   const shown = Number(pose.value);
-  // the hardest to leave first
+  // in order of decreasing energy barrier
   const poses = [...answer.stable].sort((first, other) => (other.barrier ?? Infinity) - (first.barrier ?? Infinity));
   /** @param {string} number_ */
   const settle = (number_) => {
@@ -98,11 +98,11 @@ export const Standing = ({ question, answer, onPose, children }) => {
     ${answer.notes.map((/** @type {string} */ note) => html`<p class="field-help" key=${note}>${note}</p>`)}`;
 };
 
-// A place a little before the surface, where a mark is not cut in halves by it.
+// Position slightly in front of the surface, so that the whole mark is visible.
 /** @param {number[]} position @param {number} size */
 const before = (position, size) => position.map((coordinate) => coordinate * (1 + (0.03 * size) / Math.hypot(...position)));
 
-// A stage on which a body is lifted, turned and set down.
+// Stage on which a body rotates into another pose.
 /** @param {SpaceStage} spaceStage @returns {Setting} */
 const settling = (spaceStage) => {
   const stage = /** @type {Setting} */ (spaceStage);

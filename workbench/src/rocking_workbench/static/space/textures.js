@@ -24,7 +24,7 @@ const path = (pen, points) => {
   pen.closePath();
 };
 
-// As the picture of the equilibria marks them; white takes the colour of the material.
+// Marks as in the picture of the equilibria; white is replaced by the colour of the material.
 /** @type {{ [shape: string]: (pen: CanvasRenderingContext2D) => unknown }} */
 const SHAPES = {
   /** @param {CanvasRenderingContext2D} pen */
@@ -51,7 +51,7 @@ export const markTexture = (three, shape) => drawn(three, (pen) => {
   pen.fill();
 });
 
-/** The same mark next to text. @param {string} kind */
+/** The mark next to text. @param {string} kind */
 export const markKey = (kind) => {
   const pen = new SvgPen();
   const draw = SHAPES[kind] ?? SHAPES.dot;

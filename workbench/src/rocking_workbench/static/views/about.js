@@ -3,7 +3,7 @@
 import { quantity } from "/app/format.js";
 import { plainWords } from "/views/studies-words.js";
 
-/** Name of the body, or else its size, and the motion, for elements around figures.
+/** Name of the body, otherwise its size, and the motion, for elements around figures.
  * @param {{ name?: string | null, sides?: Server.Sides }} body @param {any} [motion] @param {string[]} [more] */
 export const aboutOf = ({ name, sides }, motion = null, more = []) => {
   const size = name || !sides ? [] : [`h/b = ${quantity(sides.right.slenderness_ratio, "")}, R = ${quantity(sides.right.semi_diagonal, "m")}`];

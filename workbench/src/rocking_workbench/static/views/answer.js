@@ -1,4 +1,4 @@
-/** Answers of the API that follow the inputs while their view is on the screen. */
+/** Results of the API that follow the inputs while their view is visible. */
 
 import { batch, signal } from "/parts/preact.js";
 
@@ -29,7 +29,7 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
     if (!query) return become(null);
     try {
       const value = await app.latest(name, path, query);
-      if (question()) become(value); // else nothing moves any more
+      if (question()) become(value); // otherwise the view would not be updated
     } catch (error) {
       if (app.superseded(error)) return undefined;
       dirty = true; // a failed request is repeated at the next show of the view
@@ -37,7 +37,7 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
     }
     return undefined;
   };
-  // several changes of one moment are one question
+  // several simultaneous changes cause one request
   const ask = () => {
     if (!queued) queueMicrotask(refresh);
     queued = true;
@@ -50,7 +50,7 @@ export const createAnswer = (app, name, keys, question, { path = "response", det
   return {
     answer, refused, closeup,
     ask,
-    /** Ask again for the part of the time that the figures show; null shows all of it. @param {Point | null} window */
+    /** Request the visible interval of the figures; null: the complete time. @param {Point | null} window */
     look: async (window) => {
       const shownAnswer = answer.value;
       closeup.value = window && { window };
