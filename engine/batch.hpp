@@ -61,7 +61,7 @@ struct Event {
     std::int8_t side;
 };
 
-// Where a single history writes its samples and events.
+// Output of a single history: samples and events.
 struct Trace {
     double* rotation;
     double* velocity;
@@ -78,7 +78,7 @@ struct Rows {
     std::int8_t *outcome, *status, *side, *still;
     double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error, *least_force, *friction;
     std::int64_t *impacts, *uplifts;
-    const std::int64_t* list = nullptr;  // the rows to be done; all of them if there is none
+    const std::int64_t* list = nullptr;  // rows to compute; all rows if empty
 };
 
 struct Settings {
@@ -88,17 +88,17 @@ struct Settings {
     std::int64_t most_impacts;
     bool linear;
     int order;
-    bool to_the_ground;   // follow an overturning body until it lies
+    bool to_the_ground;   // continue an overturning body until it lies on the ground
 };
 
-// Largest acceleration of a motion over gravity, both directions together.
+// Largest acceleration of a motion over gravity, resultant of both directions.
 inline double strength_of(const Shake& shake, double over_gravity) {
     const double push = std::max(shake.horizontal.high, -shake.horizontal.low);
     const double lift = std::max(shake.vertical.high, -shake.vertical.low);
     return std::fabs(over_gravity) * (push + lift);
 }
 
-// Parts into which a stretch is cut. A ground that shakes with many g moves the body faster than gravity does.
+// Number of parts of a stretch. At accelerations of many g the ground moves the body faster than gravity.
 inline double parts_of(const Shake& shake, double p, double over_gravity, double longest_step) {
     const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * strength_of(shake, over_gravity)));
     return std::max(1.0, std::ceil(reach / longest_step));  // Eq. 53
@@ -108,7 +108,7 @@ inline double parts_of(const Shake& shake, double p, double over_gravity, double
 // of that of order 8 at its longest step: equally accurate, and faster.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }  // Eq. 54
 
-// Whether all steps of a row are so short that order 6 takes the place of order 8. Under b g a rotation goes wrong by some
+// True if all steps of a row are so short that order 6 is sufficient. Under b g the error of a rotation is about
 // reach^5 b^3 / 70 of alpha in a step.
 inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
     if (set.order != 8 || m.degree != 1 || set.linear) return false;
@@ -118,7 +118,7 @@ inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row
     return p * shake.step * std::pow(std::max(1.0, strength_of(shake, rows.scale[row] / set.gravity)), 0.6) < reach;
 }
 
-// Rows that wait; threads take a few at a time, fewer towards the end, so that all of them end together.
+// Waiting rows. Threads take several at a time, and fewer towards the end, so that all threads end together.
 struct Queue {
     std::int64_t end, chunk, threads;
     std::atomic<std::int64_t> next{0};
@@ -138,7 +138,7 @@ struct Queue {
 
 struct Work {
     std::int64_t steps = 0;  // Taylor steps of active lanes
-    std::int64_t sweeps = 0; // steps of all lanes together
+    std::int64_t sweeps = 0; // steps of all lanes
     std::int64_t events = 0; // of single lanes
     std::int64_t orders = 0; // steps times their order
 };

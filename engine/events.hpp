@@ -1,4 +1,4 @@
-// Events of single lanes: impacts, peaks, the ends of motions, and whatever else is not a plain step.
+// Events of single lanes: impacts, peaks, ends of motions, and all other exceptions from plain steps.
 #pragma once
 #include "kernel.hpp"
 
@@ -24,14 +24,14 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            // one that starts on the ground and is curved down only once divided by its zero may bend up at first
+            // a polynomial from the ground that is concave only after the division by its zero may increase at first
             const Pack most = arcs[0][m] + arcs[1][m] + max(arcs[2][m], Pack(0.0));
             const Mask rises = (arcs[1][m] > Pack(0.0)) & (most > Pack::load(floors + from + m * P));
             rising |= static_cast<Bits>(rises.bits()) << (m * P);
             max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
     }
-    // one thing after another for all of them, and without branches that depend on the lane
+    // each operation for all lanes, without branches that depend on the lane
     int settling[M * P], settlings = 0;
     for (Bits left = landed & rising; left; left &= left - 1) {
         const int s = lowest(left);
@@ -130,14 +130,14 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     return (lane.impacts >= set.most_impacts) | (idx[i] >= last[i]) | (after <= s.calm);
 }
 
-// Consequences of an impact: too many of them, the end of the motion, rest.
+// Consequences of an impact: too many impacts, end of the motion, rest.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::settle(int i) {
     const double after = -v[i];
     if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyEvents);
     if (over(i)) return conclude(i);
     if (!(after <= here(i).calm)) return;
-    const std::int64_t block = block_at(i);  // soon at rest: then these are needed
+    const std::int64_t block = block_at(i);  // needed for a body near rest
     ROCKING_PREFETCH(motions.horizontal.within.data() + block);
     ROCKING_PREFETCH(motions.horizontal.later.data() + block);
     if (comes_to_rest(i, after)) {
@@ -159,7 +159,7 @@ double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [r
     return r;
 }
 
-// Of all coefficients that landing on a side may meet.
+// Largest coefficient of landings on a side.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::largest(int i, int side) const {
     const double r = lanes[i].sides[side].r;

@@ -20,11 +20,11 @@ namespace rocking {
 namespace ROCKING_ISA {
 
 constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
-constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
+constexpr double kMostError = 0.01;     // sum of error estimates above which there is no result [rad]
 constexpr double kMostSteps = 2e7;      // steps of a history
-constexpr double kLongest = 40.0;       // stretches that flights to rest may take
+constexpr double kLongest = 40.0;       // largest number of stretches in flights to rest
 constexpr double kHeights = 0.1;        // bound on the contribution of the heights of these flights to the logarithm of their gain
-constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
+constexpr double kNothing = 1e-9;       // speeds over p alpha that count as zero
 constexpr double kHalfPi = 1.57079632679489661923;
 
 #define ROCKING_KERNEL template <int G, int U, int N, int D, bool Z, bool L>
@@ -37,7 +37,7 @@ class Kernel {
     static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // numbers of a sample or stretch
     static constexpr int Q = U > 1 ? 2 : 1;  // registers that step side by side
     static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land, or turn round, side by side
-    using Bits = std::uint64_t;              // one a lane of a group
+    using Bits = std::uint64_t;              // one per lane of a group
 
     // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
     // not above it are ignored. It may be below the highest point by the change within a step.
@@ -47,9 +47,9 @@ class Kernel {
     alignas(64) double least[W], demand[W], lever[W], sine_of[W], cosine_of[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U], spans[U];  // of the steps of a group
-    alignas(64) double u_end[W], v_end[W];   // where the last step ends
-    alignas(64) double fresh[N + 1][U * P];  // terms of the steps that a group has just made
-    alignas(64) double queued[N + 1][W + M * P] = {};  // the same of the lanes that may touch the ground
+    alignas(64) double u_end[W], v_end[W];   // end of the last step
+    alignas(64) double fresh[N + 1][U * P];  // terms of the last steps of a group
+    alignas(64) double queued[N + 1][W + M * P] = {};  // terms of the lanes that may touch the ground
     alignas(64) double above[W + M * P] = {}, floors[W + M * P] = {}, span[W + M * P] = {};  // their heights, `peak`, steps
 
     struct alignas(64) Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
@@ -77,12 +77,12 @@ class Kernel {
         double stretch, tau, length, upto, end;
     } peaks[M * P];
     int peaks_waiting = 0;
-    struct {  // the row that comes next, made ready so that no lane waits for memory
+    struct {  // the next row, prepared so that no lane waits for memory
         Lane lane;
-        bool still;                // whether it starts at rest
+        bool still;                // true if it starts at rest
         double parts;
         std::int64_t segments;     // stretches of its motion
-        std::int64_t from;         // before this sample nothing lifts it from rest
+        std::int64_t from;         // first sample that may lift it from rest
         std::int64_t row = -1;
     } ready;
 
@@ -92,7 +92,7 @@ class Kernel {
     const Settings& set;
     Trace* trace;
     Queue& queue;
-    std::int64_t next = 0, end = 0;  // rows taken from the queue and not yet begun
+    std::int64_t next = 0, end = 0;  // rows from the queue that have not begun
     int active = 0, used = G * U;    // lanes with a row, registers with such lanes
 
   public:

@@ -1,4 +1,4 @@
-// Coefficients that change from impact to impact: tables over the speed, and draws that any order of work repeats.
+// Coefficients that change from impact to impact: tables over the speed, and random values independent of the order of work.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +16,7 @@ inline std::uint64_t mixed(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-// Number in [0, 1) that depends on the seed, the history and the count of its impacts, on nothing else.
+// Number in [0, 1) that depends on the seed, the history and the number of its impacts only.
 inline double uniform(std::uint64_t seed, std::int64_t key, std::int64_t impact) {
     const std::uint64_t z =
         mixed(mixed(mixed(seed) + static_cast<std::uint64_t>(key)) + static_cast<std::uint64_t>(impact));

@@ -1,4 +1,4 @@
-// The door to Python: arrays in, arrays out, threads over chunks of rows with the interpreter lock released.
+// Interface to Python: arrays in, arrays out, threads over chunks of rows without the interpreter lock.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
@@ -52,7 +52,7 @@ static Run kernel(const std::string& isa, bool single, const Choice& choice) {
     return run;
 }
 
-// The motions of a campaign, looked through once.
+// The motions of a campaign, analysed once.
 struct Library {
     Motions motions;
     In<double> keep;
@@ -191,7 +191,7 @@ static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, c
     std::stable_sort(list.end() - tail, list.end(), [&](auto a, auto b) { return length(a) > length(b); });
 }
 
-// All shares in turn, by all threads together; no thread waits for others in between.
+// All chunks in turn, by all threads, without waiting between chunks.
 static void share_out(std::deque<Share>& shares, const Motions& m, const Law& law, const Rows& all, const Settings& set,
                       int threads, Work& total) {
     std::mutex one_at_a_time;

@@ -5,7 +5,7 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// One Taylor step of every lane, then the events of those that have one. Those that may touch the ground go side by side.
+// One Taylor step of every lane, then the events of those that have one. Lanes that may touch the ground are computed in parallel.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::sweep() {
     int landing[W], landings = 0;
@@ -40,7 +40,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
 // not unrolled: their bodies fill the window of out-of-order execution, and fit in the cache of decoded instructions.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
-    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, a lane a turn
+    // every lane reads its own motion, more streams than processors predict: prefetch one lane per step
     for (int r = 0; r < count; ++r) ROCKING_PREFETCH(motions.data + idx[base + r * P + work.sweeps % P] + 16);
     ROCKING_ROLLED
     for (int r = 0; r < count; ++r) {
@@ -122,7 +122,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
             const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
             const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), max(sag, zero), max(u0, u1)) >= zero));
-            // the force of the ground where the step starts, times the square of p h: see forces.hpp
+            // contact force at the start of the step, times the square of p h: see forces.hpp
             Pack up = Z ? fma(z[0][r + j], qh[j], qh[j]) : qh[j], along = b[0][r + j] * qh[j];
             const Pack minus = Pack::load(lever + at);
             if (L) {

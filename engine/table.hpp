@@ -1,4 +1,4 @@
-// Which kernel serves which problem.
+// Selection of the kernel for a problem.
 #pragma once
 #include "batch.hpp"
 

@@ -1,4 +1,4 @@
-// Overturned or not: beyond return, and the energy at the end of the motion.
+// Overturning: the point of no return, and the energy at the end of the motion.
 #pragma once
 #include "kernel.hpp"
 
@@ -51,11 +51,11 @@ void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight
     weight = 1.0 + std::min({0.0, lanes[i].az * lift.low, lanes[i].az * lift.high});
 }
 
-// The motion is over: energy decides. e = u'^2 / (2 p^2) + cos u - cos alpha against 1 - cos alpha at the top.
+// After the motion the energy decides: e = u'^2 / (2 p^2) + cos u - cos alpha against 1 - cos alpha at the top.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
-    if (has_peaks(i)) find_peaks();  // in their order, so that the first of several equal ones counts
+    if (has_peaks(i)) find_peaks();  // in their order, so that the first of several equal values counts
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
     if (idx[i] >= last[i]) force_at_end(i);
     const double speed = v[i] / lane.step;
@@ -112,7 +112,7 @@ double Kernel<G, U, N, D, Z, L>::energy(const Side& s, double u_, double speed) 
     return kinetic + 2.0 * a * b;  // Eq. 17
 }
 
-// Rotation |theta| at which a body of energy e turns round.
+// Rotation |theta| at which a body with energy e reverses.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::height(const Side& s, double e) {
     if (L) return s.alpha - std::sqrt(std::max(0.0, s.alpha * s.alpha - 2.0 * e));

@@ -17,7 +17,7 @@ namespace rocking::bed {
 
 enum Law : int { kKelvinVoigt = 0, kHuntCrossley = 1, kPlastic = 2 };
 enum Friction : int { kSticking = 0, kCoulomb = 1, kRegularised = 2 };
-// away: no touch; pressing: on the loading branch; lagging: the bed is slower than the body, no force; spring: unloading
+// away: no contact; pressing: loading; lagging: the bed is slower than the body, no force; spring: unloading
 enum class Mode : std::uint8_t { away, pressing, lagging, spring };
 
 struct Points {  // towards the new foot; share: copies of the law under the point
@@ -45,7 +45,7 @@ struct Place {  // gap = y - s sigma + zeta kappa, and its rate
 
 inline void sine_and_cosine(double angle, double& s, double& c) {
     const double q = angle * angle;
-    if (q < 0.01) {  // most of an impact; the terms left out are below 1e-19
+    if (q < 0.01) {  // largest value in an impact; the omitted terms are below 1e-19
         s = angle * (1.0 + q * (-1.0 / 6.0 + q * (1.0 / 120.0 + q * (-1.0 / 5040.0 + q * (1.0 / 362880.0 - q / 39916800.0)))));
         c = 1.0 + q * (-0.5 + q * (1.0 / 24.0 + q * (-1.0 / 720.0 + q * (1.0 / 40320.0 - q / 3628800.0))));
         return;
@@ -81,7 +81,7 @@ struct Load {  // resultant, its moments with s and zeta, power lost in the bed;
     double force = 0, moment = 0, tilt = 0, loss = 0, stored = 0;
 };
 
-// Points of a power law that touch, in columns; pressing: 1, or 0 where the bed lags behind.
+// Touching points of a power law, in columns; pressing: 1, or 0 if the bed is slower than the body.
 struct Touching {
     static constexpr std::size_t kLanes = 8;
     std::vector<double> at, height, stiffness, pressing;
@@ -94,7 +94,7 @@ struct Touching {
     }
 };
 
-// Several points at a time, each lane with its own sums: the same bits with every instruction set.
+// Several points at a time. Each lane has its own sums, so that all instruction sets give the same bits.
 ROCKING_BED_CLONES inline Load sum_of_powers(const Touching& t, const Place& x, double viscosity) {
     constexpr std::size_t n = Touching::kLanes;
     double force[n] = {}, moment[n] = {}, tilt[n] = {}, loss[n] = {}, stored[n] = {};

@@ -1,4 +1,4 @@
-// The door to Python: one impact with its history, or many with their results; threads take rows, and no row sees another.
+// Interface to Python: one impact with its history, or many with their results. Threads take independent rows.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 

@@ -13,7 +13,7 @@ class Motion {
 public:
     Motion(const Problem& p, Bed& bed) : p_(p), bed_(bed) {}
 
-    int slip = 0;  // Coulomb: 0 sticks, +1 or -1 slides that way
+    int slip = 0;  // Coulomb: 0 sticking, +1 or -1 sliding in this direction
 
     Rates rates(const State& x) const { return rates(x, place(x, p_.exact)); }
 
@@ -57,7 +57,7 @@ public:
         const Place at = place(x, p_.exact);
         return energy(x, at, travel, stored(at));
     }
-    // The same for a state whose rates are known.
+    // Derivatives of a state with known rates.
     double energy(const State& x, const Place& at, double travel, const Rates& rates) const {
         return energy(x, at, travel, bed_.linear() ? stored(at) : rates.stored);
     }
@@ -86,7 +86,7 @@ public:
         return slip != 0 ? slip * x[kU] : p_.friction * r.normal - std::abs(r.shear);
     }
 
-    // After a switch: may the base stick, and if not, which way does it slide?
+    // After a switch: sticking if possible, otherwise the direction of sliding.
     void settle_friction(const State& x, bool at_rest, bool leaves = false) {
         if (p_.kind != kCoulomb || (slip != 0 && !at_rest)) return;
         slip = 0;

@@ -98,7 +98,7 @@ struct Solver {
 };
 
 // (lambda / h - J) x = r for a state of two positions and three velocities, by elimination of the positions: a matrix of three
-// rows. The influence of the positions on their own rates is neglected: Newton's method corrects for it.
+// rows. The effect of the positions on their own rates is neglected, and Newton's method corrects this error.
 template <class T>
 class Reduced {
 public:
@@ -154,7 +154,7 @@ struct Step {
     }
 };
 
-// The field at a state and its derivative there: one serves every step that starts from that state.
+// Field and derivative at a state, common to all steps from this state.
 template <std::size_t N>
 struct Tangent {
     Vector<N> slope;
@@ -175,7 +175,7 @@ Tangent<N> tangent(const Field& f, const Vector<N>& y, const Vector<N>& nudge) {
     return t;
 }
 
-// Where Newton's method begins: states at the nodes, read off the polynomial of a step that covers or precedes them.
+// Start of Newton's method: states at the nodes from the polynomial of a containing or preceding step.
 template <std::size_t N>
 struct Guess {
     bool any = false;

@@ -6,7 +6,7 @@
 
 namespace rocking::bed {
 
-constexpr double kLeak = 0.09;   // energy that one step may lose or find, over tolerance and energy of the impact
+constexpr double kLeak = 0.09;   // allowed energy error of a step, over tolerance and energy of the impact
 constexpr double kBudget = 7.0;  // energy error budget of an impact: the smaller the remainder, the smaller the allowance of a step
 constexpr double kLeast = 3e-4;  // fraction of the budget that is always allowed, near rounding
 constexpr double kAgain = 1.2;   // first step after a switch over the last such step, where forces begin as d^n
@@ -69,7 +69,7 @@ private:
     double after_ = 0.0;
     bool after_switch_ = false;
     int stuck_ = 0, early_ = 0, late_ = 0;
-    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // knowledge of step_ about the time after x_
+    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // times after x_ for which step_ is valid
     bool local_known_ = false;
     Tangent<5> local_;
 
@@ -106,7 +106,7 @@ private:
                 causes_.clear();
                 ++out_.forced;
             }
-            if (tau <= 0.0) {  // the mode is already over
+            if (tau <= 0.0) {  // the mode has already ended
                 if (react()) return;
                 if (++stuck_ > 100) {  // on the edge of two modes: a short step in the one that keeps the energy
                     h = 1e-4 * start_.depth / start_.speed;
@@ -147,7 +147,7 @@ private:
         return leak_ * std::max(1.0 - used, kLeast);
     }
 
-    // A step from x_; its guess comes from the last step, which leads up to x_ or was refused from there.
+    // A step from x_; its initial guess is from the last step, which ended at x_ or was rejected there.
     bool attempt(double h) {
         if (!local_known_) local_ = tangent(motion_, x_, nudge_);
         local_known_ = true;
@@ -195,7 +195,7 @@ private:
         // a step that ends late may have passed another switch: use a shorter one
         late_ = late > instant_ ? late_ + 1 : 0;
         if (late_ > 0 && late_ <= 3) return false;
-        // on its own polynomial the step ends before the switch, or grazes it; but not for ever
+        // on its own polynomial the step ends before the switch, or grazes it; the number of repetitions is limited
         early_ = early ? early_ + 1 : 0;
         if (early && early_ <= 3) causes_.clear();
         look_at_nodes();
@@ -292,7 +292,7 @@ private:
             if (c.point == -2) {
                 peak = true;
             } else if (c.point == -1) {
-                if (motion_.slip != 0 && std::abs(x_[kU]) > std::max(1e-9 * start_.speed, 10.0 * unit_[kU])) {  // it slides the other way
+                if (motion_.slip != 0 && std::abs(x_[kU]) > std::max(1e-9 * start_.speed, 10.0 * unit_[kU])) {  // reversed sliding
                     motion_.slip = x_[kU] > 0.0 ? 1 : -1;
                     continue;
                 }
@@ -304,7 +304,7 @@ private:
                 const double kept = bed_.stored(c.point, at);
                 const Mode was = bed_.mode[c.point];
                 bed_.change(c.point, c.which, at);
-                // new ground pressed on the way to the switch
+                // points that touched during the step to the switch
                 if (was == Mode::spring && bed_.mode[c.point] == Mode::pressing) out_.bed_loss += kept - bed_.stored(c.point, at);
                 note(c.point, before, holds(c.point));
             }
@@ -357,14 +357,14 @@ private:
         else trace_->intervals.push_back({i, on_[i], out_.time}), on_[i] = -1.0;
     }
 
-    // Whether only the new foot presses.
+    // True if only the new foot is in contact.
     bool alone() {
         for (std::int64_t i = 0; i < p_.points.count; ++i)
             if (holds(i) != (i == start_.new_foot)) return false;
         return true;
     }
 
-    // The impact is over when only the new foot presses, and is arrested.
+    // The impact ends when only the new foot is in contact, and at rest.
     bool ended() {
         if (start_.end == kAtTime || out_.touch < 0.0) return false;
         const double slow = start_.end == kAtParting ? 1e-10 : (1.0 + 1e-6) * kArrested;

@@ -76,7 +76,7 @@ protected:
         return causes_.empty() ? 1.0 : first_;
     }
 
-    // Points i to j of one mode: between two that are far from a switch, where margins are straight lines, all are.
+    // Points i to j of one mode. If margins are linear and the end points are far from a switch, all points between are too.
     void look_along(std::int64_t i, std::int64_t j) {
         double g[2][kStages + 1], other[2][kStages + 1];
         const int kinds = bed_.margins(i, places_, g);

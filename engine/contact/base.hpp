@@ -14,7 +14,7 @@ enum Outcome : std::int64_t { kNoUplift, kRocked, kOverturned, kFailed, kSlid, k
 enum Status : std::int64_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kStuck = 6, kNoForce = 7 };
 enum class Bounce : std::int64_t { newton, poisson, stronge };
 
-// Sine and cosine for |x| <= pi / 2 by their series: no two processors differ, as two libraries may.
+// Sine and cosine for |x| <= pi / 2 by their series, with the same bits on all processors.
 struct Terms {
     double term[22] = {1.0, 1.0};
     constexpr Terms() {

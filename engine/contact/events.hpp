@@ -54,7 +54,7 @@ inline void functions_of(const Base& b, Mode m, const Series& c, double mu, doub
     right[0] += kHalfPi, left[0] += kHalfPi;
 }
 
-// Which coefficient decides the sign of a function a moment after the start; -1 where all of them vanish.
+// Index of the coefficient that decides the sign of a function just after the start; -1 if all are zero.
 inline int leading(const Function& f, int n, double stretch, double tolerance) {
     double bound = tolerance * f.scale;
     for (int k = 0; k < std::min(n, 7); ++k) {
@@ -91,7 +91,7 @@ inline double zero_between(const double* c, int n, double low, double high) {
     return x;
 }
 
-// Where on [0, 1], and a little beyond, the sign changes: at most once between two zeros of the slope.
+// Sign changes on [0, 1], and slightly beyond: at most one between two zeros of the slope.
 inline int zeros(const double* c, int n, double* out) {
     while (n > 1 && c[0] == 0.0) ++c, --n;
     double low = c[0], high = c[0];
@@ -123,7 +123,7 @@ inline bool uneventful(Mode m, const Series& c, double mu) {
     return push > 1e-6 * std::fabs(normal[0]) && open > 1e-6 * high && high < kHalfPi && (m.slip ? slide > 1e-6 * std::fabs(c.sliding[0]) : grip > 1e-6 * mu * normal[0]);
 }
 
-// Where on (0, 1] a polynomial that starts above zero first goes below it; 2 if nowhere. Touching zero is not falling.
+// First position in (0, 1] at which a polynomial that starts above zero falls below zero, not only touches it; 2 if none.
 inline double first_fall(const double* c, int n) {
     double low = c[0];
     for (int k = 1; k < n; ++k) low += std::min(c[k], 0.0);

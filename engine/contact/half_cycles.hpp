@@ -1,5 +1,5 @@
-// Half cycles of a body on one foot that may slide, each from a state of its own, over steps in which the ground's acceleration
-// is a straight line. Mirrored, so that rotations are positive; forces over the mass.
+// Half cycles of a body on a foot that may slide, with separate initial states. In each step the ground acceleration
+// is linear. The bodies are mirrored so that rotations are positive. Forces are over the mass.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ class SlidingFoot {
         double turning, sliding;
     };
 
-    // direction: in which the foot slides; zero if the ground holds it.
+    // direction of sliding; zero if the foot sticks.
     Rates rates(double y, double v, double push, double lift, double direction) const {
         const double sine = std::sin(alpha_ - y), cosine = std::cos(alpha_ - y);
         if (direction == 0.0) return {-size_ / whole_ * (lift * sine + push * cosine), 0.0};  // Eq. 14

@@ -33,7 +33,7 @@ class Impact {
         return grown(bounce, Bounce::stronge, struck);
     }
 
-    // A foot that slides although no force there obeys Coulomb's law: its impulse grows until it sticks.
+    // A foot slides, but no force satisfies Coulomb's law: its impulse grows until the foot sticks.
     bool shock(Struck& struck) const {
         for (int foot : {kLeft, kRight}) {
             if (!(s_.touching & foot) || away_[foot] != 0.0) continue;
@@ -97,7 +97,7 @@ class Impact {
         return true;
     }
 
-    // Newton's law: every choice of feet that take part and of how they slide is tried. `single`: two that differ are none.
+    // Newton's law: all combinations of feet and directions of sliding are tried. `single`: two different results count as no result.
     bool newton(const double (&bounce)[3], Struck& struck, bool single) const {
         double target[3];
         for (int foot : {kLeft, kRight}) target[foot] = -bounce[foot] * away_[foot];  // Eq. 70

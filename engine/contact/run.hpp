@@ -85,7 +85,7 @@ class Run {
         return !(std::fabs(s_.rotation) > b_.alpha[side]) || (now() - row_.end) * b_.pace > kPatience;
     }
 
-    // The motion of the next while; a stretch that has begun is shifted.
+    // Motion of the next time interval; the remaining part of a stretch is shifted.
     Ground ground(double unit) const {
         Ground g;
         g.unit = unit, g.lift[0] = set_.gravity, g.small = 0.1 * set_.tolerance;
@@ -285,7 +285,7 @@ class Run {
         return choose(b_, calm, ground(1.0 / b_.pace), law_.friction, mode, tolerance) && mode.feet == kBoth ? calm : after;
     }
 
-    // No rigid force: the impulse of a shock, or the end.
+    // No force of a rigid body exists: the impulse of a shock, or the end.
     void shocked() {
         if (++events_ >= set_.most_events) stop(kTooManyEvents);
         if (done_) return;
@@ -337,7 +337,7 @@ class Run {
         return !(min_weight * right + low * h > 0.0 && min_weight * left - high * h > 0.0 && mu * min_weight - high > 0.0 && mu * min_weight + low > 0.0);  // Eq. 69
     }
 
-    // Rests through stretches that cannot move the body; whether there were any.
+    // Skips stretches that cannot move the body; returns true if there were any.
     bool rest() {
         const std::int64_t from = stretch_;
         const std::int64_t last = std::min<std::int64_t>(m_.count, static_cast<std::int64_t>(row_.end / m_.step + 1e-9));

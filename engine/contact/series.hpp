@@ -83,7 +83,7 @@ inline void flight(const Base& b, const State& s, const Ground& g, int order, Se
     c.rotation[0] = s.rotation, c.rotation[1] = s.spin * g.unit;
 }
 
-// One foot carries, and sticks or slides: recursions for the arm and the rotation.
+// One foot in contact, sticking or sliding: recursions for the arm and the rotation.
 inline void pivoting(const Base& b, const State& s, Mode m, const Ground& g, double mu, int order, Series& c) {
     const double j = b.inertia, unit2 = g.unit * g.unit, pull = m.slip * mu;
     const Arm r = arm(b, b.lever[m.feet], s.rotation);

@@ -30,7 +30,7 @@ struct Body {
     std::vector<Vec> points;           // vertices, from the centre of mass
     std::vector<Mat> soft, stiff;      // acceleration of each vertex by a force there, and its inverse
     std::vector<Vec> facets;           // outward normals over distances from the centre
-    List poses, first, beside;         // of each facet: pose to which it leads, its neighbours
+    List poses, first, beside;         // by facet: the final pose, the neighbours
     List first_corner, corners;         // of each facet
     Positions ked, calibrated;         // k of a landing on the base, by two models
     bool usable = false;
@@ -57,7 +57,7 @@ struct Body {
         return {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
     }
 
-    // The facet through which the vertical through the centre leaves, downward: from a facet to better neighbours.
+    // Facet below the centre of mass, by a search from facet to neighbour.
     int under(Vec up, int from) const {
         for (double lowest = dot(facets[from], up);;) {
             const int before = from;

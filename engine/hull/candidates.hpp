@@ -16,7 +16,7 @@ inline const Vec* moving_of(const Moving& moving, int i) {
 
 class Candidates {
   public:
-    // Begins a problem; it and the lists must outlive the use. limit: violation of a law from which a candidate is of no use.
+    // Begins a problem, which must remain valid with its lists. limit: violation of a law above which a candidate is rejected.
     void begin(const Problem& p, const Points& touching, const Points& near, const Moving& moving, double still, double limit) {
         problem_ = &p, near_ = &near, moving_ = &moving, still_ = still, limit_ = limit, next_ = 0;
         faces_.clear(), made_.clear(), holding_.clear(), table_.reset();
@@ -142,7 +142,7 @@ class Candidates {
         return t;
     }
 
-    // One of the free members of a face sticks, or none.
+    // One free member of a face sticks, or no free member.
     Verdict slide(const Way& way, const Held& held, Trial& t) const {
         const Points& members = faces_[way.face];
         t = begun(members);
@@ -174,7 +174,7 @@ class Candidates {
         return s;
     }
 
-    // A face whose vertices stick where they do not slide already.
+    // A face; its vertices stick unless they already slide.
     const Held& hold(int face) {
         Held& held = holding_[face];
         if (held.known) return held;

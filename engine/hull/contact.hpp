@@ -505,7 +505,7 @@ inline std::vector<Points> faces(const Problem& p, const Points& touching) {
     return faces;
 }
 
-// Whether no gap closes.
+// True if no gap closes.
 inline bool clear(const Problem& p, const Solution& s, const Points& touching, double slack) {
     const Points& members = s.contact.members;
     if (members.size() > 2 && members.size() == touching.size()) return true;  // all of them stay

@@ -116,7 +116,7 @@ class Flow {
         return samples[3];
     }
 
-    // Keeps the motion over the step that was just made whole, for `along`.
+    // Keeps the motion over the last complete step, for `along`.
     void keep(double span) { whole_ = span, kept_ = false; }
     void interpolate() {
         if (kept_) return;
@@ -133,7 +133,7 @@ class Flow {
         course_[4] = moved(none, rates_, weight, 7, span);
     }
 
-    // The motion at a part of that step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
+    // Motion at a fraction of the last step, to the fourth order (Hairer, Norsett & Wanner 1993, II.6).
     State along(double fraction) {
         interpolate();
         const double left = 1.0 - fraction;
@@ -143,7 +143,7 @@ class Flow {
         return result;
     }
 
-    // The height of a point then.
+    // Height of a point at this time.
     double height(double fraction, Vec point) {
         interpolate();
         const double left = 1.0 - fraction;
@@ -157,7 +157,7 @@ class Flow {
         return mixed(&c[0].place.z, &c[1].place.z, &c[2].place.z, &c[3].place.z, &c[4].place.z) + dot(frame(q).c, point) / size;
     }
 
-    // Moves the end of the step a little.
+    // Moves the end of the step slightly.
     void nudge(double time) {
         static constexpr double unity = 1.0;
         samples[3] = moved(samples[3], rates_ + 6, &unity, 1, time);

@@ -41,7 +41,7 @@ struct Law {
     }
 };
 
-// The point of a vertex, an edge or a facet (by its border) that is nearest to another one.
+// Nearest point of a vertex, an edge or a facet (by its border) to another point.
 inline Vec nearest(const Body& b, const Points& stood, Vec to) {
     const std::size_t n = stood.size();
     Vec best = b.points[stood[0]];

@@ -10,7 +10,7 @@ namespace rocking::hull {
 
 // gaps over the size: of vertices that land together, and at which one lands
 constexpr double kClosed = 1e-11, kGrazed = 1e-14, kForce = 1e-11;
-// speeds over sqrt(g size): at which sliding stops, below which a vertex may stick, or still slides as it started
+// speeds over sqrt(g size): for the end of sliding, for a possible sticking, for a constant direction of sliding
 constexpr double kSlip = 5e-6, kSlides = 1e-4, kStrikes = 5e-10;
 constexpr std::array<double, 4> kLadder{1e-11, 1e-9, 1e-7, 1e-5};
 constexpr double kFlatWithin = 1e-6;  // gap over the size below which a facet lands with all its corners
@@ -50,7 +50,7 @@ class Run {
         : b_(body), g_(ground), law_(law), mu_(friction), set_(set), flow_(body, friction), trace_(trace) {
         pace_ = std::sqrt(g_.gravity / b_.size), speed_ = g_.gravity / pace_;
         slow_ = set_.rest_speed * speed_, slack_ = kForce * g_.gravity;
-        rest_ = greater(set_.rest_speed * set_.rest_speed, kClosed);  // gaps below that are none, nor is the energy that lifts the body by less
+        rest_ = greater(set_.rest_speed * set_.rest_speed, kClosed);  // smaller gaps, and energies of smaller rises, count as zero
         weak_ = rest_ * b_.mass * g_.gravity * b_.size;
         stop_ = greater(kSlip, std::sqrt(set_.tolerance)) * speed_, slides_at_ = greater(kSlides, 2.0 * std::sqrt(set_.tolerance)) * speed_;
         length_ = span_ = 0.1 / pace_;
@@ -307,7 +307,7 @@ class Run {
         return true;
     }
 
-    // Whether the step has left the contact by more than a small part of its error.
+    // True if the step violates the contact by more than a small fraction of its error.
     bool drifted() const {
         const double most = kDrift * set_.tolerance;
         for (int i : mode_.contact.members) {
@@ -365,7 +365,7 @@ class Run {
         }
     };
 
-    // When the first margin falls below zero, and which kind.
+    // Time at which the first margin falls below zero, and the kind of the margin.
     Kind first_event(double& fraction) {
         Kind first = kNone;
         fallen();
@@ -467,11 +467,11 @@ class Run {
         return x;
     }
 
-    // The same where that fails: from the cubic through the four stages, within a bracket.
+    // If the interpolation fails: the zero of the cubic through the four stages, within a bracket.
     double searched(const Fall& f, double low, double high, double close) {
         const Watch& w = f.what;
         double at_high = at(w, high), x = guess(f, low, high), last = high, at_last = at_high;
-        bool sure = low == 0.0;  // whether the margin is above zero at the low end
+        bool sure = low == 0.0;  // true if the margin is above zero at the low end
         if (sure && f.values[0] == 0.0)  // it has just left: where is it above the ground?
             for (double up = 0.5 * high, resolution = 1e-6 * high; up > resolution; up *= 0.5) {
                 const double value = at(w, up);
@@ -587,7 +587,7 @@ class Run {
         }
     }
 
-    // Gravity less the acceleration of the ground, a moment later.
+    // Gravity minus the ground acceleration, slightly later.
     Vec pull() const {
         if (stretch_ >= g_.motion->count) return g_.weight;
         Field f;
@@ -907,7 +907,7 @@ class Run {
         choose(near, nullptr, &near);
     }
 
-    // Makes the largest face stick by a plastic impact, pulled or not.
+    // Makes the largest face stick by a plastic impact, also with a tensile impulse.
     void pile(const Points& touching) {
         const Problem p = velocities(0.0);
         const auto all = faces(p, touching);
@@ -923,7 +923,7 @@ class Run {
         choose(kept, nullptr, &kept);
     }
 
-    // Lays a body flat that hardly moves above a facet, if the ground holds it there.
+    // Lays a nearly resting body flat on a facet, if it remains at rest there.
     void calm() {
         Points near;
         touch(near, 10.0 * rest_);

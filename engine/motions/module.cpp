@@ -25,7 +25,7 @@ using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 constexpr double kLog2High = 6.93147180369123816490e-01, kLog2Low = 1.90821492927058770002e-10;
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00, kHalfPiLow = 6.07710050650619224932e-11;
-constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: added and taken away, it rounds to a whole number
+constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: its addition and subtraction rounds to an integer
 
 // Terms of the series, as Python divides them.
 struct Factorials {
@@ -163,7 +163,7 @@ ROCKING_WIDER void turn(Four* from, const Four* end, Four* fed, int feeds, const
     }
 }
 
-// Lagrange's weights of `width` neighbours at whole places around, at a place from 0 to 1 in their middle.
+// Lagrange's weights of `width` neighbours at integer positions, for a position from 0 to 1 in their middle.
 template <int width>
 struct Shares {
     double scale[width];
@@ -189,7 +189,7 @@ struct Shares {
     }
 };
 
-// Impulses into damped oscillators of fixed frequencies, which they pass one way: each is shared between neighbours about its place. Sums of the
+// Impulses on damped oscillators of fixed frequencies, in order; each impulse is distributed to the neighbours of its position. Sums of the
 // sines, and of the squared responses times two, after every step.
 template <int width>
 static void resonate(const double* noise, const double* omega, const double* positions, std::int64_t count, std::vector<Four>& four,

@@ -12,7 +12,7 @@
 
 namespace rocking::motions {
 
-// Wider registers change nothing but the time: no product is fused with a sum.
+// Wider registers change only the computing time: no product is fused with a sum.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__)
 #define ROCKING_WIDER __attribute__((target_clones("avx2", "default")))
 #else

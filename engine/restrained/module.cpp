@@ -1,4 +1,4 @@
-// The door to Python: motions are handed over once, then tables of bodies, restraints and histories.
+// Interface to Python: motions are passed once, then tables of bodies, restraints and histories.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 

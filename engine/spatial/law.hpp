@@ -27,7 +27,7 @@ inline Vec projected(const Body& body, const State& s, const Pivot& onto) {
     return with_momentum(onto, body.inertia * s.velocity + body.mass * cross(onto.arm, speed));  // Eq. 88
 }
 
-// Only the horizontal velocities of the particles go on.
+// Only the horizontal velocities of the particles remain.
 inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
     const double half = 0.5 * (body.inertia.a.x + body.inertia.b.y + body.inertia.c.z);
     const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre

@@ -1,4 +1,4 @@
-// The door to Python: bodies and motions are handed over once, then tables of histories; threads take rows in turn.
+// Interface to Python: bodies and motions are passed once, then tables of histories. Threads take rows in turn.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>

@@ -1,4 +1,4 @@
-// Where the ground lets go: forces at a point and at both ends of an edge, as series of the time within a step.
+// Loss of contact: forces at a point and at both ends of an edge, as series of the time within a step.
 #pragma once
 #include "contact.hpp"
 #include "zeros.hpp"
@@ -81,7 +81,7 @@ struct Release {
     int which = -1;  // end of the edge, -1 for all contact
 };
 
-// When a force is a pull while its gap would open.
+// Time at which a force is tensile while its gap opens.
 inline double opens(const Body& body, const Pivot& edge, const Step& step, int which, const double* force) {
     const int top = step.s.order - 2;
     double opening[kMostOrder + 1];

@@ -119,7 +119,7 @@ private:
         if (least < -same) return uplift;
         for (int e = 0; e < rows_; ++e) {
             const double at = c[e][0] > 0.0 ? first_fall(c[e], order_) : (falls_at_once(c[e], order_) ? 0.0 : kNone);
-            if (at < kWhole) first = lesser(first, at);  // at the very end the next stretch decides
+            if (at < kWhole) first = lesser(first, at);  // at the end the next stretch decides
         }
         if (first == kFar) return {};
         for (int e = 0; e < rows_ && !body_.round; ++e) {

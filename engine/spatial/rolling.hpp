@@ -44,7 +44,7 @@ private:
         return total;
     }
 
-    // How fast the lowest point moves along the rim.
+    // Speed of the lowest point along the rim.
     void contact(int k) {
         rise_[k] = crossed(axis_[2], w_, k);
         slip_[k] = toward_[k] = 0.0;

@@ -43,7 +43,7 @@ void Run<D>::step_on_rim(int order, double angle) {
     if (held) letting = kNone;
     const double at = lesser(1.0, lesser(letting, turn));
     arrive(at, whole_ && at == 1.0);
-    if (z_.z <= 0.0) return finish_step();  // it lies before anything else happens
+    if (z_.z <= 0.0) return finish_step();  // it lies before any other event
     if (turn == at) return change_on_rim();
     if (letting == at) return released(-1);
     if (held) made_.held += at * step_.length;
@@ -51,7 +51,7 @@ void Run<D>::step_on_rim(int order, double angle) {
     finish_step();
 }
 
-// Whether a round base with hardly any energy left would stay flat: rolling alone never comes to rest.
+// True if a round base with nearly no energy remains flat, because rolling alone never ends.
 template <int D>
 bool Run<D>::lies_down() const {
     if (!(nearly_flat(body_, z_) && calm())) return false;
@@ -67,7 +67,7 @@ void Run<D>::change_on_rim() {
         return guard();
     }
     if (rolls && sine > 0.5 * kLanding) {
-        // a rigid rim that passes as near to flat as one likes rolls on, and one that passes exactly strikes
+        // a rigid rim rolls on at any distance from the flat position; at zero distance it has an impact
         const Vec falls = cross(z_, velocity_);
         const double past = std::fabs(z_.x * falls.y - z_.y * falls.x);  // Eq. 327
         if (past < kFlat * std::sqrt(falls.x * falls.x + falls.y * falls.y) && z_.x * falls.x + z_.y * falls.y < 0.0)

@@ -137,7 +137,7 @@ private:
     }
     State state() const { return {stance_->at, velocity_, z_, field_now(), stance_->length * stance_->axis}; }
     double kinetic() const { return 0.5 * dot(velocity_, stance_->inertia * velocity_); }
-    // Whether hardly any energy is left; a body on its way down has less than none, and is not at rest.
+    // True if nearly no energy remains; a falling body has less than zero, and is not at rest.
     bool calm() const { return kinetic() + std::fabs(potential()) < weak_; }
     double potential() const { return body_.mass * set_.gravity * rise(body_, z_, stance_->at); }
 
@@ -158,9 +158,9 @@ private:
 
     Step step_;
     Turn turn_;
-    bool spelled_ = true;  // whether the series of the axes are there, which a step about an edge rarely needs
+    bool spelled_ = true;  // true if the series of the axes exist, which a step about an edge rarely needs
     bool whole_ = false, to_horizon_ = false;
-    bool landing_ = false;  // whether a round base falls flat
+    bool landing_ = false;  // true if a round base falls flat
     bool sticks_ = false;  // whether impacts piled up on this edge, so that no end of it is released
     double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;  // the peak as the square of its sine
     int over_contact_ = -1, over_number_ = -1;

@@ -26,7 +26,7 @@ template <int D>
 void Run<D>::move() {
     while (stretch_ < motion_.count && motion_.times[stretch_ + 1] <= time_) ++stretch_;
     double rate = body_.p + norm(velocity_);
-    if (stance_->contact == kRolling) {  // at most half of the way to lying flat: there the contact runs round
+    if (stance_->contact == kRolling) {  // at most half of the tilt to flat, where the contact rolls along the rim
         const Vec turning = cross(z_, velocity_);
         rate += 2.0 * std::sqrt((turning.x * turning.x + turning.y * turning.y) / (z_.x * z_.x + z_.y * z_.y));
     }
@@ -101,7 +101,7 @@ void Run<D>::locate() {
     finish_step();
 }
 
-// Returns whether nothing can happen within the step: by bounds on its series that cost little.
+// Returns true if no event is possible within the step, by cheap bounds on its series.
 template <int D>
 template <int N>
 bool Run<D>::advance(double angle) {
@@ -164,7 +164,7 @@ bool Run<D>::within_trust(double size, double angle, int order) {
     return true;
 }
 
-// Whether the ground surely pushes and no gap closes.
+// True if the contact force is compressive for certain and no gap closes.
 template <int D>
 template <int N>
 bool Run<D>::nothing_near() {
@@ -207,7 +207,7 @@ void Run<D>::spell_out() {
     for (int k = 0; k <= step_.s.order; ++k) step_.s.w[k] = four(turn_.rate[k]) * packed(axis);
 }
 
-// Whether both ends of an edge surely push throughout the step.
+// True if the forces at both ends of an edge are compressive throughout the step.
 template <int D>
 bool Run<D>::ends_hold() const {
     double normal[kMostOrder + 1], second[kMostOrder + 1];
@@ -233,7 +233,7 @@ void Run<D>::shorten_step(double fraction) {
     whole_ = to_horizon_ = false;
 }
 
-// Moves to a place within the step.
+// Moves to a time within the step.
 template <int D>
 void Run<D>::arrive(double at, bool ends_stretch) {
     const Series& s = step_.s;

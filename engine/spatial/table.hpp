@@ -1,4 +1,4 @@
-// Tables of numbers between the door to Python and the kernels, the same for every instruction set.
+// Tables of numbers between the interface to Python and the kernels, equal for all instruction sets.
 #pragma once
 #include <cstdint>
 #include <memory>
