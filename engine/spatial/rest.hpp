@@ -42,7 +42,7 @@ public:
         }
     }
 
-    // The first zero of functions that are positive at rest, from a time within a stretch on; stretch -1 without one.
+    // First zero, after a time within a stretch, of functions that are positive at rest; stretch -1 if there is none.
     Uplift next(std::int64_t stretch, double tau) const {
         for (; stretch < motion_.count; ++stretch, tau = 0.0) {
             if (tau == 0.0 && surely_held(stretch)) continue;

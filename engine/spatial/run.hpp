@@ -161,7 +161,7 @@ private:
     bool spelled_ = true;  // true if the series of the axes exist, which a step about an edge rarely needs
     bool whole_ = false, to_horizon_ = false;
     bool landing_ = false;  // true if a round base falls flat
-    bool sticks_ = false;  // whether impacts piled up on this edge, so that no end of it is released
+    bool sticks_ = false;  // true after accumulated impacts on this edge, so that no end of it is released
     double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;  // the peak as the square of its sine
     int over_contact_ = -1, over_number_ = -1;
     Pivot rims_[2];

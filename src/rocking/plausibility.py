@@ -119,8 +119,8 @@ def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str,
         return (
             Message(
                 "the integrals reach {velocity:.3g} m/s and {displacement:.3g} m, more than "
-                "{most_velocity:g} m/s or {most_displacement:g} m; check that these are accelerations, "
-                "their unit and the baseline correction",
+                "{most_velocity:g} m/s or {most_displacement:g} m; check that the values are accelerations. Check "
+                "the unit and the baseline correction",
                 {
                     "velocity": velocity,
                     "displacement": displacement,
@@ -171,8 +171,8 @@ def of_friction(coefficient: float) -> tuple[str, ...]:
         return ()
     return (
         Message(
-            "a coefficient of friction of {friction:.4g} exceeds {low:g} and thus all surfaces; check that the value "
-            "is a ratio, not percent or degrees. Use {high:g} or more for feet that never slide",
+            "a coefficient of friction of {friction:.4g} exceeds {low:g}, the largest value of real surfaces; "
+            "check that the value is a ratio, not percent or degrees. Use {high:g} or more for feet that never slide",
             {"friction": coefficient, "low": low, "high": high},
         ),
     )

@@ -19,8 +19,8 @@ _CONNECTION = ("x", "length", "ground", "point", "name")
 class Restraint:
     """A device between a point of the ground and a point of the body.
 
-    State `x` alone for a device whose mouth in the base touches its anchor in the ground, such as a tendon in a duct;
-    `x` and `length` for a device below the base; `ground` and `point` for any other device, such as a tie at a height.
+    Give `x` only for a device with both ends at the base of the upright body, such as a tendon in a duct. Give `x` and
+    `length` for a device below the base. Give `ground` and `point` for any other device, such as a tie at a height.
     Coordinates are those of the body: x as for its feet, z upwards from the ground. The tension is positive.
 
     Parameters

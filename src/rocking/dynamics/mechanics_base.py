@@ -95,7 +95,7 @@ class Mechanics(ABC):
     slides: ClassVar[bool] = False  # True if bodies slide, hop and fly; the restitution may then be None
     is_compared: ClassVar[bool] = False  # True if studies compare restitutions, linear equations and engines
     title: ClassVar[str]  # as a noun
-    subject: ClassVar[str]  # its bodies, in messages
+    subject: ClassVar[str]  # description of its bodies in messages
     settings: ClassVar[type[Settings]]
     options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, in addition to settings, start and duration
     # of `follow_many`, in addition to settings

@@ -145,7 +145,7 @@ def posterior(
 
 
 def rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
-    """Return unknowns of the same impacts in units of other scatters; without scatter the draws are zero."""
+    """Return the unknowns of the impacts in units of other scatters; zero for a scatter of zero."""
     rows = np.repeat(u[None, :], scatters.size, axis=0)
     rows[:, len(SHARED) :] *= np.divide(at, scatters, out=np.zeros_like(scatters), where=scatters > 0.0)[:, None]
     return rows

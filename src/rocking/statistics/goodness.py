@@ -47,7 +47,7 @@ class Goodness:
     # twice the difference in log likelihood from a curve free at every level; weak with few trials per level
     deviance: Statistic
     pearson: Statistic  # sum over levels of squared differences over variances
-    hosmer_lemeshow: Statistic  # the same over groups of neighbouring levels, for single observations
+    hosmer_lemeshow: Statistic  # as pearson, over groups of neighbouring levels, for single observations
     kolmogorov: Statistic  # largest distance between the fraction of failures in a group and the curve
     lower: FloatArray  # lower, upper: lowest and highest level of each group [unit of the levels]
     upper: FloatArray

@@ -126,7 +126,7 @@ def test_resurrection_is_said(run, answered):
     assert low["interval"][1] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
     assert high["interval"][0] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
     assert result["resurrected_motions_over_1_percent"] == [0]
-    assert "1 of 1 motion does not overturn the body at levels above a level that does" in run(*words, "--details")[1]
+    assert "1 of 1 motion overturns the body at a level but not at higher levels" in run(*words, "--details")[1]
 
 
 def test_cloud(run, answered, motions):

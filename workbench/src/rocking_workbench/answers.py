@@ -31,7 +31,7 @@ class MessageData(BaseModel):
     text: str
     facts: dict[str, Any]
     many: str = Field("", description="text for a count other than 1")
-    context: str = Field("", description="context that separates it from a message with the same text")
+    context: str = Field("", description="context of the message, to distinguish messages with the same text")
 
 
 Point = tuple[float, float]  # x and y [m]

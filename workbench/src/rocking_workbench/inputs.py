@@ -260,7 +260,7 @@ class Inputs(ResponseTables):
     def _few_restitutions(self) -> "Inputs":
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
         refuse_more(chosen, MOST_RESTITUTIONS, "up to {most} restitutions can be compared")
-        if self.response.friction:  # the table has none of 0
+        if self.response.friction:  # a friction of 0 is not in the table
             raise InvalidValueError(
                 "response.friction: this analysis is without sliding. Use response.assumed_friction, or `rocking "
                 "simulate` for sliding"

@@ -234,7 +234,7 @@ def _run(
 
     def tell() -> None:
         started(Started(settings.origin, sessions.new_link(math.inf), settings.port, key_file))
-        # the first who reads the schema would hold up everybody else; the first page has had its time by then
+        # the schema is created after the first page is loaded, because its creation delays all other requests
         timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, (app.openapi,))
         timer.daemon = True
         timer.start()

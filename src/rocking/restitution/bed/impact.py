@@ -1,7 +1,8 @@
 """Impacts on a bed, resolved in time, and their coefficient of restitution by three measures with a common limit.
 
-The measures are the next peak, without the energy of hops and vibration; the energy at the end, with it; and the
-angular velocity at the end of an impulsive impact, which has no peak (docs/theory/contact_bed.md).
+The first measure is the next peak, without the energy of hops and vibration. The second measure is the energy at the
+end, which includes this energy. The third measure is the angular velocity at the end of an impulsive impact, which has
+no peak (docs/theory/contact_bed.md).
 """
 
 import math

@@ -41,7 +41,7 @@ class ContactLaw(ABC):
 
     @abstractmethod
     def numbers(self, mass: float) -> LawNumbers:
-        """Return the law's numbers under a body.
+        """Return the numerical parameters of the law for a body.
 
         Parameters
         ----------

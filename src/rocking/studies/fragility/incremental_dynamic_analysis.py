@@ -278,11 +278,11 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "standing": len(self.resurrected()), "count": int(self.complete.sum()), "wide": len(self.resurrected(WIDE)),
         }  # fmt: skip
         return Message(
-            "{standing} of {count} motion does not overturn the body at levels above a level that does, {wide} of them "
-            "over more than 1 % of the level.",
+            "{standing} of {count} motion overturns the body at a level but not at higher levels ({wide} over more "
+            "than 1 % of the level).",
             facts,
-            "{standing} of {count} motions do not overturn the body at levels above a level that does, {wide} of them "
-            "over more than 1 % of the level.",
+            "{standing} of {count} motions overturn the body at a level but not at higher levels ({wide} over more "
+            "than 1 % of the level).",
         )
 
     def share_resurrected(self, wider_than: float = 0.0) -> float:

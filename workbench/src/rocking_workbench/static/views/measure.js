@@ -67,7 +67,7 @@ const Measure = ({ app, questions }) => {
       lead="Release the tilted body and record its impacts. The impacts give the coefficient of restitution.">
       <${Choice} label="Analysis" value=${command} options=${[["identify", "my recording"],
         ["reproduce", "published measurements"]]} />
-      ${command.value === "reproduce" ? html`<p class="field-help">Report of every table, figure and claim of Mao et al. (2024), recomputed, with all models compared with its 39 measurements. Time: about 30 s.</p>` : html`
+      ${command.value === "reproduce" ? html`<p class="field-help">Recomputed tables, figures and claims of Mao et al. (2024), and a comparison of all models with its 39 measurements. Time: about 30 s.</p>` : html`
       <${FileDrop} label="Drop a recording here, or" accept=".wav,.flac,.csv,.txt,.xlsx,.mp4,.mov,.avi,.webm" files=${files} questions=${questions}
         app=${app} help="Sound (WAV, FLAC), a video, or a table of times, rotations, a gyroscope or an accelerometer." />
       <${Button} aria-pressed=${String(Boolean(recording.value))} onClick=${listen}>
