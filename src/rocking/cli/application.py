@@ -58,9 +58,9 @@ GROUPS = {
 }
 """Summaries of the commands by group."""
 RECORD = {
-    "show": "Show a record or a pulse: intensity measures and response spectrum.",
-    "batch": "Compute the intensity measures and spectra of many records; select and scale records.",
-    "convert": "Write a record in another format; apply processing steps.",
+    "show": "Show intensity measures and spectrum of a record or a pulse.",
+    "batch": "Compute measures of many records; match a target spectrum.",
+    "convert": "Convert a record to another format; apply processing steps.",
     "formats": "List the record formats.",
 }
 SUBCOMMANDS = ("record", "measurements", "campaign")

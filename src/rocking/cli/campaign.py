@@ -40,7 +40,7 @@ def check(
     workers: Annotated[int, typer.Option(min=1, max=4096, help="Number of cores.")] = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Check a job file and its input files; estimate time and disk space."""
+    """Check a job file; estimate time, memory and disk space."""
     from rocking.cli import campaign_output
 
     with campaign_output.codes():

@@ -35,7 +35,7 @@ def add(
     file: Annotated[Path, typer.Argument(help="File of measurements: TOML or CSV.")],
     as_json: AsJson = False,
 ) -> None:
-    """Check a file of measurements; add a copy to the own measurements."""
+    """Check a file of measurements; copy it to the own data."""
     from rocking.evidence import store
 
     deliver(AddedAnswer(*store.add(file)), as_json=as_json)
