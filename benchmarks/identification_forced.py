@@ -199,7 +199,7 @@ def identified(number: int, kind: str = "rotation", *, friction: bool = False, s
     row |= {
         "width": found.mean.high - found.mean.low,
         "impacts": len(found.impacts),
-        "odd": found.forced.half_cycles_left_out,
+        "odd": found.forced.excluded_half_cycles,
     }
     row |= {"constant": constant_holds(fit, case["r"]), "foreseen": found.forced.predictable}
     told, true_friction = found.forced.friction, case.get("friction", math.inf)

@@ -44,7 +44,7 @@ FENCE = re.compile(r"^( *)(`{3,}|~{3,}|\${2}|:{3,}).*?^\1\2`*$|^---\n.*?^---$", 
 VAGUE = set(
     "each found some one place words told asked said known made given part what whole least wanted why rest".split()  # noqa: SIM905
 )
-"""Names that do not name a quantity, a role or an action."""
+"""Names that do not name a quantity, a role or an action; `part` is a name in modules that use the class `Part`."""
 _NAME = r"\b(?:" + "|".join(VAGUE) + r")\b"
 SCRIPT = re.compile(rf"(?:\b(?:const|let|var)\s+|[(,{{\[]\s*)({_NAME})(?=\s*(?:[=,)}}\]:]|of\b|in\b))")
 ENGINE = re.compile(rf"(?:[\w>&*]\s+[&*]?)({_NAME})(?=\s*[=;,){{:\[(])")
@@ -133,7 +133,8 @@ def hits(path: Path) -> Iterator[Hit]:
         if text.kind == "messages" and text.text.rstrip().endswith("?"):
             yield Hit(text.path, text.line, "messages: question", text.text)
     if path.suffix in {".py", ".js", ".hpp", ".cpp"}:
-        yield from (Hit(relpath(path, ROOT), line, "names: vague", name) for line, name in names(path) if name in VAGUE)
+        vague = VAGUE - {"part"} if re.search(r"\bPart\b", path.read_text("utf-8")) else VAGUE
+        yield from (Hit(relpath(path, ROOT), line, "names: vague", name) for line, name in names(path) if name in vague)
 
 
 _UNCHECKED = {"vendor", "build", "changes", "keys", "gallery"}

@@ -20,13 +20,13 @@ pedestal = rk.Section.from_points(outline, density=2700.0, holes=[hollow])
 # becomes rotation about the new foot.
 
 balance = rk.restitution.energy_balance(pedestal, foot="right", angular_velocity=0.5)
-for stage, share in balance.shares.items():
-    print(f"{stage:8s} {balance.totals[stage]:9.2f} J  {share:7.2%}")
+for stage, fraction in balance.fractions.items():
+    print(f"{stage:8s} {balance.totals[stage]:9.2f} J  {fraction:7.2%}")
 
-shares = list(balance.shares.values())
-assert shares[0] == 1.0
-assert shares[0] > shares[1] > shares[2]
-assert abs(shares[2] - shares[3]) < 1e-12
+fractions = list(balance.fractions.values())
+assert fractions[0] == 1.0
+assert fractions[0] > fractions[1] > fractions[2]
+assert abs(fractions[2] - fractions[3]) < 1e-12
 
 # %%
 # The density of the kinetic energy and the velocities, before the impact and after each stage.

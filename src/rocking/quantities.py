@@ -294,8 +294,9 @@ _IMPACT_MODELS = (
     Quantity("admissible", "1", "1 if one impulse on the base can cause the impact without energy gain, else 0"),
     Quantity("energy_ratio", "1", "kinetic energy after over before the impact"),
     Quantity("energy", "J", "energy"),
+    Quantity("fraction", "1", "fraction", label="fraction", digits=".2%"),
     Quantity("share", "1", "fraction", label="fraction", digits=".2%"),
-    Quantity("ked_energy_shares", "1", "kinetic energy after each stage of KED over the energy before the impact"),
+    Quantity("ked_energy_fractions", "1", "kinetic energy after each stage of KED over the energy before the impact"),
     Quantity("velocity", "m/s", "velocity x, y at points"),
     Quantity("energy_left", "1", "fraction of the energy after an impact on each foot"),
     Quantity("impacts_to_half", "1", "number of impacts that halve the energy"),
@@ -408,7 +409,7 @@ _DECISIONS = (
     Quantity("safe", "1", "number of histories rated safe", label="rated safe"),
     Quantity("histories_known", "1", "number of histories with a result"),
     Quantity("limit_ratio", "1", "level over the level allowed by the method", label="D/C", digits=".3g"),
-    Quantity("share_95", "1", "95 % interval of the fraction"),
+    Quantity("fraction_95", "1", "95 % interval of the fraction"),
     Quantity("median", "1", "median"),
     Quantity("median_95", "1", "95 % interval of the median"),
     Quantity("censored", "1", "number of histories without overturning at any level"),
@@ -425,7 +426,7 @@ _INVENTORY = (
     Quantity("pgv_range", "m/s", "range of PGV of the motions"),
     Quantity("lifted", "1", "number of histories with uplift"),
     Quantity("slid", "1", "number of histories with sliding"),
-    Quantity("overturned_share", "1", "fraction of the histories with overturning"),
+    Quantity("overturned_fraction", "1", "fraction of the histories with overturning"),
     Quantity("overturned_interval", "1", "95 % interval of the fraction with overturning"),
     Quantity("median_rotation_over_angle", "1", "median of the peak ratio; infinite if it overturns"),
     Quantity("high_rotation_over_angle", "1", "84 % quantile of the peak ratio; infinite if it overturns"),
@@ -438,7 +439,7 @@ _INVENTORY = (
     Quantity("anchors_of_one_edge", "N", "tension of the anchors of one edge"),
     Quantity("anchors_of_one_edge_over_weight", "1", "tension of the anchors of one edge over the weight"),
     Quantity("anchors_across_over_weight", "1", "shear of the anchors over the weight"),
-    Quantity("moved_to_share_of_shaking", "1", "intensity at another location over the intensity at this location"),
+    Quantity("moved_to_fraction_of_shaking", "1", "intensity at another location over the intensity at this location"),
 )
 _MOTION = (
     Quantity("support", "", "support of the motion: the ground, or a floor of a building"),
@@ -534,7 +535,7 @@ _IDENTIFICATION = (
     Quantity("clock", "s", "time offset of the measurement ahead of the motion"),
     Quantity("gain", "1", "measured over true rotation"),
     Quantity("stretches", "1", "number of measured states at the start of half cycles"),
-    Quantity("half_cycles_left_out", "1", "number of half cycles that pure rocking does not explain"),
+    Quantity("excluded_half_cycles", "1", "number of half cycles that pure rocking does not explain"),
     Quantity("used", "s", "duration of the used half cycles"),
     Quantity("measured", "s", "duration of the measurement"),
     Quantity("predictable", "s", "time up to which the rotation from rest is predictable"),
@@ -694,7 +695,8 @@ _PARTS = """
     coefficients columns_not_read comparison comparisons components concerns contributions converged crossing_curves
     crossings curves decides definition designs died directions doubts edges ends envelope errata event evidence
     examples facets file file_unit files finding findings first_corner folder forced from growth hazard headline
-    hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory islands judged_by
+    hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory is_complete islands
+    judged_by
     label laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest
     lowest_uplift mean messages method methods mirrored model_error models motion motions_apart new not_assessed
     not_objects not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning
@@ -704,7 +706,7 @@ _PARTS = """
     rigid rings scores section sense sensitivity sentence sentences sets sides
     slow software solid source sources spacing spectrum stable stages standing starts_overturned
     starts_per_amplitude stated statement stored tables target target_spectrum test text threads title to too_sure
-    traces unit updated uplift_threshold values varied verdict vertical_component whole with_friction words x y
+    traces unit updated uplift_threshold values varied verdict vertical_component with_friction words x y
 """
 PARTS = frozenset(_PARTS.split())
 

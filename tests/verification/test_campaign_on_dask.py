@@ -101,7 +101,7 @@ def test_one_of_two_workers_is_killed_half_way(tmp_path: Path, two: Any) -> None
     assert files(campaign) == files(alone)
     again = sum(count - 1 for count in Counter(motions.made()).values())
     assert again < 150  # what it had at hand: two pieces of a second each
-    assert campaign.verify().whole
+    assert campaign.verify().is_complete
 
 
 @pytest.mark.verifies(

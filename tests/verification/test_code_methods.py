@@ -213,7 +213,7 @@ def test_blocks_that_the_italian_check_calls_safe_overturn(family, shares, table
     for k, share in enumerate(shares):
         low, high = interval(found, k)
         assert low <= share <= high
-    fell = [found.called_safe("italian-linear", k, 0).share for k in range(4)]
+    fell = [found.called_safe("italian-linear", k, 0).fraction for k in range(4)]
     assert fell == sorted(fell, reverse=True)
     assert found.called_safe("static").safe == 0
 

@@ -89,7 +89,7 @@ def test_resurrection_of_the_full_sine():
     assert second.is_open
     assert not first.is_open
     assert found.resurrected() == [0]
-    assert found.share_resurrected() == 1.0
+    assert found.fraction_resurrected() == 1.0
     assert found.first_crossings[0] == first.start
     assert found.survivals == [(0, first.end, second.start)]
     assert found.resurrected(NO_IMPACT / UPPER - 1.0 + 1e-6) == []
@@ -285,12 +285,12 @@ def test_both_definitions_on_one_set():
     np.testing.assert_allclose(found.fractions, by_intervals, rtol=0.0, atol=1e-15)
     passed = np.array([np.mean(found.first_crossings <= level) for level in levels])
     most = (passed - found.fractions).max()
-    print(f"\nresurrected: {found.share_resurrected():.2f}; definitions differ by up to {most:.2f}")
+    print(f"\nresurrected: {found.fraction_resurrected():.2f}; definitions differ by up to {most:.2f}")
     assert np.all(passed >= found.fractions)
     assert most > 0.05
     # REF (same section): with r = 0.9 the full sines at Omega = 2, 3, 5, 6 all survive between mode I and mode II
     # (at Omega = 2 the survival, from 2.314 to 2.350, is narrower than the distance between levels)
-    assert found.share_resurrected() == 1.0
+    assert found.fraction_resurrected() == 1.0
     ends = {round(omega, 3): k for k, omega in enumerate(np.linspace(2.0, 6.0, 41))}
     for omega, (low, high) in {
         2.0: (1.22517942326831362, 2.31440295302158405), 3.0: (LOWER, UPPER),

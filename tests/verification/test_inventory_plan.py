@@ -198,7 +198,7 @@ def test_the_plan_is_sorted_by_weighted_gain(quakes):
     kinds = {"one": {}, "four": {"count": 4}, "dear": {"consequence": "high"}, "cheap": {"consequence": "low"}}
     objects = [replace(URN, **{"count": 1, **kind}, name=name) for name, kind in kinds.items()]
     found = assess(objects, quakes)
-    share = found.verdicts[0].worse.overturned_share
+    share = found.verdicts[0].worse.overturned_fraction
     assert [each.item.name for each in found.plan] == ["four", "dear", "one", "cheap"]
     assert [each.gain for each in found.plan] == pytest.approx(
         [4.0 * share, 2.5 * share, share, 0.5 * share], rel=1e-12

@@ -114,11 +114,11 @@ def _inertia(second: FloatArray) -> FloatArray:
 def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
     """Return the sum of the moments of parts; holes have negative mass."""
     listed = list(parts)
-    masses = np.array([part.mass for part in listed])
-    centres = np.array([part.centre for part in listed])
+    masses = np.array([moments.mass for moments in listed])
+    centres = np.array([moments.centre for moments in listed])
     mass = float(masses.sum())
     centre = (masses[:, None] * centres).sum(axis=0) / mass
-    second = np.sum([part.second_about(centre) for part in listed], axis=0)
+    second = np.sum([moments.second_about(centre) for moments in listed], axis=0)
     return SolidMoments(mass, centre, second)
 
 

@@ -255,7 +255,7 @@ class Verification:
     missing: tuple[tuple[int, int], ...]  # missing histories: first, last (not included)
 
     @property
-    def whole(self) -> bool:
+    def is_complete(self) -> bool:
         """True if all results exist and are unchanged."""
         return not self.damaged and not self.missing
 

@@ -108,17 +108,17 @@ def show_verification(folder: Path, as_json: bool) -> None:
     """Print the result of the verification of all stored results."""
     check = verified(folder)
     if as_json:
-        print_json(Answer({"folder": str(folder), "whole": check.whole, **vars(check)}))
+        print_json(Answer({"folder": str(folder), "is_complete": check.is_complete, **vars(check)}))
     else:
         summary = f"{check.verified} of {check.histories} histories verified"
-        print(f"{folder}: {summary}, in {_chunks(check.chunks)}{'' if check.whole else ' and parts of others'}")
+        print(f"{folder}: {summary}, in {_chunks(check.chunks)}{'' if check.is_complete else ' and parts of others'}")
         for sentence in check.damaged:
             print(f"damaged: {sentence}")
         for first, last in check.missing:
             print(f"missing: histories {first} to {last - 1}")
-        if not check.whole:
+        if not check.is_complete:
             print(resume_hint(folder))
-    if not check.whole:
+    if not check.is_complete:
         raise typer.Exit(DAMAGED)
 
 

@@ -46,9 +46,9 @@ def _csv(answer: "CodesAnswer", path: "Path") -> None:
 
 
 EXPORTS = {"csv": Export((".csv",), _csv)}
-_SHOWN = ("method", "safe", "limit_ratio", "share", "median", "scatter")
+_SHOWN = ("method", "safe", "limit_ratio", "fraction", "median", "scatter")
 _OWN = {
-    "share": Quantity("share", "1", "fraction of these that overturn", label="these overturn", digits="%"),
+    "fraction": Quantity("fraction", "1", "fraction of these that overturn", label="these overturn", digits="%"),
     "median": Quantity("median", "1", "median of capacity over truth", label="capacity/truth", digits=".3g"),
     **closely(scatter=".2g"),
 }
@@ -246,11 +246,12 @@ def _row(result: "CodeComparison", name: str) -> dict[str, Any]:
     return {
         "method": name,
         "safe": rating.safe == 1 if rating.total == 1 else percent(round(rating.safe / rating.total, 3)),
-        "limit_ratio": rating.ratio, "share": rating.share, "share_95": rating.interval if rating.safe else None,
+        "limit_ratio": rating.ratio, "fraction": rating.fraction,
+        "fraction_95": rating.interval if rating.safe else None,
         "median": median, "median_95": bias.interval if isinstance(median, float) else None,
         "scatter": bias.scatter if overturned else None,
     }  # fmt: skip
 
 
 def _share(rating: "CalledSafe") -> str:
-    return percent(round(rating.share, 3)) if rating.safe else "-"
+    return percent(round(rating.fraction, 3)) if rating.safe else "-"

@@ -61,7 +61,7 @@ def show_models(page: Page, answer: Answer, display: Display, label: str, own: d
 def overturned(modes: "np.ndarray") -> dict[str, Any]:
     """Return the number and the fraction of the computed histories with overturning."""
     computed, overturned = int((modes > -3).sum()), int((modes >= 0).sum())
-    return {"overturned": overturned, "share": overturned / computed if computed else None}
+    return {"overturned": overturned, "fraction": overturned / computed if computed else None}
 
 
 def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[str]]:

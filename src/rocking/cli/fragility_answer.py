@@ -214,7 +214,7 @@ class FragilityAnswer:
             page.line(line)
         page.warn(self._warnings())
         if self.compared is not None:
-            page.line(self.compared.told(self.unit))
+            page.line(self.compared.text(self.unit))
         show_models(page, answer, display, ", ".join(self.results), _of_model(first))
         if not self.details:
             page.line("Definitions, intervals and comparison: --details    Files: -o curves.csv, -o picture.png")

@@ -38,7 +38,7 @@ def _excel(answer: Any, path: Path) -> None:
     from rocking.tables import to_excel
 
     table = answer.result.exported()
-    sheets = [(f"{table.row}s", table), *((f"{name}s", sheet) for name, sheet in table.beside.items())]
+    sheets = [(f"{table.row}s", table), *((f"{name}s", sheet) for name, sheet in table.related.items())]
     to_excel(sheets, path, table.provenance, dressed=True)
 
 

@@ -36,7 +36,7 @@ _CHANGES = {
     "only_second": Quantity("only_second", "1", "cells", label="overturning only with second"),
     "only_first": Quantity("only_first", "1", "cells", label="overturning only with first"),
 }
-_FLIPS = ("first", "second", "count", "share", "only_second", "only_first")
+_FLIPS = ("first", "second", "count", "fraction", "only_second", "only_first")
 _LAST = 3  # overturning after more impacts is one row; JSON has one entry per number
 
 _AXIS = ": NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as pga=0.1g:1g:50"
@@ -235,7 +235,16 @@ class MapAnswer:
     def _sensitivity(self) -> dict[str, Any] | None:
         if self.compared is None:
             return None
-        names = ("only_second", "only_first", "share_low", "share_high", "count", "compared", "unknown", "share")
+        names = (
+            "only_second",
+            "only_first",
+            "fraction_low",
+            "fraction_high",
+            "count",
+            "compared",
+            "unknown",
+            "fraction",
+        )
         pairs = [
             {"first": a, "second": b, **{name: getattr(flips, name) for name in names}} for a, b, flips in self._pairs()
         ]

@@ -198,7 +198,7 @@ class PlaneAnswer:
         page.line("95 %: interval for one measured body (39 published measurements)")
         if self.details:
             page.line("k: impulse position / half base; friction demand: at the impact")
-            for foot, fractions in answer["ked_energy_shares"].items():
+            for foot, fractions in answer["ked_energy_fractions"].items():
                 remaining = ", ".join(f"{100.0 * fraction:.1f} % {stage}" for stage, fraction in fractions.items())
                 page.line(f"KED, kinetic energy at the {foot} foot: {remaining}.")
         for name, report in self.impact.identities.items():

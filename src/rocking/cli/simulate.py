@@ -268,7 +268,7 @@ class SeveralAnswer:
 
 def _overturned(responses: list[Any]) -> dict[str, Any]:
     count = sum(response.outcome is Outcome.OVERTURNED for response in responses)
-    return {"overturned": count, "share": count / len(responses)}
+    return {"overturned": count, "fraction": count / len(responses)}
 
 
 def _peak(response: Any) -> dict[str, float]:

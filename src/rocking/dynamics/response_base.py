@@ -209,7 +209,7 @@ class ResponseBase(Exported):
         details = {name.removesuffix("s"): rows.arrays for name, rows in self._tables.items()}
         tables = {row: Table.of(row, arrays) for row, arrays in details.items()}
         provenance = with_units(outcome | self._facts | settings)
-        return Table.of("time", self._samples, provenance=provenance, beside=tables, no_unit="-")
+        return Table.of("time", self._samples, provenance=provenance, related=tables, no_unit="-")
 
     def animate(self, path: str | Path, **options: Any) -> Path:
         """Write an animation of the response.

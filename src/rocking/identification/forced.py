@@ -212,7 +212,7 @@ def _forced(posterior: ForcedPosterior, friction: IntervalEstimate) -> ForcedRoc
     excursions, kind = problem.excursions, problem.kinds[0]
     return ForcedRocking(
         clock=estimated(posterior.shared((CLOCK, 1.0))), gain=estimated(posterior.shared((GAIN + kind, 1.0)), 1.0),
-        friction=friction, stretches=int(np.sum(~excursions.joined)), half_cycles_left_out=problem.excluded,
+        friction=friction, stretches=int(np.sum(~excursions.joined)), excluded_half_cycles=problem.excluded,
         used=float(np.sum(excursions.end - excursions.begin)), measured=float(np.ptp(problem.series.time)),
         predictable=_predictable_time(problem, fit.x),
     )  # fmt: skip

@@ -118,7 +118,7 @@ class ForcedRocking:
     # coefficient of friction; if it is not identified, only the low end is a number, a bound at 95 % [-]
     friction: IntervalEstimate
     stretches: int  # number of sequences of half cycles that begin with a measured state
-    half_cycles_left_out: int  # excluded half cycles, which rocking alone does not explain
+    excluded_half_cycles: int  # excluded half cycles, which rocking alone does not explain
     used: float  # used, measured: duration of the used half cycles, and of the measurement [s]
     measured: float
     # time after which a difference of 1e-4 in r changes the response from rest by 10 % of its peak; NaN if never [s]
@@ -128,7 +128,7 @@ class ForcedRocking:
         """Return the result for display."""
         return Answer({
             "clock": vars(self.clock), "gain": vars(self.gain), "friction": vars(self.friction),
-            "stretches": self.stretches, "half_cycles_left_out": self.half_cycles_left_out, "used": self.used,
+            "stretches": self.stretches, "excluded_half_cycles": self.excluded_half_cycles, "used": self.used,
             "measured": self.measured, "predictable": self.predictable,
         })  # fmt: skip
 
@@ -396,8 +396,8 @@ class Identification(Exported):
         }
         unit = "s" if isinstance(self.measurement, ImpactTimes) else ""
         left = {
-            "measured_at": Column(self.residual_times, "s", "time of the measurement"),
-            "left_over": Column(self.residuals, unit, "measured minus computed"),
+            "residual_time": Column(self.residual_times, "s", "time of the measurement"),
+            "residual": Column(self.residuals, unit, "measured minus computed"),
         }
         provenance: dict[str, Any] = {
             "source": self.source,
@@ -406,8 +406,8 @@ class Identification(Exported):
         }
         for name in ("mean", "scatter", "frequency_parameter", "tilt"):
             provenance |= {f"{name}{end}": getattr(getattr(self, name), key) for key, end, _ in _ENDS}
-        beside = {"model": Table("model", compared), "sample": Table("sample", left)}
-        return Table("impact", columns, provenance, beside)
+        related = {"model": Table("model", compared), "sample": Table("sample", left)}
+        return Table("impact", columns, provenance, related)
 
 
 def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:

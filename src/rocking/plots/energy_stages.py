@@ -93,7 +93,7 @@ def _panel(axes: "Axes", body: Body, balance: EnergyBalance, stage: str, image: 
     axes.add_patch(patch)
     image.set_clip_path(patch)
     _arrows(axes, body, balance, stage)
-    axes.set_title(f"{STAGE_WORDS[stage]}\n{100.0 * balance.shares[stage]:.1f} % of the kinetic energy", fontsize=7)
+    axes.set_title(f"{STAGE_WORDS[stage]}\n{100.0 * balance.fractions[stage]:.1f} % of the kinetic energy", fontsize=7)
     for foot, foot_x in zip(("O", "O'"), body.feet, strict=True):
         axes.annotate(foot, (foot_x, body.ground), (0, -9), textcoords="offset points", ha="center", fontsize=7)
         axes.plot([foot_x], [body.ground], marker="^", color=INK, markersize=4, clip_on=False, zorder=5)

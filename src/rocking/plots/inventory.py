@@ -117,7 +117,7 @@ def inventory_distribution(assessment: Assessment) -> "Figure":
     verdicts, say = _verdicts(assessment), words_of(assessment)
     figure, (left, right) = new_figure(DOUBLE, _HEIGHT, columns=2, sharey=False, width_ratios=[1.5, 1.0])
     limits = [item.uplift_acceleration / g for item in verdicts]
-    shares = [item.worse.overturned_share for item in verdicts]
+    shares = [item.worse.overturned_fraction for item in verdicts]
     for panel, values, upper in ((left, shares, 1.0), (right, limits, max(limits))):
         groups = [
             [value for value, item in zip(values, verdicts, strict=True) if item.light is light] for light in _LIGHTS
@@ -155,7 +155,7 @@ def _finish(figure: "Figure", right: "Axes", assessment: Assessment, shown: int)
 def _share(axes: "Axes", row: int, verdict: Verdict, say: Language) -> None:
     color, shape = _LIGHTS[verdict.light]
     axes.hlines(row, *verdict.interval, color=color, linewidth=1.4, zorder=2)
-    axes.plot(verdict.worse.overturned_share, row, shape, color=color, markersize=4.6, zorder=3, clip_on=False)
+    axes.plot(verdict.worse.overturned_fraction, row, shape, color=color, markersize=4.6, zorder=3, clip_on=False)
     letter = say(LIGHT_LETTERS[verdict.light])
     axes.text(-0.06, row, letter, ha="center", va="center", fontsize=7, color=INK, fontweight="bold")
 

@@ -236,7 +236,7 @@ def orbits_picture(results: Any) -> "Figure":
     """
     shown = _by_restitution(results)
     figure, columns = _panels(shown, 2.6)
-    words = quantity("branch_point").codes  # type: ignore[union-attr]
+    titles = quantity("branch_point").codes  # type: ignore[union-attr]
     for data, (axes,) in zip(shown.values(), columns, strict=True):
         axis = next(name for name in _LABELS if name in data.data_vars and name not in {"ground_phase", "speed_ratio"})
         for number in range(data.sizes["branch"]):
@@ -248,7 +248,7 @@ def orbits_picture(results: Any) -> "Figure":
         for code in list(words)[1:]:
             points = data.where(data["branch_point"] == code)
             values = points["speed_ratio"].values.ravel()
-            axes.plot(points[axis].values.ravel(), values, MARKS[code], color=INK, markersize=3.5, label=words[code])
+            axes.plot(points[axis].values.ravel(), values, MARKS[code], color=INK, markersize=3.5, label=titles[code])
     _label(columns, axis, _LABELS["speed_ratio"])
     columns[0][0].legend(loc="best")
     return figure

@@ -113,7 +113,7 @@ def _flips(axes: "Axes", sensitivity: Sensitivity, label: str) -> None:
     axes.pcolormesh(x, y, verdict.values, **_flip_colors(SAME))
     flips = sensitivity.flips_between(sensitivity.baseline, label)
     separator = "\n" if len(sensitivity.labels) > 4 else " "
-    title = f"{flips.count:,} of {flips.compared:,} change{separator}({percent(flips.share)})"
+    title = f"{flips.count:,} of {flips.compared:,} change{separator}({percent(flips.fraction)})"
     axes.set_title(title, loc="left", fontsize=7)
 
 

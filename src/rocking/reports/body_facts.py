@@ -87,7 +87,7 @@ class ImpactAnswer:
         """Return the body, KED's energy, and every model's coefficient with derived quantities."""
         return Answer({
             "body": self.body.answer(self.gravity),
-            "ked_energy_shares": {foot: energy_balance(self.body, foot=foot).shares for foot in self.tables},
+            "ked_energy_fractions": {foot: energy_balance(self.body, foot=foot).fractions for foot in self.tables},
             "coefficients": {foot: [row.answer() for row in rows] for foot, rows in self.tables.items()},
             "identities": {
                 name: {check.name: check.holds for check in report} for name, report in self.identities.items()
@@ -108,7 +108,7 @@ def stages_answer(body: Body, foot: Foot, angular_velocity: float = 1.0) -> Answ
     points = _arrow_feet(body)
     fields = balance.velocities(points[:, 0], points[:, 1])
     stages = [
-        {"name": name, "description": STAGE_WORDS[name], "energy": energy, "share": balance.shares[name],
+        {"name": name, "description": STAGE_WORDS[name], "energy": energy, "fraction": balance.fractions[name],
          "velocity": fields[name]}
         for name, energy in balance.totals.items()
     ]  # fmt: skip

@@ -271,7 +271,7 @@ class _Sections:
         along = say(DIRECTION_NAMES[result.direction])
         still, lifted = (
             say.number(rounded_down(result.uplift_acceleration / g, 3)),
-            f"{100.0 * result.lifted_share:.0f}",
+            f"{100.0 * result.lifted_fraction:.0f}",
         )
         shares = (
             say("{overturned} of {count}", overturned=result.overturned, count=result.count),

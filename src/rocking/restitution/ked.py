@@ -254,7 +254,7 @@ class EnergyBalance:
     --------
     >>> from rocking import Block
     >>> balance = energy_balance(Block(width=1.0, height=2.0, density=1000.0))
-    >>> [round(share, 6) for share in balance.shares.values()]
+    >>> [round(fraction, 6) for fraction in balance.fractions.values()]
     [1.0, 0.8, 0.689413, 0.689413]
     """
 
@@ -265,7 +265,7 @@ class EnergyBalance:
     totals: dict[str, float]
 
     @property
-    def shares(self) -> dict[str, float]:
+    def fractions(self) -> dict[str, float]:
         """Totals over the energy before the impact, by stage [-]."""
         before = self.totals["before"]
         return {stage: energy / before for stage, energy in self.totals.items()}

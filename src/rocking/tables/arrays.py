@@ -29,7 +29,7 @@ def to_dataset(table: Table) -> "xr.Dataset":
     """Return the columns of a table and its further tables; a column named as the rows is coordinate."""
     xarray = extra("xarray", "a labelled dataset")
     variables = {name: (table.row, column.values, column.attributes) for name, column in table.columns.items()}
-    for row, other in table.beside.items():
+    for row, other in table.related.items():
         variables |= {
             f"{row}_{name}": (row, column.values, column.attributes) for name, column in other.columns.items()
         }
@@ -156,7 +156,7 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
         names = dict(zip(named, table.columns, strict=True))
         provenance = table.provenance["provenance"]
         return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
-    beside = {row: other.columns for row, other in table.beside.items()}
+    related = {row: other.columns for row, other in table.related.items()}
 
     # numbers as double; text as a column of cells
     def cells(column: Column) -> Any:
@@ -164,9 +164,9 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
 
     return {
         **values,
-        **{f"{row}s": {name: cells(c) for name, c in other.items()} for row, other in beside.items()},
+        **{f"{row}s": {name: cells(c) for name, c in other.items()} for row, other in related.items()},
         "units": units,
-        **{f"{row}_units": {name: c.unit for name, c in other.items() if c.unit} for row, other in beside.items()},
+        **{f"{row}_units": {name: c.unit for name, c in other.items() if c.unit} for row, other in related.items()},
         "provenance": json.dumps(table.provenance),
     }
 

@@ -111,7 +111,7 @@ class Table:
     columns: Mapping[str, Column]
     provenance: Mapping[str, Any] = field(default_factory=dict)  # sources and methods, as plain values
     # further tables of the same result, by the name of a row
-    beside: Mapping[str, "Table"] = field(default_factory=dict)
+    related: Mapping[str, "Table"] = field(default_factory=dict)
     no_unit: str = ""  # unit in headings of dimensionless numbers; no brackets if empty
 
     def __post_init__(self) -> None:

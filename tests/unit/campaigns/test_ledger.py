@@ -38,7 +38,7 @@ def test_flipped_ledger_never_lies(finished, tmp_path):
         flip(path, int(bit))
         try:
             assert records(finished) == good
-            assert finished.verify().whole
+            assert finished.verify().is_complete
         except (CampaignDamagedError, sqlite3.DatabaseError):
             refused.extend(finished.verify().damaged)
     assert all("ledger.sqlite is damaged" in text and "run the campaign again" in text for text in refused)
@@ -74,14 +74,14 @@ def test_run_makes_a_damaged_ledger_anew(finished, shards, harm):
     path = finished.folder / "ledger.sqlite"
     path.write_bytes(HARMS[harm](path.read_bytes()))
     found = finished.verify()
-    assert (found.whole, found.verified) == (False, 0)
+    assert (found.is_complete, found.verified) == (False, 0)
     with pytest.raises(CampaignDamagedError, match=r"ledger\.sqlite is damaged .* run the campaign again"):
         finished.results()
     summary = finished.run(workers=1)
     assert (summary.adopted, summary.computed) == (6, 0)
     assert "kept as ledger.sqlite.damaged-1, and rebuilt from the shards" in summary.set_aside[0]
     assert finished.status().damaged == summary.set_aside
-    assert (finished.verify().whole, shards(finished), finished.sha256()) == (True, before, digest)
+    assert (finished.verify().is_complete, shards(finished), finished.sha256()) == (True, before, digest)
     assert (finished.folder / "ledger.sqlite.damaged-1").exists()
 
 

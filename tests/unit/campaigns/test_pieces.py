@@ -91,7 +91,7 @@ def test_files_are_the_same_however_it_is_cut(campaign, finished, short, shards,
     assert shards(campaign) == shards(finished)
     assert campaign.sha256() == finished.sha256()
     assert pieces(campaign) == []
-    assert campaign.verify().whole
+    assert campaign.verify().is_complete
 
 
 @pytest.mark.skipif(os.name == "nt", reason="this system does not fork")

@@ -37,7 +37,7 @@ def test_flips_on_disk_are_found_and_mended(finished, shards):
             finished.results()
         summary = finished.run(workers=1)
         assert (summary.computed, len(summary.set_aside)) == (5, 5)
-        assert finished.verify().whole
+        assert finished.verify().is_complete
     assert (shards(finished), finished.sha256()) == (before, digest)
     assert len(list((finished.folder / "shards").glob("*.damaged-*"))) == DISK_FLIPS
     assert len(finished.status().damaged) == DISK_FLIPS

@@ -184,7 +184,7 @@ def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     first = int(missing.split()[2])
     assert missing == f"missing: histories {first} to {first + 99}"
     told = json.loads(run("verify", folder, "--json")[1])
-    assert (told["whole"], told["verified"], told["missing"]) == (False, 500, [[first, first + 100]])
+    assert (told["is_complete"], told["verified"], told["missing"]) == (False, 500, [[first, first + 100]])
     code, out, _ = run("status", folder)
     assert (code, "500 of 600 histories (5 of 6 chunks) are stored" in out, one.name in out) == (6, True, True)
     assert json.loads(run("status", folder, "--json")[1])["broken"]
@@ -201,7 +201,7 @@ def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
     code, out, err = run("verify", folder)
     assert (code, "ledger.sqlite is damaged" in out, err) == (6, True, "")
     assert out.endswith(f"go on with: rocking campaign resume {folder}\n")
-    assert json.loads(run("verify", folder, "--json")[1])["whole"] is False
+    assert json.loads(run("verify", folder, "--json")[1])["is_complete"] is False
     for words in (("status", folder), ("export", folder, "--output", tmp_path / "r.csv")):
         code, _, err = run(*words)
         assert (code, "run the campaign again: it is rebuilt from the shards" in err, len(err.splitlines())) == (

@@ -74,7 +74,7 @@ def test_levels_in_another_measure(answered):
     assert found["methods"]["asce-43"]["called_safe"][0][0]["histories_known"] == 0
     assert found["methods"]["static"]["called_safe"][0][0] == {
         "histories_known": 6, "safe": 6, "overturned": 0, "limit_ratio": pytest.approx(0.12, rel=1e-9),
-        "share_95": [0.0, pytest.approx(1.0 - 0.025 ** (1 / 6), rel=1e-9)], "share": 0.0,
+        "fraction_95": [0.0, pytest.approx(1.0 - 0.025 ** (1 / 6), rel=1e-9)], "fraction": 0.0,
     }  # fmt: skip
 
 

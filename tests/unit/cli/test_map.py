@@ -103,7 +103,7 @@ def test_several_restitutions(run, printed, tmp_path):
     for (a, b), one in pairs.items():
         falls = [found.datasets[label]["mode"].values >= 0 for label in (a, b)]
         assert one["count"] == int((falls[0] != falls[1]).sum())
-        assert one["share"] == one["count"] / (13 * 19)
+        assert one["fraction"] == one["count"] / (13 * 19)
     assert pairs["ked", "0.8"]["count"] > 0
     out = printed(*words, "--output", tmp_path / "a.csv", "--output", tmp_path / "a.nc")
     assert "With housner instead of ked, the outcome differs in" in out

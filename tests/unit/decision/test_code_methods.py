@@ -43,7 +43,7 @@ def test_what_is_called_safe_is_counted(found):
     assert called.safe == 6
     assert called.overturned == int(found.overturned[:, 0, 1].sum())
     assert called.ratio == pytest.approx(1.9 / 2.0, rel=1e-12)
-    assert math.isnan(found.called_safe("static").share)
+    assert math.isnan(found.called_safe("static").fraction)
     assert found.called_safe("static").interval is None
 
 

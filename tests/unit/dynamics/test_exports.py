@@ -192,7 +192,7 @@ def test_every_sample_has_a_unit_and_is_finite(kind):
         assert one.attributes["long_name"]
         assert one.values.shape == (count,)
         assert np.isfinite(one.values).all()
-    for table in content.beside.values():
+    for table in content.related.values():
         assert len({one.values.size for one in table.columns.values()}) == 1
         assert all(one.unit or one.values.dtype.kind == "U" for one in table.columns.values())
     assert json.loads(json.dumps(content.provenance, allow_nan=False))["software"] == f"rocking {rk.__version__}"
@@ -221,7 +221,7 @@ def test_mat_is_read_by_scipy(kind, tmp_path):
     for name, one in content.columns.items():
         assert equal(found[name], one.values)
         assert found["units"][name] == one.unit
-    for row, table in content.beside.items():
+    for row, table in content.related.items():
         for name, one in table.columns.items():
             assert equal(found[STRUCTS[row]][name], one.values)
             assert not one.unit or found[f"{row}_units"][name] == one.unit
@@ -245,7 +245,7 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
                 one.unit,
                 one.attributes["long_name"],
             )
-        for row, table in content.beside.items():
+        for row, table in content.related.items():
             for name, one in table.columns.items():
                 assert found[f"{row}_{name}"].dims == (row,)
                 assert equal(found[f"{row}_{name}"].to_numpy(), one.values)
@@ -256,20 +256,20 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
 def test_tables_are_the_response():
     """Impacts and intervals are those of the response, row by row."""
     rocked, sliding, corner = EVERY["rocked"], EVERY["slide and rock"], EVERY["corner"]
-    impacts = rocked.exported().beside["impact"].columns
+    impacts = rocked.exported().related["impact"].columns
     foot = [{"right": 1, "left": -1}[foot] for foot in rocked.impacts["foot"].tolist()]
     numbers = ("time", "velocity_before", "velocity_after", "coefficient")
     assert list(impacts) == [*numbers, "foot"]
     assert {1, -1} == set(foot)
     assert impacts["foot"].values.tolist() == foot
     assert all(impacts[name].values.tolist() == rocked.impacts[name].tolist() for name in numbers)
-    tables = sliding.exported().beside
+    tables = sliding.exported().related
     assert tables["impact"].columns["energy_lost"].values.tolist() == sliding.impacts["energy_lost"].tolist()
     assert tables["impact"].columns["slips"].values.astype(bool).tolist() == sliding.impacts["slips"].tolist()
     regimes = [Regime[name].code for name in sliding.regimes["regime"].tolist()]
     assert tables["interval"].columns["regime"].values.tolist() == regimes
     assert {Regime.SLIDE.code, Regime.SLIDE_ROCK.code} & set(regimes)
-    tables = corner.exported().beside
+    tables = corner.exported().related
     rows = zip(*(one.values.tolist() for one in tables["interval"].columns.values()), strict=True)
     spelt = [(a, b, c.code, "-".join(map(str, points))) for a, b, c, points in corner.intervals]
     assert list(rows) == spelt
@@ -278,7 +278,7 @@ def test_tables_are_the_response():
     assert sliding.exported().columns["rotation"].values.tolist() == sliding.rotation.tolist()
     assert set(sliding.to_dataframe()["regime_meaning"]) <= set(QUANTITIES["regime"].codes.values())
     assert (sliding.to_xarray().attrs["friction"], corner.to_xarray().attrs["restitution"]) == (0.62, "housner-3d")
-    assert EVERY["struck"].exported().beside["impact"].columns["time"].values[0] == 0.0
+    assert EVERY["struck"].exported().related["impact"].columns["time"].values[0] == 0.0
 
 
 def test_direction_is_told_only_where_it_overturned():

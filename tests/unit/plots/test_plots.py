@@ -61,8 +61,8 @@ def test_figure_2_prints_the_shares():
     block = rk.Block(width=1.0, height=2.0)
     for foot in ("left", "right"):
         titles = [axes.get_title() for axes in energy_stages_picture(block, foot=foot).axes[:4]]
-        for title, share in zip(titles, energy_balance(block, foot=foot).shares.values(), strict=True):
-            assert f"{100.0 * share:.1f} %" in title
+        for title, fraction in zip(titles, energy_balance(block, foot=foot).fractions.values(), strict=True):
+            assert f"{100.0 * fraction:.1f} %" in title
     assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
 
 

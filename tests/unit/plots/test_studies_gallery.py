@@ -192,7 +192,7 @@ def test_inventory():
     assert [label.get_text() for label in left.get_yticklabels()] == [r"tall \$5 vase", "low chest"]
     assert [text.get_text() for text in left.texts] == ["R", "G"]
     shares = [line.get_xdata()[0] for line in left.lines if line.get_marker() in {"s", "^", "o"}]
-    assert shares == [verdict.worse.overturned_share for verdict in found.verdicts]
+    assert shares == [verdict.worse.overturned_fraction for verdict in found.verdicts]
     lifted = [line.get_xdata()[0] for line in right.lines if line.get_marker() == "|"]
     np.testing.assert_allclose(lifted, [0.1 / 0.8, 2.0], rtol=1e-12)  # g b / h, in g
     assert any(line.get_xdata()[0] == Thresholds().overturning_red for line in left.lines)

@@ -82,11 +82,11 @@ def test_ledger_totals():
     assert balance.totals["before"] == pytest.approx(before, rel=1e-13, abs=0.0)
     assert balance.totals["stage 1"] == pytest.approx(0.5 * 9.0 * 1000.0 * 8.0 / 3.0, rel=1e-13, abs=0.0)
     # REF: E sin^2 = .8, E sin^4 = .6894...
-    assert balance.shares["stage 1"] == pytest.approx(0.8, rel=1e-13, abs=0.0)
-    assert balance.shares["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13, abs=0.0)
-    assert balance.shares["after"] == pytest.approx(balance.shares["stage 2"], rel=1e-13, abs=0.0)
+    assert balance.fractions["stage 1"] == pytest.approx(0.8, rel=1e-13, abs=0.0)
+    assert balance.fractions["stage 2"] == pytest.approx(0.689413284635524127, rel=1e-13, abs=0.0)
+    assert balance.fractions["after"] == pytest.approx(balance.fractions["stage 2"], rel=1e-13, abs=0.0)
     assert balance.velocity_after == pytest.approx(3.0 * 0.830309150037216034, rel=1e-13, abs=0.0)
-    assert balance.shares["stage 1"] != pytest.approx(balance.shares["stage 2"], rel=1e-2)
+    assert balance.fractions["stage 1"] != pytest.approx(balance.fractions["stage 2"], rel=1e-2)
 
 
 @pytest.mark.verifies("computed anew", "a midpoint mesh of 120 cells", within="3e-4", control="within")

@@ -69,7 +69,7 @@ def test_inventory_is_the_assessment():
     for place, verdict in enumerate(found.verdicts):
         one = labelled.isel(object=place)
         assert str(one["light"].values) == verdict.light.word
-        assert tuple(one["overturned_share_95"].values) == verdict.interval
+        assert tuple(one["overturned_fraction_95"].values) == verdict.interval
         assert float(one["uplift_acceleration"]) == verdict.uplift_acceleration
         for model, results in enumerate((verdict.results, *verdict.compared)):
             for result in results:

@@ -135,8 +135,8 @@ REFUSED = [
     (measure("pgv/pga").factors, {"values": np.ones(2), "targets": np.ones(2)}, "must grow with"),
     *[(named_restitutions, {"restitutions": bad}, words) for bad, words in (
         (["ked"], "at least two"), (["ked", "ked"], "'ked'"), ("ked", "list or a dict"), (0.9, "list or a dict"),
-        ({"left": 0.8, "right": 0.9}, "one choice"), (["ked", {"left": 0.9}], "by side"), (["ked", object()], "number"),
-        (["ked", float("nan")], "finite"),
+        ({"left": 0.8, "right": 0.9}, "is one restitution"), (["ked", {"left": 0.9}], "by side"),
+        (["ked", object()], "number"), (["ked", float("nan")], "finite"),
     )],
 ]  # fmt: skip
 

@@ -135,7 +135,7 @@ def test_impact_has_every_model_with_evidence_and_stages(client):
     assert len(answer["measured"]["measurements"]) == 39
     assert "doi:" in answer["measured"]["source"]
     stages = answer["stages"]["right"]
-    shares = [stage["share"] for stage in stages["stages"]]
+    shares = [stage["fraction"] for stage in stages["stages"]]
     assert shares[0] == 1.0
     assert shares == sorted(shares, reverse=True)
     assert math.isclose(math.sqrt(shares[-1]), rows["ked"]["coefficient"])

@@ -16,7 +16,7 @@ from rocking.errors import InvalidValueError
 from rocking.spec.questions.fragility import MEASURES
 from rocking.studies.fragility.cloud_analysis import clearly_lifted
 from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
-from rocking.studies.sensitivity.comparison import Sensitivity, drawn_in
+from rocking.studies.sensitivity.comparison import Sensitivity, sampled_in
 from rocking.studies.study_plan import TYPES, AdaptiveResult, Study
 from rocking.tables import PIECE
 
@@ -157,7 +157,7 @@ def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_rat
     refuse_unfinished(folder)
     restitutions = folder.job.problem.restitutions
     results = datasets(folder, names) if folder.job.study.finish is None else analyses(folder)
-    return Sensitivity(results, baseline=next(iter(restitutions)), drawn=drawn_in(restitutions))
+    return Sensitivity(results, baseline=next(iter(restitutions)), sampled=sampled_in(restitutions))
 
 
 def pieces_of(

@@ -72,7 +72,7 @@ class CalledSafe:
     interval: tuple[float, float] | None
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """Overturning fraction of the cases rated safe; NaN without such cases [-]."""
         return self.overturned / self.safe if self.safe else math.nan
 
@@ -234,7 +234,7 @@ class CodeComparison:
 def _facts(called: CalledSafe) -> dict[str, Any]:
     return {
         "histories_known": called.total, "safe": called.safe, "overturned": called.overturned,
-        "limit_ratio": called.ratio, "share": called.share, "share_95": called.interval,
+        "limit_ratio": called.ratio, "fraction": called.fraction, "fraction_95": called.interval,
     }  # fmt: skip
 
 
@@ -294,7 +294,7 @@ def compare_code_methods(
     >>> small, large = (rk.Block(width=0.2 * height, height=height) for height in (0.6, 6.0))
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8)]
     >>> comparison = compare_code_methods([small, large], pulses, "housner", levels=[1.9])
-    >>> [comparison.called_safe("italian-linear", body, 0).share for body in (0, 1)]
+    >>> [comparison.called_safe("italian-linear", body, 0).fraction for body in (0, 1)]
     [1.0, 0.0]
     """
     all_bodies: list[Any] = list(bodies) if isinstance(bodies, Sequence) else [bodies]

@@ -169,7 +169,7 @@ def dataset_of(assessment: Assessment) -> "xr.Dataset":
             "object", [verdict.uplift_acceleration for verdict in verdicts],
             {"units": "m/s2", "long_name": "ground acceleration of uplift, the smaller of both directions"},
         ),
-        "overturned_share_95": (
+        "overturned_fraction_95": (
             ("object", "end"), np.array([verdict.interval for verdict in verdicts]).reshape(len(verdicts), 2),
             {"units": "1", "long_name": "interval of the overturning fraction in the worse direction"},
         ),

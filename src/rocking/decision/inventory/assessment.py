@@ -53,12 +53,12 @@ class DirectionResult:
     slid: int = 0  # number of motions with sliding, of an object in three dimensions [-]
 
     @property
-    def overturned_share(self) -> float:
+    def overturned_fraction(self) -> float:
         """Fraction of the motions that overturn the object [-]."""
         return self.overturned / self.count
 
     @property
-    def lifted_share(self) -> float:
+    def lifted_fraction(self) -> float:
         """Fraction of the motions that lift the object [-]."""
         return self.lifted / self.count
 
@@ -66,7 +66,7 @@ class DirectionResult:
     def severity(self) -> tuple[float, ...]:
         """Sort key of the worse direction: light, fraction, rotations, and the acceleration of uplift [-]."""
         high, middle = (1e9 if ratio is None else ratio for ratio in (self.high_rotation, self.median_rotation))
-        return self.light.severity, self.overturned_share, high, middle, -self.uplift_acceleration
+        return self.light.severity, self.overturned_fraction, high, middle, -self.uplift_acceleration
 
 
 @dataclass(frozen=True)
@@ -472,7 +472,7 @@ class _Assessor:
             if verdict.light is Light.GREEN:
                 continue
             item, worse = verdict.item, verdict.worse
-            fraction, weight = worse.overturned_share, 1.0 / self.thresholds.factor(item.consequence)
+            fraction, weight = worse.overturned_fraction, 1.0 / self.thresholds.factor(item.consequence)
             if self.moves_in_space(item):
                 entries.append(
                     planner.entry_in_space(self._moving(item, threads), self.restitutions[0], fraction, weight)

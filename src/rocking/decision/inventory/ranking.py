@@ -336,7 +336,7 @@ def _plan(entry: PlanEntry, say: Language) -> dict[str, Any]:
         "anchors_of_one_edge_over_weight": entry.pull,
         "anchors_of_one_edge": entry.force,
         "anchors_across_over_weight": entry.shear,
-        "moved_to_share_of_shaking": entry.weaker,
+        "moved_to_fraction_of_shaking": entry.weaker,
         "in_words": plan_words(entry, say),
     }
 
@@ -386,7 +386,7 @@ _PLAIN = {
 def _direction(result: DirectionResult) -> dict[str, Any]:
     names = (
         "direction", "light", "uplift_acceleration", "count", "lifted", "overturned", "slid", "failed", "lost_contact",
-        "overturned_share", "median_rotation", "high_rotation",
+        "overturned_fraction", "median_rotation", "high_rotation",
     )  # fmt: skip
     plain = {_PLAIN.get(name, name): getattr(result, name) for name in names}
     return plain | {"light": result.light.word}

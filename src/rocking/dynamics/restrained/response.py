@@ -311,7 +311,7 @@ class RestrainedResponse(ResponseBase):
             "restraint_work": self.restraint_work.ravel(),
         }  # fmt: skip
         more = {"restraint_sample": Table.of("restraint_sample", samples)} if names else {}
-        return replace(table, beside={**table.beside, **more})
+        return replace(table, related={**table.related, **more})
 
     def _plot(self, **_: Any) -> "Figure":
         from rocking.plots import restrained_picture

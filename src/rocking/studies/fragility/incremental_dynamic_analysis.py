@@ -285,7 +285,7 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "than 1 % of the level).",
         )
 
-    def share_resurrected(self, wider_than: float = 0.0) -> float:
+    def fraction_resurrected(self, wider_than: float = 0.0) -> float:
         """Return the fraction of resurrected motions among those without a failed history [-]."""
         return len(self.resurrected(wider_than)) / max(1, int(self.complete.sum()))
 
@@ -316,6 +316,6 @@ class IncrementalDynamicAnalysis(MultipleStripeAnalysis):
             "incomplete motions": np.flatnonzero(~self.complete).tolist(),
             "restitution note": self.restitution_note,
             "motions with resurrection": len(self.resurrected()),
-            "share with resurrection": self.share_resurrected(),
-            "share with resurrection wider than 1 %": self.share_resurrected(WIDE),
+            "fraction with resurrection": self.fraction_resurrected(),
+            "fraction with resurrection wider than 1 %": self.fraction_resurrected(WIDE),
         }

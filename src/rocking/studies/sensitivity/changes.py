@@ -32,13 +32,13 @@ class Flips:
     unknown: int  # number of histories that failed in one of the results
     # 95 % interval of the fraction for other motions or samples of the same kind; NaN without motions and samples,
     # since the cells of a grid are not a random sample [-]
-    share_low: float
-    share_high: float
+    fraction_low: float
+    fraction_high: float
     # number of independent motions in the interval; 0 if all histories are independent, or without an interval
     clusters: int = 0
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """Fraction of different verdicts among the compared histories [-]."""
         return self.count / self.compared
 
@@ -48,7 +48,7 @@ class Flips:
         return self.count - self.only_second
 
 
-def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = False) -> Flips:
+def flips_of(first: Any, second: Any, motions: Any = None, *, sampled: bool = False) -> Flips:
     """Return the number of different verdicts between two results, with a 95 % interval if defined."""
     sign = flip_map(first, second)
     has_verdicts = sign != UNKNOWN
@@ -61,7 +61,7 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = Fals
     count, only_second = int(flipped.sum()), int((sign == 1).sum())
     groups = None if motions is None else np.broadcast_to(np.asarray(motions), sign.shape)[has_verdicts]
     size, clusters = _effective(flipped, groups)
-    low, high = share_interval(count / compared * size, size) if clusters or drawn else (np.nan, np.nan)
+    low, high = share_interval(count / compared * size, size) if clusters or sampled else (np.nan, np.nan)
     return Flips(count, only_second, compared, sign.size - compared, low, high, clusters)
 
 
@@ -152,7 +152,7 @@ class CurveChange:
     repetitions: int  # number of resampled sets of motions, common to both curves
     without_curve: int  # number of sets without one of the curves
 
-    def told(self, unit: str, size: float = 1.0) -> str:
+    def text(self, unit: str, size: float = 1.0) -> str:
         """Return the changes as a phrase, with levels in a unit of the measure; size: of this unit."""
         formatted = "{:+.3f}".format
         ends = self.median.interval

@@ -27,7 +27,7 @@ from rocking.studies.sensitivity.restitutions import named_restitutions, sampled
 if TYPE_CHECKING:
     import xarray as xr
 
-_COUNTS = ("count", "only_second", "only_first", "compared", "unknown", "share", "share_low", "share_high")
+_COUNTS = ("count", "only_second", "only_first", "compared", "unknown", "fraction", "fraction_low", "fraction_high")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,7 +44,7 @@ class Sensitivity:
         Number of resampled sets of motions for the intervals of fragility curves.
     seed : int
         Random seed of the samples.
-    drawn : collection of str
+    sampled : collection of str
         Names of the choices with random coefficients: other samples may change other verdicts.
 
     Raises
@@ -57,7 +57,7 @@ class Sensitivity:
     baseline: str = field(kw_only=True)
     repetitions: int = field(default=1000, kw_only=True)
     seed: int = field(default=0, kw_only=True)
-    drawn: Collection[str] = field(default=(), kw_only=True)
+    sampled: Collection[str] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "baseline", checks.one_of("baseline", self.baseline, self.results))
@@ -106,12 +106,12 @@ class Sensitivity:
         first, second = (checks.one_of("choice", label, self.labels) for label in (first, second))
         a, b = (self.datasets[label]["outcome"] for label in (first, second))
         if first == second:
-            return replace(flips_of(a.values, b.values), share_low=0.0, share_high=0.0)
-        is_random = not {first, second}.isdisjoint(self.drawn)
+            return replace(flips_of(a.values, b.values), fraction_low=0.0, fraction_high=0.0)
+        is_random = not {first, second}.isdisjoint(self.sampled)
         if "motion" not in a.dims:
-            return flips_of(a.values, b.values, drawn=is_random)
+            return flips_of(a.values, b.values, sampled=is_random)
         shape = [-1 if name == "motion" else 1 for name in a.dims]
-        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape), drawn=is_random)
+        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape), sampled=is_random)
 
     def flips(self) -> "xr.Dataset":
         """Return the number of different verdicts between all pairs of choices.
@@ -128,7 +128,7 @@ class Sensitivity:
         data = {name: (both, np.array([getattr(p, name) for p in pairs]).reshape(shape)) for name in _COUNTS}
         table: xr.Dataset = xarray.Dataset(data, coords={name: list(self.labels) for name in both})
         clusters = max(pair.clusters for pair in pairs)
-        independent = f"{clusters} motions" if clusters else self.cases if self.drawn else "nothing"
+        independent = f"{clusters} motions" if clusters else self.cases if self.sampled else "nothing"
         return table.assign_attrs(cases=self.cases, independent=independent)
 
     def differences(self, name: str = "verdict") -> "xr.DataArray":
@@ -229,9 +229,9 @@ class Sensitivity:
     @property
     def verdict(self) -> str:
         """The comparison as text, one sentence per choice other than the baseline."""
-        return self.told()
+        return self.text()
 
-    def told(self, unit: tuple[str, float] | None = None) -> str:
+    def text(self, unit: tuple[str, float] | None = None) -> str:
         """Return the comparison as text, with levels in another unit.
 
         Parameters
@@ -248,9 +248,9 @@ class Sensitivity:
 
     def _sentence(self, label: str, unit: tuple[str, float] | None) -> str:
         flips = self.flips_between(self.baseline, label)
-        fraction = percent(flips.share)
-        if _or_none(flips.share_low) is not None:
-            fraction += f", 95 % interval {percent(flips.share_low)} to {percent(flips.share_high)}"
+        fraction = percent(flips.fraction)
+        if _or_none(flips.fraction_low) is not None:
+            fraction += f", 95 % interval {percent(flips.fraction_low)} to {percent(flips.fraction_high)}"
         clauses = [
             f"With {label} instead of {self.baseline}, the outcome differs in {flips.count:,} of {flips.compared:,} "
             f"{self.cases} ({fraction})"
@@ -264,7 +264,7 @@ class Sensitivity:
         changes = self._curve_changes.get(label, {})
         unit = unit or ((self.results[label].subject.measure.unit, 1.0) if changes else ("-", 1.0))
         clauses += [
-            f"{state}: {change if isinstance(change, str) else change.told(*unit)}" for state, change in changes.items()
+            f"{state}: {change if isinstance(change, str) else change.text(*unit)}" for state, change in changes.items()
         ]
         return "; ".join(clauses) + "."
 
@@ -350,10 +350,10 @@ def sensitivity(
     choices = named_restitutions(restitutions)
     first = next(iter(choices)) if baseline is None else checks.one_of("baseline", baseline, choices)
     results = {label: study(restitution=choice) for label, choice in choices.items()}
-    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, drawn=drawn_in(choices))
+    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, sampled=sampled_in(choices))
 
 
-def drawn_in(choices: Mapping[str, Any]) -> list[str]:
+def sampled_in(choices: Mapping[str, Any]) -> list[str]:
     """Return the names of the choices with random coefficients at every impact."""
     kind = RandomRestitution.kind
     return [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == kind]

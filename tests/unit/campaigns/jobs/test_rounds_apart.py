@@ -122,7 +122,7 @@ def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
             call()
     assert "round-001: ledger.sqlite is damaged" in verified(folder.path).damaged[0]
     assert folder.run(workers=1).computed == 0
-    assert (verified(folder.path).whole, digests(folder)) == (True, before)
+    assert (verified(folder.path).is_complete, digests(folder)) == (True, before)
 
 
 @pytest.mark.slow

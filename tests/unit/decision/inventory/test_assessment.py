@@ -58,7 +58,7 @@ def test_counts_by_hand():
     assert verdict.worse is wide
     assert wide.high_rotation is None
     assert wide.median_rotation > 0.5
-    assert (verdict.light, wide.overturned_share) == (Light.RED, 0.3)
+    assert (verdict.light, wide.overturned_fraction) == (Light.RED, 0.3)
     # Clopper & Pearson for 3 of 10, as tables print it
     assert verdict.interval == pytest.approx((0.0667, 0.6525), abs=5e-5)
     assert ranking.sentence(verdict, found) == (
@@ -113,7 +113,7 @@ def test_share_lifted_grows_with_the_level(quakes):
         (verdict,) = assess([COLUMN], hazard).verdicts
         for each in verdict.results:
             assert each.lifted == sum(motion.peak > each.uplift_acceleration for motion in hazard.motions)
-        shares.append(verdict.results[0].lifted_share)
+        shares.append(verdict.results[0].lifted_fraction)
     assert shares == sorted(shares)
     assert 0.0 < shares[2] < 1.0
 

@@ -83,12 +83,12 @@ def test_first_crossing_is_never_below_the_fraction(found):
     }
     assert back <= set(found.resurrected())
     assert np.any(passed > found.fractions)
-    assert found.share_resurrected() == len(found.resurrected()) / 12
+    assert found.fraction_resurrected() == len(found.resurrected()) / 12
 
 
 def test_survivals_by_their_width(found):
     """The wider a survival must be, the fewer motions have one; each stands at the middle of its own."""
-    shares = [found.share_resurrected(width) for width in (0.0, 0.01, 0.1, 1.0)]
+    shares = [found.fraction_resurrected(width) for width in (0.0, 0.01, 0.1, 1.0)]
     assert shares == sorted(shares, reverse=True)
     assert shares[0] > shares[-1]
     for motion, low, high in found.survivals:

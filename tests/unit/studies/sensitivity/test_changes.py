@@ -28,7 +28,7 @@ def test_a_flip_is_a_change_of_the_verdict_alone():
     assert flip_map(first, second).tolist() == [0, 0, 1, -1, 0, 2, 2]
     found = flips_of(first, second)
     assert (found.count, found.only_second, found.only_first, found.compared, found.unknown) == (2, 1, 1, 5, 2)
-    assert found.share == 0.4
+    assert found.fraction == 0.4
 
 
 def test_the_other_way_round_gains_what_was_lost():
@@ -37,7 +37,7 @@ def test_the_other_way_round_gains_what_was_lost():
     first, second = rng.integers(0, 4, (2, 30, 8))
     there, back = flips_of(first, second), flips_of(second, first)
     assert (there.only_second, there.only_first) == (back.only_first, back.only_second)
-    assert (there.share_low, there.share_high) == (back.share_low, back.share_high)
+    assert (there.fraction_low, there.fraction_high) == (back.fraction_low, back.fraction_high)
 
 
 def coverage(by_motion, repetitions=400):
@@ -47,8 +47,8 @@ def coverage(by_motion, repetitions=400):
     for _ in range(repetitions):
         second = np.where(rng.random((40, 12)) < rng.beta(1.0, 4.0, (40, 1)), OVER, ROCKED)  # mean 0.2
         motions = np.arange(40)[:, None] if by_motion else None
-        found = flips_of(np.full_like(second, ROCKED), second, motions, drawn=not by_motion)
-        inside += found.share_low <= 0.2 <= found.share_high
+        found = flips_of(np.full_like(second, ROCKED), second, motions, sampled=not by_motion)
+        inside += found.fraction_low <= 0.2 <= found.fraction_high
     return inside / repetitions
 
 
@@ -63,18 +63,18 @@ def test_no_flips_are_as_sure_as_there_are_motions():
     """Without any flip the upper end is that of as many trials as there are motions: 1 - 0.025^(1/20)."""
     same = np.full((20, 50), ROCKED)
     found = flips_of(same, same, np.arange(20)[:, None])
-    assert (found.count, found.share_low, found.clusters) == (0, 0.0, 20)
-    assert found.share_high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12, abs=0.0)
+    assert (found.count, found.fraction_low, found.clusters) == (0, 0.0, 20)
+    assert found.fraction_high == pytest.approx(1.0 - 0.025 ** (1.0 / 20.0), rel=1e-12, abs=0.0)
 
 
 def test_one_motion_is_no_sample_of_motions():
     """With a single motion there is no interval, unless every history has draws of its own: these are counted."""
     first, second = np.full((1, 50), ROCKED), np.full((1, 50), OVER)
-    assert flips_of(first, second, [[0]], drawn=True) == Flips(50, 50, 50, 0, *share_interval(50, 50), 0)
+    assert flips_of(first, second, [[0]], sampled=True) == Flips(50, 50, 50, 0, *share_interval(50, 50), 0)
     for motions in ([[0]], None):
         found = flips_of(first, second, motions)
-        assert (found.count, found.share, found.clusters) == (50, 1.0, 0)
-        assert np.isnan([found.share_low, found.share_high]).all()
+        assert (found.count, found.fraction, found.clusters) == (50, 1.0, 0)
+        assert np.isnan([found.fraction_low, found.fraction_high]).all()
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_without_curves_there_is_no_interval():
     nothing = np.zeros((20, LEVELS.size))
     found = curve_change(((1.0, 0.4), (1.1, 0.4)), LEVELS, nothing, nothing, repetitions=50)
     assert (found.median.interval, found.without_curve) == (None, 50)
-    assert "no interval" in found.told("m/s2")
+    assert "no interval" in found.text("m/s2")
 
 
 def test_words():
@@ -256,8 +256,8 @@ def test_words():
     hits = 1.2 * np.exp(0.4 * np.random.default_rng(1).normal(size=(60, 1))) < LEVELS
     for second, word in ((1.32, "the median changes by +10 % "), (1.08, "the median changes by -10 % ")):
         found = curve_change(((1.2, 0.4), (second, 0.4)), LEVELS, hits, hits, repetitions=10)
-        assert word in found.told("g", 2.0)
-        assert found.told("g", 2.0).endswith(f" at {found.level / 2.0:.4g} g")
+        assert word in found.text("g", 2.0)
+        assert found.text("g", 2.0).endswith(f" at {found.level / 2.0:.4g} g")
 
 
 @pytest.mark.parametrize(

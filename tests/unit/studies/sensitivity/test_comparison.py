@@ -45,8 +45,8 @@ def test_flips_between_all_pairs():
     assert found["only_second"].values.tolist() == [[0, 2, 0], [1, 0, 1], [0, 2, 0]]
     assert found["compared"].values.tolist() == [[6, 6, 5], [6, 6, 5], [5, 5, 5]]
     assert found["unknown"].sel(first="housner", second="0.9") == 1
-    assert found["share"].sel(first="housner", second="ked") == 0.5
-    assert np.diag(found["share_high"]).tolist() == [0.0, 0.0, 0.0]
+    assert found["fraction"].sel(first="housner", second="ked") == 0.5
+    assert np.diag(found["fraction_high"]).tolist() == [0.0, 0.0, 0.0]
     assert found.attrs["cases"] == "cells"
 
 
@@ -76,23 +76,23 @@ def test_histories_of_one_motion_are_counted_together():
     assert by_row == by_column
     assert by_row.clusters == 30
     results = {name: given(outcomes)(restitution=name) for name in outcomes}
-    cells = Sensitivity(results, baseline="ked", drawn=["ked"]).flips_between("housner", "ked")
-    assert by_row.share_high - by_row.share_low > 2.0 * (cells.share_high - cells.share_low)
+    cells = Sensitivity(results, baseline="ked", sampled=["ked"]).flips_between("housner", "ked")
+    assert by_row.fraction_high - by_row.fraction_low > 2.0 * (cells.fraction_high - cells.fraction_low)
 
 
 def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
     """A map of constants is no sample: no interval in numbers or words; with one drawn choice its pairs have one."""
     constant = map_sensitivity(BLOCK, PULSE, *AXES, ["housner", "ked"])
     flips = constant.flips_between("housner", "ked")
-    assert np.isnan([flips.share_low, flips.share_high]).all()
+    assert np.isnan([flips.fraction_low, flips.fraction_high]).all()
     assert "interval" not in constant.verdict
-    assert constant.summary()[1]["share_low"] is constant.summary()[1]["share_high"] is None
+    assert constant.summary()[1]["fraction_low"] is constant.summary()[1]["fraction_high"] is None
     assert constant.flips().attrs["independent"] == "nothing"
     law = RandomRestitution.normal(0.9, 0.02, seed=1)
     drawn = map_sensitivity(BLOCK, PULSE, *AXES, {"housner": "housner", "ked": "ked", "drawn": law})
-    assert np.isnan(drawn.flips_between("housner", "ked").share_low)
+    assert np.isnan(drawn.flips_between("housner", "ked").fraction_low)
     flips = drawn.flips_between("housner", "drawn")
-    assert (flips.share_low, flips.share_high) == share_interval(flips.count, flips.compared)
+    assert (flips.fraction_low, flips.fraction_high) == share_interval(flips.count, flips.compared)
     assert [line.count("95 % interval") for line in drawn.verdict.splitlines()] == [0, 1]
     single = spectrum_sensitivity(PULSE, [0.2], [2.0, 3.0, 4.0], ["housner", "ked"])
     assert "interval" not in single.verdict

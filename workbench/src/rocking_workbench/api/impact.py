@@ -47,7 +47,7 @@ Stage: Any = shape(
     name=Literal["before", "stage 1", "stage 2", "after"],
     description=str,
     energy=(float, "kinetic energy after the stage"),
-    share=(float, "kinetic energy after the stage / energy before the impact"),
+    fraction=(float, "kinetic energy after the stage / energy before the impact"),
     velocity=list[Point],
 )
 Stages: Any = shape(
@@ -75,7 +75,7 @@ ImpactAnswered: Any = shape(
     "ImpactAnswered",
     "Coefficients by impact foot; of two equal feet only the right foot.",
     body=DrawnBody,
-    ked_energy_shares=dict[Foot, Shares],
+    ked_energy_fractions=dict[Foot, Shares],
     coefficients=(dict[Foot, list[CoefficientFacts]], "every model, the calibrated default first"),
     identities=(dict[str, dict[str, bool]], "empty here; `rocking restitution --check-identities --json` fills it"),
     titles=(dict[str, str], "name of a model to its title"),

@@ -70,8 +70,8 @@ def plain(text: str) -> str:
 def words_of(text: str) -> set[str]:
     """Return the words of a comma-separated text, with both spellings of umlauts."""
     both = (text, text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue"))
-    words = {plain(word) for spelling in both for word in spelling.split(",")}
-    return words | {word.replace("ß", "ss") for word in words if not word.startswith("maß")}  # Masse is the weight
+    spelled = {plain(word) for spelling in both for word in spelling.split(",")}
+    return spelled | {word.replace("ß", "ss") for word in spelled if not word.startswith("maß")}  # Masse is the weight
 
 
 _HEADERS = {
@@ -83,7 +83,7 @@ _TOKENS = {
 }
 UNITS = {word: unit for unit, text in WORDS["units"].items() for word in words_of(text)}
 _MEASURED = {
-    word for words in _HEADERS.values() for word, field in words.items() if field in _MEASURES and len(word) > 1
+    word for fields in _HEADERS.values() for word, field in fields.items() if field in _MEASURES and len(word) > 1
 }
 _TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token in word.split() if len(token) > 3}
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
@@ -142,20 +142,20 @@ class Header:
         return missing + [field for field in required if field not in fields]
 
 
-def _bare(words: Sequence[str]) -> tuple[list[str], str]:
+def _bare(tokens: Sequence[str]) -> tuple[list[str], str]:
     """Return the words of a title without its unit, which is the last word, and the unit."""
-    kept = list(words)
+    kept = list(tokens)
     while kept and kept[-1] in _FILLERS - UNITS.keys():
         kept.pop()
     unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # at the end: a foot width is no width in feet
     return kept, unit
 
 
-def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
+def _stem_in(tokens: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
     """Return the quantity of a title in one language, and its unit."""
-    if stem_of_title := fields.get(" ".join(words)):
+    if stem_of_title := fields.get(" ".join(tokens)):
         return stem_of_title, ""
-    kept, unit = _bare(words)
+    kept, unit = _bare(tokens)
     bare = [word for word in kept if word not in _FILLERS]
     stem = fields.get(" ".join(kept)) or fields.get(" ".join(bare), "")
     return (stem, unit) if stem in _WITH_UNIT or not unit else ("", "")
@@ -163,12 +163,14 @@ def _stem_in(words: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
 
 def _stem(title: str, language: str) -> tuple[str, str]:
     """Return the quantity of a title in a language, another or two languages, and its unit; empty if unknown."""
-    words = plain(title).split()
+    tokens = plain(title).split()
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
-    match = next((match for fields in tables if (match := _stem_in(words, fields))[0]), ("", ""))
+    match = next((match for fields in tables if (match := _stem_in(tokens, fields))[0]), ("", ""))
     if match[0] or (match := _translated(title))[0]:
         return match
-    if any(word.startswith("inv") for word in words) and all(word.startswith("inv") or len(word) < 4 for word in words):
+    if any(word.startswith("inv") for word in tokens) and all(
+        word.startswith("inv") or len(word) < 4 for word in tokens
+    ):
         return "number", ""  # N. d'inv., Inv.-Nr. alt
     bare = re.sub(r"\([^()]*\)|\[[^\[\]]*\]", " ", title)
     stem = _stem(bare, language)[0] if plain(bare) != plain(title) else ""
@@ -182,8 +184,8 @@ def stem_of(title: str, language: str) -> str:
 
 def _translated(title: str) -> tuple[str, str]:
     """Return the quantity of a title in several languages, and its unit, such as ``Breite / Larghezza (cm)``."""
-    words, unit = _bare(plain(title).split())
-    fields = _phrased(words)
+    tokens, unit = _bare(plain(title).split())
+    fields = _phrased(tokens)
     if not fields:
         pieces = [plain(piece).split() for piece in _TRANSLATED.split(title)]
         known_fields = [piece_fields for piece in pieces if (piece_fields := _phrased(piece))]
@@ -196,17 +198,17 @@ def _translated(title: str) -> tuple[str, str]:
     return (stem, unit) if stem in _WITH_UNIT or not unit else ("", "")
 
 
-def _phrased(words: Sequence[str]) -> set[str]:
+def _phrased(tokens: Sequence[str]) -> set[str]:
     """Return the fields of words that are a sequence of phrases of any language, all of one field."""
-    ends: list[set[str]] = [{""}, *(set() for _ in words)]
-    for k, word in enumerate(words):
+    ends: list[set[str]] = [{""}, *(set() for _ in tokens)]
+    for k, word in enumerate(tokens):
         if word in _FILLERS or (
             word in UNITS and word not in _TELLING and "" not in ends[k]
         ):  # a unit follows its quantity
             ends[k + 1] |= ends[k]
-        for j in range(k + 1, min(k + 5, len(words)) + 1):
+        for j in range(k + 1, min(k + 5, len(tokens)) + 1):
             ends[j] |= {
-                field for field in _PHRASES.get(" ".join(words[k:j]), ()) if "" in ends[k] or field in ends[k]
+                field for field in _PHRASES.get(" ".join(tokens[k:j]), ()) if "" in ends[k] or field in ends[k]
             }  # fmt: skip
     return ends[-1] - {""}
 
@@ -217,10 +219,10 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     >>> order_of("Maße (HxBxT) in cm"), order_of("height*width*depth"), order_of("Maße")
     (('height', 'width', 'depth'), ('height', 'width', 'depth'), ())
     """
-    words = plain(re.sub(r"[×✕*/]|(?<=\b\w)\s?[-\u2013]\s?(?=\w\b)", " x ", title)).split()
+    pieces = plain(re.sub(r"[×✕*/]|(?<=\b\w)\s?[-\u2013]\s?(?=\w\b)", " x ", title)).split()
     joined = re.compile(r"[a-zø](?:x[a-zø]){1,2}")
     tokens = [
-        token for word in words for token in (" x ".join(word[::2]).split() if joined.fullmatch(word) else [word])
+        token for word in pieces for token in (" x ".join(word[::2]).split() if joined.fullmatch(word) else [word])
     ]
     best: list[str] = []
     run: list[str] = []
@@ -342,11 +344,15 @@ def _language_of(titles: Titles) -> str:
         for position, piece in enumerate(filter(None, map(str.strip, re.split(r"[/|()\[\]\n\u2013\u2014]| - ", level))))
     ))  # fmt: skip
 
-    words = [(position, plain(piece).split()) for position, piece in pieces]
+    tokens_by_position = [(position, plain(piece).split()) for position, piece in pieces]
 
     def votes(code: str) -> tuple[int, int, int]:
-        positions = [position for position, piece in words if _stem_in(piece, _HEADERS[code])[0]]
-        return len(positions), -sum(positions), sum(token in _TOKENS[code] for _, piece in words for token in piece)
+        positions = [position for position, piece in tokens_by_position if _stem_in(piece, _HEADERS[code])[0]]
+        return (
+            len(positions),
+            -sum(positions),
+            sum(token in _TOKENS[code] for _, piece in tokens_by_position for token in piece),
+        )
 
     return str(max(_HEADERS, key=votes))
 
@@ -358,7 +364,7 @@ class _Level:
     stem: str
     unit: str
     order: tuple[str, ...]
-    words: tuple[str, ...]  # without its unit
+    tokens: tuple[str, ...]  # without its unit
 
     @classmethod
     @lru_cache(maxsize=4096)
@@ -377,18 +383,18 @@ class _Level:
     @property
     def is_neutral(self) -> bool:
         """True if the title does not describe the column, such as a unit or a word for the object itself."""
-        return not self.stem and (set(self.words) <= _FILLERS or bool(_WITHOUT.intersection(self.words)))
+        return not self.stem and (set(self.tokens) <= _FILLERS or bool(_WITHOUT.intersection(self.tokens)))
 
     @property
     def is_other(self) -> bool:
         """True if the title belongs to something other than the object."""
-        other = any(word in _OTHERS or word.startswith(_BEGINNINGS) for word in self.words)
-        return not self.stem and other and not _WITHOUT.intersection(self.words)
+        other = any(word in _OTHERS or word.startswith(_BEGINNINGS) for word in self.tokens)
+        return not self.stem and other and not _WITHOUT.intersection(self.tokens)
 
     @property
     def is_doubtful(self) -> bool:
         """True if the title resembles a size but is unknown."""
-        return not self.stem and bool(_TELLING.intersection(self.words)) and not _WITHOUT.intersection(self.words)
+        return not self.stem and bool(_TELLING.intersection(self.tokens)) and not _WITHOUT.intersection(self.tokens)
 
 
 def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn | None:
@@ -396,12 +402,12 @@ def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn 
     levels = [_Level.of(text, language) for text in texts]
     last = levels[-1] if levels else None
     if last and len(levels) > 1 and UNITS.get(plain(texts[-1])) in _units_of(levels[-2].stem):
-        levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), words=())
+        levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), tokens=())
     stem = ""
     for level in levels:
-        is_unit = stem == "count" and " ".join(level.words) in _INSTEAD  # Q.tà, n.
+        is_unit = stem == "count" and " ".join(level.tokens) in _INSTEAD  # Q.tà, n.
         stem = stem if level.is_neutral or is_unit else _IN_GROUP.get((stem, level.stem), level.stem)
-    words_by_level = [level.words for level in levels if level.words]
+    words_by_level = [level.tokens for level in levels if level.tokens]
     orders = (words_by_level, words_by_level[::-1]) if len(words_by_level) > 1 else ()
     both = next(filter(None, (_joined(order, language) for order in orders)), "")
     stem = both or stem
@@ -427,9 +433,9 @@ def _units_of(stem: str) -> Collection[str]:
 
 def _joined(titles: Sequence[Sequence[str]], language: str) -> str:
     """Return the joint quantity of the titles of a group and its column, such as ``Basis`` above ``Breite``."""
-    words = [word for title in titles for word in title]
+    tokens = [word for title in titles for word in title]
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
-    phrase = " ".join(words)
+    phrase = " ".join(tokens)
     return next((fields[phrase] for fields in tables if phrase in fields), "")
 
 

@@ -8,7 +8,7 @@ import { arrow, footMark, groundLine } from "/drawing/symbols.js";
 import { boxOf, viewport } from "/drawing/viewport.js";
 import { t } from "/app/words.js";
 
-/** @typedef {{ name: string, share: number, velocities: Point[] }} StageField */
+/** @typedef {{ name: string, fraction: number, velocities: Point[] }} StageField */
 
 /** @type {{ [stage: string]: [string, string] | undefined }} */
 export const STAGE_WORDS = {
@@ -18,7 +18,7 @@ export const STAGE_WORDS = {
   after: ["After", "rotation about the new foot"],
 };
 
-/** Draw panels for {points, stages: [{name, share, velocities}]}, all with one scale of arrows.
+/** Draw panels for {points, stages: [{name, fraction, velocities}]}, all with one scale of arrows.
  * @param {Drawn} body @param {{ points: Point[], stages: StageField[] }} field @param {string} foot @param {{ width: number }} size */
 export const stagesPicture = (body, field, foot, { width }) => {
   const columns = width < 520 ? 2 : 4;
@@ -34,7 +34,7 @@ export const stagesPicture = (body, field, foot, { width }) => {
 };
 
 /** @param {Drawn} body @param {Point[]} points @param {StageField} stage @param {string} foot @param {{ width: number, pixels: number }} size */
-const onePanel = (body, points, { name, share, velocities }, foot, { width, pixels }) => {
+const onePanel = (body, points, { name, fraction, velocities }, foot, { width, pixels }) => {
   const height = Math.min(320, Math.max(220, width * 1.3));
   const view = viewport(boxOf(
     [...pointsOf(body.outline), ...(body.points ?? []), ...body.foot_positions.map((foot) => [foot, groundOf(body)])]
@@ -48,7 +48,7 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
-      "aria-label": t("{stage}: {description}. {share} of the kinetic energy remains.", { stage: title, description, share: percent(share) }),
+      "aria-label": t("{stage}: {description}. {share} of the kinetic energy remains.", { stage: title, description, share: percent(fraction) }),
     },
       groundLine(4, width - 4, floor),
       regionPaths(body.outline, view, { class: "region faint" }),
@@ -57,6 +57,6 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
         arrow(view.x(x), view.y(y), velocities[index][0] * pixels, -velocities[index][1] * pixels)))),
     el(
       "figcaption", {}, el("strong", {}, title), el("span", {}, description),
-      el("span", { class: "share" }, percent(share)),
+      el("span", { class: "share" }, percent(fraction)),
     ));
 };

@@ -81,12 +81,12 @@ const Results = ({ app, answer }) => {
 };
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
-const ledgerOf = (answer, foot, width) => ledgerPicture(answer.ked_energy_shares[foot], { width });
+const ledgerOf = (answer, foot, width) => ledgerPicture(answer.ked_energy_fractions[foot], { width });
 
 /** @param {Server.ImpactAnswered} answer @param {Foot} foot @param {number} width */
 const stagesOf = ({ body, stages: of }, foot, width) => {
   const { points, stages } = of[foot];
-  const shown = stages.map(({ name, share, velocity: velocities }) => ({ name, share, velocities }));
+  const shown = stages.map(({ name, fraction, velocity: velocities }) => ({ name, fraction, velocities }));
   return stagesPicture(body, { points, stages: shown }, foot, { width });
 };
 
