@@ -107,6 +107,8 @@ def _set(example: str) -> Any:
 
 
 Set = Annotated[list[str] | None, _set("settings.gravity=9.81")]
+SetOfRecords = Annotated[list[str] | None, _set("motion.target=eurocode8:ag=0.35g,ground=C, motion.count=7")]
+SetOfProcessing = Annotated[list[str] | None, _set('"motion.process=mean; bandpass:low=0.1,high=25"')]
 SetOfAssessment = Annotated[list[str] | None, _set("assess.margin=1.5, assess.project, assess.author")]
 Friction = Annotated[float | None, key(StudySettingsTable, "friction", rich_help_panel=HOW)]
 Threads = Annotated[int | None, typer.Option(help="Number of threads.", rich_help_panel=HOW)]

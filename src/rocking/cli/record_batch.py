@@ -64,7 +64,7 @@ def record_batch(
         str | None,
         typer.Option(help=r"Periods of the spectra, separated by commas \[s]. [default: 30 from 0.02 to 10]"),
     ] = None,
-    sets: options.Set = None,
+    sets: options.SetOfRecords = None,
     workers: Annotated[
         int | None, typer.Option(help="Number of processes. [default: number of processors, at most 8]")
     ] = None,

@@ -69,7 +69,7 @@ def record_convert(
     ],
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
-    sets: options.Set = None,
+    sets: options.SetOfProcessing = None,
     output: Annotated[
         list[str] | None,
         options.output(

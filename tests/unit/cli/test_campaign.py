@@ -327,8 +327,9 @@ def test_kill_resume_export(run, job, tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=HANG)
     assert (process.returncode, out) == (3, "")
-    assert err.lstrip().startswith("rocking: stopped: ")
-    assert len(err.strip().splitlines()) == 1
+    *progress, last = err.strip().splitlines()
+    assert last.startswith("rocking: stopped: ")
+    assert all(line.startswith("rocking: sines: ") for line in progress)  # on a busy machine
     code, out, _ = run("resume", folder, "--json")
     assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)
     assert run("export", folder, "--output", tmp_path / "r.nc")[0] == 0

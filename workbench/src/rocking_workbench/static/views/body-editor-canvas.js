@@ -10,11 +10,11 @@ import { boxOf, multiples, roundStep, viewport, viewportAt } from "/drawing/view
 import { t } from "/app/words.js";
 
 const HEIGHT = 460;
-const NARROWEST = 80; // pixels: a narrower canvas is about to be hidden or shown
+const NARROWEST = 80; // width in pixels below which the canvas is not visible yet
 const CELL = 12; // smallest width of a grid cell in pixels
 const REACH = 16; // pixels from a vertex within which it is picked
 const ZOOM = 1.25;
-const [NEAREST, FARTHEST] = [1e6, 0.05]; // scales, in those at which the body fills the board
+const [NEAREST, FARTHEST] = [1e6, 0.05]; // limits of the scale / scale at which the body fills the board
 
 const ABOUT = "Drawing board. Tab reaches the vertices; arrow keys move one, Delete removes it, Insert adds one after it. "
   + "Page Up and Page Down zoom, Control with arrow keys pans, Home shows the whole body.";
@@ -26,7 +26,7 @@ export const createCanvas = (editor, element) => {
   });
   const wrong = el("p", { class: "board-refusal", "aria-hidden": "true", hidden: true });
   element.prepend(board, wrong);
-  let view = /** @type {Viewport} */ (/** @type {unknown} */ (null)); // until it has a width
+  let view = /** @type {Viewport} */ (/** @type {unknown} */ (null)); // if the canvas has no width yet
   let width = 0;
   /** @type {any} */
   let drag = null;
@@ -68,7 +68,7 @@ export const createCanvas = (editor, element) => {
     look = { middle: point, scale: Math.min(NEAREST * fittedScale, Math.max(FARTHEST * fittedScale, scale)) };
     editor.tell();
   };
-  /** Nearer by a factor; the point stays where it is. @param {number} factor @param {number[]} [point] */
+  /** Zoom by a factor about a fixed point. @param {number} factor @param {number[]} [point] */
   const zoom = (factor, point = chosenPoint(editor, view, width) ?? middle()) => {
     const [x, y] = [view.x(point[0]), view.y(point[1])];
     lookAt(middle(), view.scale * factor);
@@ -118,7 +118,7 @@ export const createCanvas = (editor, element) => {
     try {
       board.setPointerCapture(event.pointerId);
     } catch {
-      // A pointer that has left already is not followed.
+      // A pointer outside the canvas is ignored.
     }
     if (fingers.size > 1) drag = { pinch: true };
     else begin(event);
@@ -156,7 +156,7 @@ export const createCanvas = (editor, element) => {
       follow();
     });
   }
-  // Two fingers are the board's; one finger up or down scrolls the page, as everywhere.
+  // Two fingers move the board; one finger scrolls the page.
   board.addEventListener("touchmove", (event) => event.touches.length > 1 && event.preventDefault(), { passive: false });
   board.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && !event.metaKey && !board.contains(document.activeElement)) return;
@@ -263,7 +263,7 @@ const photograph = (photo, view) => photo && svg("image", {
 /** @param {Editor} editor @param {Viewport} view */
 const statics = (editor, view) => {
   const facts = editor.facts();
-  if (!facts || editor.refusalWords()) return null; // of a body that is refused nothing is known
+  if (!facts || editor.refusalWords()) return null; // a refused body has no properties
   const metres = editor.metres();
   return svg("g", { class: "board-facts", "aria-hidden": "true" },
     facts.foot_positions.map((foot) => footMark(view.x(foot / metres), view.y(groundOf(facts) / metres))),
@@ -351,7 +351,7 @@ const vertices = (editor, regions, view) => {
     }));
 };
 
-// Points set so far, and where the next one would be.
+// Present points, and the position of the next point.
 /** @param {Editor} editor @param {Viewport} view */
 const toolMarks = (editor, view) => {
   const { tool } = editor.state;

@@ -3,11 +3,11 @@
 import { highest, lowest, spanOf } from "/app/extremes.js";
 // A place is {region, ring, vertex}: ring -1 is the outline, others are holes.
 
-/** The ring at a place. @param {Region[]} regions @param {{ region: number, ring: number }} place @returns {Ring} */
+/** Ring of an index {region, ring, vertex}. @param {Region[]} regions @param {{ region: number, ring: number }} place @returns {Ring} */
 export const ringAt = (regions, { region, ring }) =>
   /** @type {Ring} */ (ring < 0 ? regions[region]?.outline : regions[region]?.holes?.[ring]);
 
-/** Every ring with its place. @param {Region[]} regions */
+/** All rings with their indices. @param {Region[]} regions */
 export const ringsOf = (regions) =>
   regions.flatMap((item, region) =>
     [item.outline, ...(item.holes ?? [])].map((points, index) => ({ region, ring: index - 1, points })));
@@ -16,17 +16,17 @@ export const ringsOf = (regions) =>
 export const moved = (regions, position, point) =>
   withRing(regions, position, (ring) => ring.map((corner, index) => (index === position.vertex ? point : corner)));
 
-/** A new vertex after one. @param {Region[]} regions @param {Place} position @param {number[]} point */
+/** Insert a vertex after a vertex. @param {Region[]} regions @param {Place} position @param {number[]} point */
 export const inserted = (regions, position, point) =>
   withRing(regions, position, (ring) => ring.toSpliced(position.vertex + 1, 0, /** @type {Point} */ (point)));
 
-/** Without one vertex; a triangle keeps all three. @param {Region[]} regions @param {Place} position */
+/** Remove a vertex; a triangle remains unchanged. @param {Region[]} regions @param {Place} position */
 export const removed = (regions, position) =>
   ringAt(regions, position).length <= 3
     ? regions
     : withRing(regions, position, (ring) => ring.toSpliced(position.vertex, 1));
 
-/** Without a whole ring; the last region stays. @param {Region[]} regions @param {Place} place @returns {Region[]} */
+/** Remove a ring; the last region remains. @param {Region[]} regions @param {Place} place @returns {Region[]} */
 export const withoutRing = (regions, { region, ring }) => {
   if (ring < 0) return regions.length > 1 ? regions.toSpliced(region, 1) : regions;
   return regions.with(
@@ -34,16 +34,16 @@ export const withoutRing = (regions, { region, ring }) => {
   );
 };
 
-/** With one more region.
+/** Add a region.
  * @param {Region[]} regions @param {Ring} outline @param {number | null} [density] @returns {Region[]} */
 export const withRegion = (regions, outline, density) =>
   [...regions, density === undefined ? { outline } : { outline, density }];
 
-/** With one more hole in a region. @param {Region[]} regions @param {number} region @param {Ring} hole */
+/** Add a hole to a region. @param {Region[]} regions @param {number} region @param {Ring} hole */
 export const withHole = (regions, region, hole) =>
   regions.with(region, { ...regions[region], holes: [...(regions[region].holes ?? []), hole] });
 
-/** With another density of a region; null takes it away.
+/** Set the density of a region; null removes it.
  * @param {Region[]} regions @param {number} region @param {number | null} density @returns {Region[]} */
 export const withDensity = (regions, region, density) =>
   regions.with(region, tidied({ ...regions[region], density: density ?? undefined }));
@@ -79,7 +79,7 @@ export const edgeAt = (regions, position) => {
   return { from, to, length: Math.hypot(dx, dy), angle: (Math.atan2(dy, dx) * 180) / Math.PI };
 };
 
-/** With another length or angle of an edge: its second end moves.
+/** Set the length or angle of an edge; its second end moves.
  * @param {Region[]} regions @param {Place} position @param {{ length: number, angle: number }} edge @param {Exact} [exact] */
 export const withEdge = (regions, position, { length, angle }, exact = (value) => value) => {
   const { from } = edgeAt(regions, position);
@@ -115,7 +115,7 @@ const signedArea = (ring) => ring.reduce((sum, [x, y], index) => {
   return sum + x * nextY - nextX * y;
 }, 0);
 
-/** A section turned left for right about its middle, its feet and its centre too.
+/** Mirror a section about its middle, with its feet and centre of mass.
  * @param {any} section @param {Region[]} regions @param {Exact} [exact] */
 export const mirrored = (section, regions, exact = (value) => value) => {
   const xs = regions.flatMap((region) => region.outline).map((point) => point[0]);
@@ -133,7 +133,7 @@ export const mirrored = (section, regions, exact = (value) => value) => {
   };
 };
 
-/** A ring and its image beyond an edge as one: half a profile becomes the whole.
+/** Join a ring and its mirror image at an edge: half a profile becomes the complete profile.
  * @param {Region[]} regions @param {Place} position @param {Exact} [exact] */
 export const doubled = (regions, position, exact = (value) => value) => {
   const { from, to, length } = edgeAt(regions, position);
@@ -165,12 +165,12 @@ export const nearest = (regions, [x, y], reach, chosen) => {
   return closest;
 };
 
-/** Round a point to a grid; a step of nothing leaves it.
+/** Round a point to a grid; without a step the point is unchanged.
  * @param {number[]} point @param {number} step @param {Exact} [exact] */
 export const snapped = (point, step, exact = (value) => value) =>
   step > 0 ? point.map((value) => exact(Math.round(value / step) * step)) : point;
 
-/** The past and the future of a value. */
+/** Undo and redo states of a value. */
 export const createHistory = (most = 200) => {
   /** @type {any[]} */
   let past = [];

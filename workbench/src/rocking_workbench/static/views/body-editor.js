@@ -11,7 +11,7 @@ import { PastePart } from "/views/body-paste.js";
 import { regionsOf, shapeOf, weighed } from "/views/body-shapes.js";
 import { METRES, inUnits } from "/views/body-units.js";
 
-/** The editor of a polygon; of any other shape it is out of sight. @param {{ editor: Editor }} props */
+/** Editor of a polygon; not visible for other shapes. @param {{ editor: Editor }} props */
 export const Editor = ({ editor }) => {
   const drawn = editor.drawn.value; // redraws all parts
   const [shown, there] = [editor.shown(), editor.regions().length > 0];
@@ -48,7 +48,7 @@ const Board = ({ editor }) => {
       <span aria-hidden="true">${sign}</span><//>`)}</div></div>`;
 };
 
-// The picture stays where it was on the body; points that were set in the former unit are gone.
+// The view remains at the same position of the body; points in the former unit are removed.
 /** @param {any} state @param {number} factor */
 const changeUnits = (state, factor) => {
   state.tool = null;
@@ -60,7 +60,7 @@ const changeUnits = (state, factor) => {
 export const createEditor = (app) => {
   const history = model.createHistory();
   const [drawn, boardText] = [signal(0), signal("")];
-  // Photograph and tool are this browser's alone: they are no part of the body.
+  // Photograph and tool remain in this browser and are not part of the body.
   /** @type {any} */
   const state = { selected: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null, grid: null, tool: null, photo: null };
   const body = () => app.inputs.get().body;
@@ -74,7 +74,7 @@ export const createEditor = (app) => {
   const step = () => state.grid ?? state.step ?? 0.05;
   /** @type {Editor} */
   const editor = {
-    state, history, regions, step, drawn, status: boardText, board: /** @type {any} */ (null), // until the first painting
+    state, history, regions, step, drawn, status: boardText, board: /** @type {any} */ (null), // before the first drawing
     tool: /** @type {any} */ (null), // at the end
     shown: () => shapeOf(body()) === "section",
     section: () => body().section,
@@ -94,7 +94,7 @@ export const createEditor = (app) => {
       app.inputs.set("body.section.region", weighed(next, /** @type {any} */ (body().section ?? {})));
       editor.tell();
     },
-    /** Regions of another density, which takes the place of a mass. @param {Region[]} next @param {number | null} density */
+    /** Regions with another density, which replaces a mass. @param {Region[]} next @param {number | null} density */
     weigh: (next, density) => {
       if (density !== null) app.inputs.set("body.section.mass", undefined);
       editor.change(next);
@@ -149,14 +149,14 @@ const inUnitsOf = (fault, metres) => fault && {
   ...fault, x: fault.x === undefined ? undefined : fault.x / metres, y: fault.y === undefined ? undefined : fault.y / metres,
 };
 
-// Regions written as text (WKT) become points as soon as someone draws on them.
+// Regions as text (WKT) become points at the first edit.
 /** @param {any} section @param {Server.DescribedBody | null} facts @param {Unit} units @returns {Region[]} */
 const editable = (section, facts, units) => {
   const stated = section?.region ?? [];
   return stated.every((/** @type {Region} */ region) => region.outline) ? stated : regionsOf(facts, units);
 };
 
-/** The nearest place that exists after a change. @param {Region[]} regions @param {Place} place */
+/** Nearest existing index after a change. @param {Region[]} regions @param {Place} place */
 export const withinReach = (regions, { region, ring, vertex }) => {
   const atRegion = Math.min(region, regions.length - 1);
   const atRing = Math.min(ring, (regions[atRegion].holes?.length ?? 0) - 1);

@@ -1,4 +1,4 @@
-/** The numbers of a body: one column, or one for each side where they differ. */
+/** Properties of a body: one column, or one column per side if the sides differ. */
 
 import { html } from "/parts/preact.js";
 import { number, numbers, quantity } from "/app/format.js";

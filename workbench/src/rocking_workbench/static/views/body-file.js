@@ -12,7 +12,7 @@ const UNITS = [["", "as in the file"], ...Object.keys(METRES).map((unit) => [uni
 /** Drop area for a body file, with its unit if the file does not contain it. @param {{ app: App }} props */
 export const BodyFile = ({ app }) => {
   const box = useRef(null);
-  const held = useRef({}); // the file, its content, and the body that it became
+  const held = useRef({}); // the file, its content, and its body
   const [units, name, wrong] = ["", "", ""].map(useSignal);
   const read = async () => {
     const mine = held.current;

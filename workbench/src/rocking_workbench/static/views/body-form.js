@@ -10,7 +10,7 @@ import { t } from "/app/words.js";
 const UNITS = Object.keys(METRES).map((unit) => [unit, unit]);
 const FROM_FILE = [["mass_points", "Mass points (from a file)"]];
 
-/** The fields of a body; the one that the server refused is marked too, until the body changes.
+/** Fields of a body; a field with an error of the server is marked until the body changes.
  * @param {{ app: App, body: Server.BodyInput, refusal: Refusal | null }} props */
 export const Form = ({ app, body, refusal }) => {
   const [kept, replaced] = [useRef(new Map()).current, useRef({}).current];
@@ -29,7 +29,7 @@ export const Form = ({ app, body, refusal }) => {
   const put = (key) => (/** @type {any} */ value) => app.inputs.set("body", withKey(app.inputs.get().body, key, value, replaced));
   /** @param {string} key */
   const error = (key) => (refusal?.field === key ? refusal.message : "");
-  const own = `${shape} ${units}`; // other fields, even if equal
+  const own = `${shape} ${units}`; // the fields of the new shape, also with equal values
   return html`<div class="stack">
     <${Choice} label="Shape" value=${shape} on=${become}
       options=${[...Object.entries(SHAPES).map(([key, { label: text }]) => [key, text]), ...(shape === "mass_points" ? FROM_FILE : [])]} />

@@ -1,9 +1,9 @@
-/** Points pasted from a table or a file: two columns, any usual separator, decimal commas too. */
+/** Points from a table or a file: two columns, any common separator, decimal commas allowed. */
 
 import { parseNumber } from "/app/format.js";
 import { t } from "/app/words.js";
 
-/** Read points from text: {points, fault}. A first line of headings is passed over.
+/** Read points from text: {points, fault}. A first line with headings is ignored.
  * @param {string} text @returns {{ points: Ring, fault: string }} */
 export const parsePoints = (text) => {
   /** @type {Ring} */

@@ -1,11 +1,11 @@
-/** The shape of a body: its table, and a first size taken from the body before. */
+/** Shape of a body: its table, and an initial size from the previous body. */
 
 import { spanOf } from "/app/extremes.js";
 import { changedAt } from "/app/inputs.js";
 import { SHAPES } from "/app/shapes.js";
 import { fromMetres } from "/views/body-units.js";
 
-/** Which shape an Inputs body is. @param {any} body @returns {string} */
+/** Shape of a body of the inputs. @param {any} body @returns {string} */
 export const shapeOf = (body) => Object.keys(SHAPES).find((shape) => body[shape]) ?? (
   body.mass_points ? "mass_points" : "block"
 );
@@ -50,7 +50,7 @@ const withDensities = (table, [density, ...others] = []) => {
 /** @param {any} body @param {any} feet */
 const withFeet = ({ units, name, ...block }, feet) => ({ units, ...(name ? { name } : {}), block: { ...block, feet } });
 
-/** Regions as a section may hold them: where its mass was typed they have no densities.
+/** Regions of a section; if the mass is given they have no densities.
  * @param {Region[]} regions @param {{ mass?: number }} section */
 export const weighed = (regions, { mass }) => (mass === undefined ? regions : withDensities({ region: regions }).region);
 
@@ -75,7 +75,7 @@ export const asShape = (body, shape, facts) => {
   return clean(shape === "block" ? { units, name, ...table } : { units, name, [shape]: table });
 };
 
-/** The regions that the server drew, in a unit, as an editable section has them.
+/** Regions from the server as an editable section, in a unit.
  * @param {Server.DescribedBody | null} facts @param {Unit} units @returns {any[]} */
 export const regionsOf = (facts, units) => {
   /** @param {Ring} points */
@@ -96,7 +96,7 @@ const firstDensity = (body) => body.section?.region?.[0]?.density;
 /** @param {number} width @param {number} height */
 const rectangle = (width, height) => ({ outline: [[0, 0], [width, 0], [width, height], [0, height]] });
 
-// Before the first answer there are no facts: then the sizes that are typed.
+// Before the first result the typed sizes are used.
 /** @param {Server.DescribedBody | null} facts @param {Unit} units @param {any} table */
 const spans = (facts, units, { width, height }) => {
   const points = (facts?.outline ?? []).flatMap((region) => region.outline);

@@ -6,7 +6,7 @@ import { LENGTHS } from "/app/shape.js";
 /** Metres in each unit. */
 export const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
-/** The same body with its lengths in another unit.
+/** The body with its lengths in another unit.
  * @param {Server.BodyInput} body @param {Unit} units @returns {Server.BodyInput} */
 export const inUnits = (body, units) => {
   if (body.units === units) return body;
@@ -14,7 +14,7 @@ export const inUnits = (body, units) => {
   return { ...rescaled(body, factor), units };
 };
 
-/** A length in metres in a unit. @param {number} length @param {Unit} units */
+/** Convert a length in metres to a unit. @param {number} length @param {Unit} units */
 export const fromMetres = (length, units) => exact(length, 1 / METRES[units]);
 
 // Errors of binary arithmetic are rounded off only if nothing else is.

@@ -39,7 +39,7 @@ export const mount = (section, app) => {
 
 /** @param {{ app: App, editor: Editor, body: Signal<Server.BodyInput>, others: Signal<number>, facts: Signal<Server.DescribedBody>, refusal: Signal<Refusal | null>, faulty: Signal<string> }} props */
 const Body = ({ app, editor, body, others, facts, refusal, faulty }) => {
-  useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields came and went
+  useLayoutEffect(() => app.faults.refresh(), [body.value]); // fields were added or removed
   return html`
     <header class="view-head"><h1>Body</h1>
       <p class="lead">Enter sizes, draw the body, paste points or drop a drawing. The results update at once.</p></header>

@@ -9,7 +9,7 @@ const KINDS = new Set(["overturning-map", "rocking-spectrum", "stripes", "minimu
 const TABLES = [["flips", "Effect of the choice"], ["differences", "All differences"]];
 const NOTHING = "Nothing to compare: the study has one model or more than six.";
 
-/** The picture of a study that compares its models, as the command line draws it, and its files.
+/** Picture of a study with a comparison of models, as on the command line, and its files.
  * @param {{ app: App, handle: { look: () => unknown } }} props */
 export const Studies = ({ app, handle }) => {
   const [all, chosen, drawn, refused] = [useSignal([]), useSignal(""), useSignal(""), useSignal("")];

@@ -57,7 +57,7 @@ const createMargins = (app) => {
   const [now, of] = [signal(keyOf(app.inputs.get())), signal("")];
   app.inputs.subscribe((inputs) => (now.value = keyOf(inputs)));
   const ended = signal(null);
-  // It is no question of Decide: the answer is kept here, and it is gone from the server.
+  // The run is not listed on the page Assessment; its result is kept here and removed from the server.
   questions.shown.subscribe((shownQuestion) => {
     if (!shownQuestion || !["done", "refused", "stopped"].includes(shownQuestion.state)) return;
     ended.value = shownQuestion;

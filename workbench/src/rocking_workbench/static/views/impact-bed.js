@@ -1,4 +1,4 @@
-/** The contact bed as a laboratory: the coefficient that emerges from springs and dashpots, as one thing changes. */
+/** Contact bed: coefficient of springs and dashpots as a function of one parameter. */
 
 import { html, useMemo, useRef, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";

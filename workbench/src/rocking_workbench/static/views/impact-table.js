@@ -13,7 +13,7 @@ const COLUMNS = [
   { label: "Admissible", numeric: false },
 ];
 
-/** One row for each model; copying takes every digit.
+/** One row per model; copies contain all digits.
  * @param {{ app: App, answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Coefficients = ({ app, answer, foot }) => {
   const rows = answer.coefficients[foot];
@@ -31,7 +31,7 @@ export const Coefficients = ({ app, answer, foot }) => {
     csv=${() => app.download(`table/coefficients.csv?foot=${foot}`, app.inputs.get(), "coefficients.csv")} />`;
 };
 
-/** The warnings of one foot, each with the models it concerns.
+/** Warnings of a foot, each with its models.
  * @param {{ answer: Server.ImpactAnswered, foot: Foot }} props */
 export const Warnings = ({ answer, foot }) => {
   const models = answer.coefficients[foot];

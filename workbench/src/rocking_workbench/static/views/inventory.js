@@ -1,4 +1,4 @@
-/** Inventory: a list of objects, as a museum keeps it, and which of them stay standing. */
+/** Inventory: a list of objects of a museum, and their ratings. */
 
 import { html, render, useEffect, useSignal } from "/parts/preact.js";
 import { number } from "/app/format.js";
@@ -84,7 +84,7 @@ const READ = ["map_columns", "encoding"];
 /** @param {{ [name: string]: string }} typed */
 const listed = (typed) => Object.fromEntries(READ.map((name) => [name, typed[name] ?? ""]));
 
-const MOST = 20; // rows that are corrected at a time
+const MOST = 20; // number of rows for correction
 
 // Lines of a text list, in the encoding of the answer; null for a workbook, which is corrected in its application.
 /** @param {SentFile} list @param {string} source */

@@ -1,4 +1,4 @@
-/** A pulse: which one, and its parameters. */
+/** A pulse: its type and its parameters. */
 import { html, useMemo } from "/parts/preact.js";
 import { NumberField, Slider } from "/parts/fields.js";
 import { readPulse, writePulse } from "/views/motion-pulse-words.js";
@@ -8,12 +8,12 @@ import { plainWords } from "/views/studies-words.js";
 import { t } from "/app/words.js";
 
 const USUAL = "sine";
-const kept = new Map(); // the parameters of each pulse that were turned
+const kept = new Map(); // edited parameters of each pulse
 
 /** Discard the edited values. */
 export const forgetPulses = () => kept.clear();
 
-/** The editor of a pulse; `blamed`: the parameter that was refused, and why.
+/** Editor of a pulse; `blamed`: the refused parameter, with the reason.
  * @param {{ app: App, motion: Server.MotionInput | null, blamed?: any, onChange: (motion: Server.MotionInput) => unknown }} props */
 export const Pulse = ({ app, motion, blamed, onChange }) => {
   const pulses = useMemo(() => pulsesOf(app.info), []);
@@ -41,7 +41,7 @@ export const Pulse = ({ app, motion, blamed, onChange }) => {
     </div>`;
 };
 
-/** The pulse to begin with. @param {App} app */
+/** The initial pulse. @param {App} app */
 export const usualPulse = ({ info }) => ({ pulse: writePulse(USUAL, kept.get(USUAL) ?? borrowed(pulsesOf(info).get(USUAL), {})) });
 
 /** @param {{ summary: string }} pulse */
@@ -50,7 +50,7 @@ const aboutOf = ({ summary }) => {
   return plainWords(text.charAt(0).toUpperCase() + text.slice(1));
 };
 
-// amplitude and period stay when one goes from pulse to pulse
+// amplitude and period remain after a change of the pulse
 /** @param {ReturnType<ReturnType<typeof pulsesOf>["get"]>} pulse @param {{ [key: string]: number }} before */
 const borrowed = (pulse, before) => Object.fromEntries((pulse?.parameters ?? [])
   .filter(({ needed, name }) => needed || name in before).map(({ name, usual }) => [name, before[name] ?? usual]));

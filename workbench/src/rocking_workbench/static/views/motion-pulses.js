@@ -21,7 +21,7 @@ const TITLES = {
   harmonic: "many cycles",
 };
 
-// the usual ones first
+// in order of frequency of use
 const ORDER = ["sine", "cosine", "half-sine", "half-cosine", "rectangular", "ricker", "antisymmetric-ricker"];
 /** @param {string} name */
 const rank = (name) => (ORDER.includes(name) ? ORDER.indexOf(name) : ORDER.length);

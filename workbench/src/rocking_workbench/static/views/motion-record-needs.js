@@ -31,7 +31,7 @@ const choicesOf = (name, { choices = {}, components = [] }, info) => {
   return (name === "format" ? info.formats : components).map((option) => option.name);
 };
 
-/** The need that a refusal of the server is about, with its sentence; null if it is about none.
+/** Missing data named by an error of the server, with its sentence; otherwise null.
  * @param {Need[]} needs @param {any} refusal @param {string} text */
 export const blamedOf = (needs, refusal, text) => {
   const name = needs.find((need) => need === (refusal.parameter && keyOf(refusal)));

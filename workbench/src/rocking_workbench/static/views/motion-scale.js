@@ -1,4 +1,4 @@
-/** How strong: a factor on the motion, by slider and by number. */
+/** Scale factor of the motion, by slider and by number. */
 import { html } from "/parts/preact.js";
 import { NumberField, Slider } from "/parts/fields.js";
 

@@ -48,7 +48,7 @@ export const SHAPES = {
   harmonic: (t) => Math.sin(4 * turn * t),
 };
 
-/** A drawing of a pulse; nothing if there is none of that name. @param {{ name: string }} props */
+/** Drawing of a pulse; empty for an unknown name. @param {{ name: string }} props */
 export const Sketch = ({ name }) => {
   const shape = SHAPES[name];
   if (!shape) return null;

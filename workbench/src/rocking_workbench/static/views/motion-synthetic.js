@@ -1,4 +1,4 @@
-/** A synthetic motion: a family, a seed and a member, scaled to a level if one likes. */
+/** Synthetic motion: family, seed and index, optionally scaled to a level. */
 import { html } from "/parts/preact.js";
 import { Button, Choice, NumberField, Segmented } from "/parts/fields.js";
 import { t } from "/app/words.js";
@@ -11,7 +11,7 @@ const LEVEL = {
 };
 const KINDS = /** @type {const} */ (["pga", "pgv"]);
 
-/** The motion to begin with. */
+/** The initial motion. */
 export const usualSynthetic = () => ({ synthetic: "pulse-like", seed: 0, member: 0 });
 
 /** The editor of a synthetic motion.

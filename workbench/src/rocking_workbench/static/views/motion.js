@@ -20,7 +20,7 @@ const USUAL = { record: () => null, pulse: usualPulse, synthetic: usualSynthetic
 
 const LEAN = "No motion is selected. The body starts from an initial rotation. Choose a motion to shake the body.";
 
-/** Way of a motion; none while nothing shakes the ground. @param {Server.MotionInput | null | undefined} motion @returns {"" | keyof typeof EDITORS} */
+/** Source of a motion; none without a ground motion. @param {Server.MotionInput | null | undefined} motion @returns {"" | keyof typeof EDITORS} */
 const wayOf = (motion) => /** @type {(keyof typeof EDITORS)[]} */ (Object.keys(EDITORS)).find((way) => motion?.[way] !== undefined) || "";
 
 /** Shows the view of the motion in a section. @param {HTMLElement} section @param {App} app */
@@ -43,13 +43,13 @@ export const mount = (section, app) => {
     batch(() => ([motion.value, way.value] = [now.motion, wayOf(now.motion)]));
   });
   app.faults.subscribe(() => (faulty.value = app.faults.any({ view: "motion" })));
-  /** Makes a motion the motion; a motion and a free start exclude each other. @param {Server.MotionInput} next */
+  /** Sets the motion; a motion and a free start exclude each other. @param {Server.MotionInput} next */
   const set = (next) => {
     const { scale } = inputs.get().motion || {};
     inputs.set("response.initial_rotation", undefined);
     inputs.set("motion", scale === undefined || next.scale !== undefined ? next : { ...next, scale });
   };
-  /** Shows the editor of a way; its last choice becomes the motion if that was another.
+  /** Shows the editor of a source, and sets its last choice as the motion.
    * @param {keyof typeof EDITORS} next */
   const choose = (next) => batch(() => {
     const { motion: now } = inputs.get();
@@ -101,7 +101,7 @@ const Motion = ({ app, request, motion: { value: motion }, way, faulty, record, 
     </div>`;
 };
 
-// A motion without energy is one of a factor or a peak of 0, or so small that its square is.
+// A motion without energy has a factor or a peak of 0, or an underflowing square.
 /** @param {any} refused */
 const blamedOf = (refused) => {
   const key = refused.parameter ? keyOf(refused) : undefined;

@@ -9,7 +9,7 @@ import { t } from "/app/words.js";
 const KEYS = ["units", "time_step", "format", "skip"];
 const MOST_REASONS = 12; // files that get their fields without being chosen
 
-/** The options of the files that were sent, as a table of a job has them; nothing where no file has any.
+/** Options of the uploaded files as a table of a job; empty if no file has options.
  * @param {FileTexts} byFile @param {SentFile[]} records @param {App} app */
 export const optionsOf = (byFile, records, app) => {
   const files = Object.fromEntries(records.map(({ name }) => [name, filled(byFile[name] ?? {}, app.info.keys.motion)])
@@ -17,7 +17,7 @@ export const optionsOf = (byFile, records, app) => {
   return Object.keys(files).length ? { files } : {};
 };
 
-/** Why files were not read, by their names: files that the result leaves out, or that the refusal names.
+/** Reasons of unread files by name: files that the result excludes, or that the error names.
  * @param {Server.WholeQuestion | null} question @param {SentFile[]} records @returns {{ [name: string]: string }} */
 export const reasonsOf = (question, records) => {
   /** @type {{ file: string, reason: string }[]} */
@@ -32,7 +32,7 @@ export const reasonsOf = (question, records) => {
   return Object.fromEntries(records.map(({ name }) => [name, reasonOf(name)]).filter(([, reason]) => reason).slice(0, MOST_REASONS));
 };
 
-/** Fields of the files that have options of their own or were not read; `reasons` are why they were not.
+/** Fields of the files with separate options and of unread files; `reasons`: reasons of unread files.
  * @param {{ app: App, form: Form, names: string[], reasons: { [name: string]: string } }} props */
 export const FileOptions = ({ app, form, names, reasons }) => {
   /** @type {FileTexts} */

@@ -1,4 +1,4 @@
-/** Records: one corrected by a chain of steps, before and after; or many measured, chosen and scaled to a spectrum. */
+/** Records: correction of a record by a chain of steps; measures of many records, selection and scaling to a spectrum. */
 
 import { freshId } from "/app/dom.js";
 import { html, render, useRef, useSignal } from "/parts/preact.js";
@@ -87,12 +87,12 @@ const shownOf = ({ shown }, records) => {
   return records.length > 1 ? "all" : records[0]?.name ?? "";
 };
 
-/** The first key of the target spectrum that is needed and was not typed.
+/** First missing key of the target spectrum.
  * @param {{ code: string, of: { [code: string]: { [key: string]: string } | undefined } }} form @param {App} app */
 const missingOf = ({ code, of }, app) => Object.entries(app.info.targets[code]?.keys ?? {})
   .find(([key, { needed }]) => needed && !of[code]?.[key]?.trim())?.[0];
 
-/** The steps as job files and the command line have them. @param {RecordStep[]} steps */
+/** The steps as in job files and on the command line. @param {RecordStep[]} steps */
 const chainOf = (steps) => steps.map(({ name, keys }) => {
   const stated = Object.entries(keys).filter(([, text]) => text.trim());
   return stated.length ? `${name}:${stated.map(([key, text]) => `${key}=${written(text)}`).join(",")}` : name;
@@ -237,7 +237,7 @@ const Corrected = ({ answer, question, questions }) => {
     </details>`;
 };
 
-/** Keep the corrected record as a record of its own, and shake the body with it.
+/** Store the corrected record as a new record, and use it as the motion.
  * @param {Questions} questions @param {Server.WholeQuestion} question */
 const use = async ({ app }, question) => {
   try {

@@ -1,4 +1,4 @@
-/** The model that is looked at: one for the cards, the scene, the charts, the impacts, and the files. */
+/** Selected model, common to the cards, the scene, the charts, the impacts, and the files. */
 import { signal } from "/parts/preact.js";
 import { curveKey } from "/views/response-labels.js";
 import { readRestitution } from "/views/response-restitution.js";
@@ -14,11 +14,11 @@ export const labelsOf = (table) => {
   return [...models, ...(table?.values ?? (value === null ? [] : [value])).map(String)];
 };
 
-/** Returns which of some labels is looked at; the first, which is the main model, unless another was chosen.
+/** Returns the label of the selected model; default: the first label, of the main model.
  * @param {string[]} labels */
 export const chosenOf = (labels) => labels.find((label) => curveKey(label) === chosenKey.value) ?? labels[0] ?? null;
 
-/** Looks at a model; null goes back to the main one. @param {string | null} label */
+/** Selects a model; null selects the main model. @param {string | null} label */
 export const look = (label) => (chosenKey.value = label === null ? null : curveKey(label));
 
 /** Returns the address of a file about the selected model.

@@ -64,7 +64,7 @@ const Size = ({ app, body }) => {
     help="Relative to the body in the drawing. Larger bodies are more stable." value=${factor.current} on=${resize} />`;
 };
 
-/** Whether a model needs no number of one's own. @param {Pick<Server.ModelFacts, "parameters">} model */
+/** True if a model needs no coefficient from the user. @param {Pick<Server.ModelFacts, "parameters">} model */
 export const complete = ({ parameters }) => Object.values(parameters).every((parameter) => parameter.default !== null);
 
 /** Restitution models to compare, and a coefficient of the user.

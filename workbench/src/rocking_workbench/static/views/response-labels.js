@@ -1,4 +1,4 @@
-/** Names and marks of the restitutions; every coefficient that was typed looks the same, whatever it is. */
+/** Names and marks of the restitutions; all typed coefficients have one style. */
 import { html } from "/parts/preact.js";
 import { modelStyle, modelWords } from "/app/palette.js";
 
@@ -14,7 +14,7 @@ export const styleOf = (label) => {
   return { colour, dash };
 };
 
-/** Returns a restitution in words. @param {string} label */
+/** Returns the title of a restitution. @param {string} label */
 export const wordsOf = (label) => modelWords(curveKey(label));
 
 /** A short line in the colour and the true dash of a restitution. @param {{ label: string }} props */

@@ -1,4 +1,4 @@
-/** The table `restitution` of the inputs as the form shows it, and back. */
+/** Conversion between the table `restitution` of the inputs and the form. */
 
 import { DEFAULT_MODELS } from "/app/inputs.js";
 

@@ -1,4 +1,4 @@
-/** The verdict's cards, the impacts in a table, and files to take away. */
+/** Cards of the outcomes, table of impacts, and files for export. */
 import { html, useMemo } from "/parts/preact.js";
 import { number, quantity } from "/app/format.js";
 import { Button, Card, Choice } from "/parts/fields.js";
@@ -9,7 +9,7 @@ import { outcomeOf } from "/views/response-words.js";
 import { Film } from "/views/takeaway-film.js";
 import { t } from "/app/words.js";
 
-/** A card for every model; choosing one makes its model the one that is looked at.
+/** One card per model; the chosen card selects the model of the details.
  * @param {{ answers: any[], lead: string | null }} props */
 export const Cards = ({ answers, lead }) => html`
   <fieldset class="outcomes" data-testid="outcomes">
@@ -61,7 +61,7 @@ const rowsOf = (impacts) =>
     k + 1, impact.time, impact.velocity_before, impact.velocity_after, impact.coefficient, impact.foot,
   ]);
 
-/** The impacts of the model that is looked at.
+/** Impacts of the selected model.
  * @param {{ app: App, answers: Server.ResponseFacts[], answer: Server.ResponseFacts }} props */
 export const Impacts = ({ app, answers, answer }) => {
   const rows = useMemo(() => rowsOf(answer.impacts), [answer]);

@@ -1,4 +1,4 @@
-/** The animation of the answers: which body is solid, which are ghosts, and where the ground is. */
+/** Animation of the responses: solid body, outlines of other models, and ground. */
 import { html, useLayoutEffect, useMemo } from "/parts/preact.js";
 import { highest } from "/app/extremes.js";
 import { chartFiles } from "/charts/save.js";
@@ -12,7 +12,7 @@ import { sceneWords } from "/views/response-words.js";
 
 const SETTLE = 0.4;
 
-// after everything lies or rests nothing happens: the animation ends there
+// the animation ends when all bodies are at rest
 /** @param {Actor} actor */
 const lastOf = ({ rotation, falls }) => (falls ? rotation.end + SETTLE : quietAfter(rotation));
 
@@ -26,7 +26,7 @@ const quietAfter = (track) => {
 /** @param {Actor} actor */
 const restOf = (actor) => (actor.falls ? actor.rotation.end : peakInstant(actor.rotation));
 
-/** The player, fed with answers of the API; the body of `lead` is the solid one.
+/** Player of the responses of the API; the body of `lead` is solid.
  * @param {{ player: import("/scene/player.js").Player, body: Server.DrawnBody, answers: Server.ResponseFacts[], lead: string | null, stale: boolean }} props */
 export const Scene = ({ player, body, answers, lead, stale }) => {
   const node = useMemo(() => {

@@ -1,4 +1,4 @@
-/** Curves of several models on one axis of time, as the charts want them.
+/** Curves of several models on a common time axis, for the charts.
  * @param {number[]} time @param {(number | null)[]} values @param {number[]} grid */
 
 const straight = (time, values, grid) => {
@@ -27,7 +27,7 @@ const commonTime = (histories) => {
   return grid;
 };
 
-const grids = new WeakMap(); // of several answers, for all of their curves
+const grids = new WeakMap(); // for all curves of several responses
 
 /** @param {Server.ResponseFacts[]} answers */
 const gridOf = (answers) => {

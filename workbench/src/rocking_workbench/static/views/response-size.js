@@ -1,4 +1,4 @@
-/** Bodies of the same shape and another size: every length of a body document times a factor. */
+/** Bodies with the same shape and another size: all lengths of a body document times a factor. */
 
 import { LENGTHS } from "/app/shape.js";
 

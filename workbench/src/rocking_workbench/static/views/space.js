@@ -59,7 +59,7 @@ const Space = ({ app, questions }) => {
   /** @param {string} sha */
   const choose = (sha) => {
     chosen.value = sha;
-    pose.value = null; // which was of the scan before
+    pose.value = null; // which belongs to the previous scan
   };
   const scans = {
     get value() { return files.value; },

@@ -1,4 +1,4 @@
-/** Take away: everything that belongs to the inputs, as files, as tables, and as a link. */
+/** Export: all data of the inputs as files, tables, and a link. */
 import { html, render, signal, useRef, useSignal } from "/parts/preact.js";
 import { Button, Card, Choice, Field } from "/parts/fields.js";
 import { chosenOf, labelsOf, look, pathOfChosen } from "/views/response-chosen.js";
@@ -22,7 +22,7 @@ const NAMES = {
   zip: "ZIP with the record", pdf: "PDF",
 };
 
-/** Files that hold one model of several. */
+/** Files with one of several models. */
 const OF_ONE = /^\/api\/(table\/response\.|animation\.)/;
 
 /** Build the view inside its section. @param {HTMLElement} section @param {App} app */
