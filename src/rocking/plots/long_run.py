@@ -245,7 +245,7 @@ def orbits_picture(results: Any) -> "Figure":
             for is_stable, style in ((1, "-"), (0, (0, (3, 2)))):
                 y = curve["speed_ratio"].where(curve["is_stable"] == is_stable)
                 axes.plot(curve[axis], y, linestyle=style, color=COLORS[number % 6], linewidth=0.9)
-        for code in list(words)[1:]:
+        for code in list(titles)[1:]:
             points = data.where(data["branch_point"] == code)
             values = points["speed_ratio"].values.ravel()
             axes.plot(points[axis].values.ravel(), values, MARKS[code], color=INK, markersize=3.5, label=titles[code])
