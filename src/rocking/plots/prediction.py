@@ -55,7 +55,7 @@ def prediction_picture(prediction: Prediction) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> prediction = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.3, 0.8), count=16)
+    >>> prediction = rk.predict(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.4, 0.8), count=32)
     >>> [panel.get_xlabel() for panel in prediction_picture(prediction).axes]
     ['probability [-]', 'contribution to the variance of overturning [-]']
     """

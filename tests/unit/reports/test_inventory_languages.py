@@ -58,7 +58,7 @@ def test_the_report_is_in_german(found, monkeypatch):
     """Not a stretch of other languages; with one German message lost there is one."""
     text = texts(inventory_document(found))
     assert foreign(text, "de") == []
-    for german in ("Umkippen von Objekten bei Erdbeben", "PGA 0,25 g", "Startzahl 1", "kippt in", "Maßnahmenplan"):
+    for german in ("Umkippen von Objekten bei Erdbeben", "PGA 0,25 g", "Startwert 1", "kippt in", "Maßnahmenplan"):
         assert german in text
     assert not re.search(r"(?<![\d:.])\d\.\d+ (?:g|cm|m/s)\b", text)
     assert len(foreign(texts(inventory_document(replace(found, language="en"))), "de")) > 30
@@ -116,7 +116,7 @@ def test_photos_that_can_be_shown_are_and_others_fail_no_report(found, tmp_path,
         assert (small.format, small.size) == ("JPEG", (240, 133))
     html = write_inventory_file(mixed, tmp_path / "x.html").read_text("utf-8")
     assert html.count("data:image/jpeg;base64,") == 1
-    assert "Sein Foto cut.png lässt sich nicht zeigen." in html
+    assert "Das Foto cut.png kann nicht gezeigt werden." in html
     bare = write_inventory_file(found, tmp_path / "bare.pdf").stat().st_size
     assert write_inventory_file(mixed, tmp_path / "x.pdf").stat().st_size > bare + 300
     assert thumbnails(shown(text, tmp_path / "none.jpg", tmp_path), tmp_path) == {0: "", 1: "", 2: ""}

@@ -32,6 +32,8 @@ class HullEngine(HullImpacts):
     """Reference engine of one history.
 
     >>> from rocking.bodies.solid import Solid, box
+    >>> from rocking.dynamics.frictional.body import HullBody
+    >>> from rocking.dynamics.frictional.ground import HullGround
     >>> from rocking.dynamics.frictional.motion import standing
     >>> body = HullBody.of(Solid(box(1.0, 1.0, 4.0)))
     >>> HullEngine(body, HullGround(slope=0.2)).run(standing(body), 0.1).outcome.value

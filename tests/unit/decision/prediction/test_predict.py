@@ -133,6 +133,7 @@ def test_rare_outcomes_have_no_contributions():
     assert any("Too few histories differ" in p.decides for p in rare)
 
 
+@pytest.mark.verifies("negative control")
 def test_the_input_that_decides_has_the_share():
     """Where it overturns if the friction holds its foot, and slides if not, friction has all of the variance."""
     found = predict(BLOCK, rk.pulses.sine(12.0, 0.8), **{**KNOWN, "friction": (0.05, 0.8)}, count=64)
