@@ -1,4 +1,4 @@
-/** Extremes of data. `Math.max(...values)` fails for about 100,000 values. */
+/** Extremes of data. `Math.max` with all values as arguments fails for about 100,000 values. */
 
 /** Largest value, and not less than `most`; NaN is ignored.
  * @param {ArrayLike<number | null> & Iterable<number | null>} values @param {number} [most] */
