@@ -15,8 +15,8 @@ void Kernel<G, U, N, D, Z, L>::keep_peak(int i, Step step, double upto, double h
     const bool turns = step[0] < 0.0 && comes_down;
     bases[s] = alpha[i] - u[i];
     peaks[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
-    // Never by more, even if the highest point is known: the next action of a lane must not depend on the time of the
-    // search, and so on other lanes.
+    // Not more, even if the highest point is known: otherwise the next action of a lane would depend on the time of the
+    // search, and therefore on other lanes.
     if (turns) peak[i] = std::max(peak[i], std::max(bases[s], height));
     if (peaks_waiting == M * P) find_peaks();
 }

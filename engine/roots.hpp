@@ -132,7 +132,7 @@ struct Isolation {
     }
 };
 
-// Zero of the parabola c0 + c1 x + c2 x^2 that falls, if it lies within (0, 1); otherwise one half.
+// Zero at which the parabola c0 + c1 x + c2 x^2 decreases, if it lies within (0, 1); otherwise one half.
 inline double parabola_zero(double c0, double c1, double c2) {
     const double root = std::sqrt(std::max(c1 * c1 - 4.0 * c0 * c2, 0.0));
     const double x = c1 > 0.0 ? (root + c1) / (-2.0 * c2) : 2.0 * c0 / (root - c1);

@@ -17,7 +17,7 @@ from rocking.messages import Amount, Message
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """A body seen from one of its feet.
+    """Parameters of a body for rotation about one foot.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ class Body(ABC):
         return self.local_moments.polar
 
     def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
-        """Return the body seen from one of its feet.
+        """Return the parameters of the body for rotation about one foot.
 
         Parameters
         ----------

@@ -76,7 +76,7 @@ class Restrained:
         return self.body.assumed
 
     def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
-        """Return the body seen from one of its feet.
+        """Return the parameters of the body for rotation about one foot.
 
         Parameters
         ----------

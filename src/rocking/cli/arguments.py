@@ -155,7 +155,7 @@ class Arguments:
         keys: Collection[str] | None = None,
     ) -> Tables:
         """Return a table with the values of options and of `--set`; `--set` replaces defaults only."""
-        # spelt: options as typed, by key, where the option has another name than the key, empty if not typed
+        # spelt: the typed text by key, of options with another name than their key; empty if not typed
         # keys: the keys of `--set` to include, by default all
         sets = {key: value for key, value in self.sets.get(name, {}).items() if keys is None or key in keys}
         for key in sets:

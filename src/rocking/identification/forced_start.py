@@ -92,7 +92,7 @@ def rotation_of(problem: Forced, shared: FloatArray) -> FloatArray:
 
 
 def with_excursions(problem: Forced, shared: FloatArray) -> Forced:
-    """Return the problem with its detected half cycles that are connected to others."""
+    """Return the problem without isolated half cycles."""
     fraction = _SHARE if problem.series.rotation is not None else _SHARE_INTEGRATED
     excursions = excursions_of(problem.series.time, rotation_of(problem, shared), fraction)
     return replace(problem, excursions=excursions.subset(~excursions.is_isolated()), excluded=0)

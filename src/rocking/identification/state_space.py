@@ -335,7 +335,7 @@ def _stepped(
 def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return -2 ln of the posterior, residuals and slopes over the noise, times of impacts and their slopes."""
+    """Return -2 ln of the posterior, residuals and slopes divided by the noise, times of impacts and their slopes."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # far from the maximum; the step is rejected
         path = model.path(u, scatter)
         residual, slopes = observer.residuals(path)

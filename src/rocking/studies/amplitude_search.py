@@ -122,7 +122,7 @@ class AmplitudeSearch:
 
     def brackets(self, tolerance: float) -> ScaleBrackets:
         """Return brackets of all changes of verdict, bisected together to a relative width [-]."""
-        # a bracket with a failed middle keeps its width
+        # a bracket is not halved if the simulation at its middle failed
         s = self.samples.good
         brackets = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
         stuck = np.zeros(brackets.body.size, dtype=np.bool_)

@@ -135,7 +135,7 @@ class SampledInSpace(SampledBodies):
         reach = support @ np.array([edge[1], -edge[0]])  # outward across the edge
         new, old, height = float(reach.max()), float(-reach.min()), self.pose.height
         inertia = float(edge @ self.inertia @ edge)
-        # two equal masses about the centre have the body's moments; no block has if the body is wider than its base
+        # two equal masses have the moments of the body; no block has them if the body is wider than its base
         far, half = math.sqrt(inertia / self._mass), 0.5 * self._mass
         plane = MassPoints([(old - far, height), (old + far, height)], [half, half], feet=(0.0, old + new))
         distribution = restitution_distribution(plane)

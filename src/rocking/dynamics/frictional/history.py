@@ -1,4 +1,4 @@
-"""Record of a history of a body on its hull."""
+"""Time history of a body that touches the ground at the vertices of its hull."""
 
 import math
 from dataclasses import dataclass, field

@@ -143,7 +143,7 @@ def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray,
     """Return times, and the states (rotation, velocity) just before and just after each sample and event."""
     finite = np.isfinite(trajectory.rotation)
     samples = np.stack([trajectory.rotation[finite], trajectory.angular_velocity[finite]], axis=1)
-    # others than impacts have no velocities: zero before and after
+    # events other than impacts have no velocities: before and after are zero
     events = [e for e in trajectory.events if e.time > 0.0 or e.kind is EventKind.IMPACT]
     times = np.concatenate([np.flatnonzero(finite) * step, [e.time for e in events]])
     before, after = (np.array([[0.0, getattr(e, name)] for e in events]).reshape(-1, 2) for name in ("before", "after"))

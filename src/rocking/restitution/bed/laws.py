@@ -251,8 +251,8 @@ class PlasticUnloading(ContactLaw):
     """Linear loading, steeper unloading: stiffness k for first loading, k / e^2 for unloading and reloading.
 
     A single point rebounds with the velocity ratio e; each point has its own greatest depth. With e = 0 there is no
-    rebound (the plastic Winkler bed of docs/theory/restitution.md), for impulsive impacts only: under a permanent load
-    the contact would chatter.
+    rebound (the plastic Winkler bed of docs/theory/restitution.md). Use e = 0 for impulsive impacts only, because the
+    contact chatters under a permanent load.
 
     Parameters
     ----------

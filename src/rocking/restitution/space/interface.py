@@ -149,9 +149,9 @@ def edge_coefficient(
     2008). For a round base the result is the coefficient of a drum guided in one vertical plane. Do not use it for a
     free drum, whose rolling the response in space computes.
 
-    Onto the parallel edge the result is the plane coefficient; from an edge e1 onto an edge e2 at an angle KED and
-    horizontal momentum give ``|e1 . e2|`` times the coefficient of e2, because the horizontal velocities are
-    ``omega z (e1 x n)``.
+    For an impact on the parallel edge the result is the plane coefficient. For an impact from an edge e1 on an edge e2
+    that is not parallel, KED and horizontal momentum give ``|e1 . e2|`` times the coefficient of e2, because the
+    horizontal velocities are ``omega z (e1 x n)``.
 
     Parameters
     ----------

@@ -66,7 +66,7 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, arguments: 
     except RockingError as error:
         sys.stderr.write(json.dumps({"error": error.data()}))
         sys.exit(2)
-    models = os.environ.get("ROCKING_MODELS")  # read again by the command, if it was edited meanwhile
+    models = os.environ.get("ROCKING_MODELS")  # the command reads this file again: a user may have edited it
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
     sys.argv[1:] = arguments
     run_module("rocking", {"unnamed_file": file}, "__main__")
