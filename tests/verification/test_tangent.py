@@ -112,8 +112,11 @@ def sides(response, **changes):
     )
 
 
-def differences(response, step=3e-7):
-    """Return derivatives of the last state by central differences: two of the start, then four parameters."""
+def differences(response, step=1e-7):
+    """Return derivatives of the last state by central differences: two of the start, then four parameters.
+
+    Two steps, extrapolated: where a difference grows 7,000 times, one step leaves an error of 2e-3.
+    """
     first, segments = response.trajectory, response.segments
     scale = max(abs(response.scale), 1e-9)
     changes = [
@@ -124,9 +127,11 @@ def differences(response, step=3e-7):
         lambda d: {"parameters": sides(response, coefficient=d)},
         lambda d: {"parameters": sides(response, slenderness_angle=d)},
     ]
-    columns = [
-        (again(response, **change(step)) - again(response, **change(-step))) / (2.0 * step) for change in changes
-    ]
+    coarse, fine = (
+        [(again(response, **change(size)) - again(response, **change(-size))) / (2.0 * size) for change in changes]
+        for size in (3.0 * step, step)
+    )
+    columns = [(9.0 * near - far) / 8.0 for near, far in zip(fine, coarse, strict=True)]
     end = response.time[-1]  # at a higher frequency the last sample comes earlier
     columns[3] += end * np.array([response.angular_velocity[-1], response.dense_output.acceleration[-1, 1]])
     return np.column_stack(columns)

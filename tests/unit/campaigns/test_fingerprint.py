@@ -9,6 +9,7 @@ from rocking.dynamics.batch import Batch
 from rocking.dynamics.mechanics import MECHANICS
 from rocking.dynamics.plane import fast_engine
 
+PLANE = next(mechanics for mechanics in MECHANICS if mechanics.name == "plane")
 pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
@@ -58,8 +59,8 @@ def test_sample_has_all_outcomes():
 @pytest.mark.parametrize("chosen", ["fast", "reference"])
 def test_one_bit_is_seen(chosen, monkeypatch):
     """Negative control: the last bit of one number of one history gives another fingerprint."""
-    before = fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0])
-    assert before == fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0])
+    before = fingerprint._fingerprint.__wrapped__(chosen, "", PLANE)
+    assert before == fingerprint._fingerprint.__wrapped__(chosen, "", PLANE)
     run = Batch.run
 
     def nudged(self, *arguments):
@@ -68,4 +69,4 @@ def test_one_bit_is_seen(chosen, monkeypatch):
         return results, work
 
     monkeypatch.setattr(Batch, "run", nudged)
-    assert fingerprint._fingerprint.__wrapped__(chosen, "", MECHANICS[0]) != before
+    assert fingerprint._fingerprint.__wrapped__(chosen, "", PLANE) != before
