@@ -21,7 +21,7 @@ class PredictTable(JobTable):
     level: Any = key('slope of the support [rad], or "floor" (default), "shelf", "pedestal", "road"')
     polarity: Any = key("polarity: 1 as recorded, -1 reversed, default both with equal probability")
     azimuth: Any = key(
-        "azimuth of the body to the x component, 3D or with two components; enter the known direction of the body; "
+        "azimuth of the body to the x component (3D or two components), where its direction is known; "
         "default: unknown, sampled over all directions [rad]"
     )
     axis: Annotated[list[float], Field(min_length=3, max_length=3)] | None = key(
