@@ -12,7 +12,7 @@ from rocking.conventions import Assumed, FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.messages import Amount, Message, Range
 
-_SLACK = 1e-6  # largest relative excess of a moment over the largest possible value, for rounding
+_SLACK = 1e-6  # tolerance for rounding: relative excess of a moment over the largest possible value
 
 
 Point = tuple[float, float]
@@ -27,7 +27,7 @@ class Known:
 
     @classmethod
     def of(cls, centre: Any, moment_of_inertia: Any, origin: Point = (0.0, 0.0)) -> "Known | None":
-        """Return the checked values, or None without values; centre: in the user's frame [m]."""
+        """Return the checked values, or None if no value is given. The centre is in the user's frame [m]."""
         if centre is None and moment_of_inertia is None:
             return None
         if moment_of_inertia is not None:
@@ -42,16 +42,16 @@ class Known:
         return cls((x - origin[0], y - origin[1]), moment_of_inertia)
 
     def arguments(self, origin: Point = (0.0, 0.0)) -> dict[str, Any]:
-        """Return the known values by argument name, the centre in the user's frame [m]."""
+        """Return the known values by argument name. The centre is in the user's frame [m]."""
         centre = None if self.centre is None else (self.centre[0] + origin[0], self.centre[1] + origin[1])
         named = {"centre": centre, "moment_of_inertia": self.moment_of_inertia}
         return {name: value for name, value in named.items() if value is not None}
 
     def moments(self, homogeneous: PlaneMoments, vertices: FloatArray, origin: Point = (0.0, 0.0)) -> PlaneMoments:
         """Return the moments of the body from the homogeneous moments and the vertices in the local frame [m]."""
-        # An unknown moment of inertia is a fraction of the largest possible moment. The fraction is that of the
-        # homogeneous body. In a rectangle the result is that of four homogeneous quarters about the centre. The
-        # contributions of width and height follow in the same way.
+        # An unknown moment of inertia is a fraction of the largest possible moment. The homogeneous body gives this
+        # fraction. For a rectangle, the result is the moment of four homogeneous quarters about the centre. The
+        # moments xx and yy are computed in the same way.
         x, y = self.centre or (homogeneous.x, homogeneous.y)
         (left, low), (right, high) = vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
         gyration = largest_gyration(vertices, x, y) if left < x < right and low < y < high else None
@@ -86,7 +86,7 @@ class Known:
         return self if self.centre is None else replace(self, centre=(twice_axis - self.centre[0], self.centre[1]))
 
     def scaled(self, size: float, density: float) -> "Known":
-        """Return the values for all lengths times size and all densities times density [-]."""
+        """Return the values of the scaled body; `size` and `density` are scale factors [-]."""
         centre, moment = self.centre, self.moment_of_inertia
         return Known(
             None if centre is None else (centre[0] * size, centre[1] * size),
@@ -112,7 +112,7 @@ class Known:
 
 
 def largest_gyration(vertices: FloatArray, x: float, y: float) -> float | None:
-    """Return the largest squared radius of gyration about (x, y) of masses in the convex hull, None outside [m2]."""
+    """Return the largest squared radius of gyration of masses in the hull about (x, y) [m2]; None outside the hull."""
     low, high, centre = vertices.min(axis=0), vertices.max(axis=0), np.array([x, y])
     corners = vertices[((vertices == low) | (vertices == high)).all(axis=1)]
     if len(np.unique(corners, axis=0)) == 4:  # the hull is the box
@@ -126,7 +126,7 @@ def _largest_of_polygon(vertices: FloatArray, centre: FloatArray) -> float | Non
     size = float(np.ptp(vertices, axis=0).max())
     arms = (vertices - centre) / size
     squares = (arms**2).sum(axis=1)
-    # the squared arm is convex, so the maximum has all mass in vertices: a linear programme
+    # the squared distance is convex: at the maximum, all mass is in vertices (a linear programme)
     sums = np.vstack([arms.T, np.ones(len(arms))])
     optimum = linprog(-squares, A_eq=sums, b_eq=[0.0, 0.0, 1.0], bounds=(0.0, None))  # Eq. 239
     if not optimum.success or optimum.x is None:

@@ -33,7 +33,8 @@ class Block(Body):
     depth : float
         Depth out of the plane [m].
     density : float
-        Density [kg/m3]; the default is that of plain concrete. The coefficient of restitution is independent of it.
+        Density [kg/m3]; the default is that of plain concrete. The coefficient of restitution does not depend on the
+        density.
     mass : float, optional
         Known mass, in place of the density [kg].
     centre : (float, float), optional
@@ -55,8 +56,8 @@ class Block(Body):
     Notes
     -----
     The default moment of inertia is that of four homogeneous quarters about the centre of mass:
-    ``m (x (B - x) + y (H - y)) / 3``. For a central centre of mass it is that of the homogeneous block. `assumed`
-    contains this assumption, and the mass distribution for the models that need it.
+    ``m (x (B - x) + y (H - y)) / 3``. For a centre of mass in the middle, this is the moment of the homogeneous block.
+    `assumed` contains this assumption, and the mass distribution for the models that need a distribution.
 
     Examples
     --------
@@ -181,7 +182,7 @@ class Block(Body):
 
     @property
     def _stated(self) -> dict[str, Any]:
-        """Stated arguments other than sizes and density, by name."""
+        """Arguments stated by the user, by name, without sizes and density."""
         feet = {} if self.stands_on_corners else {"feet": self.feet}
         return ({} if self.known is None else self.known.arguments()) | feet
 

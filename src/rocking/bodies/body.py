@@ -76,12 +76,12 @@ class Side:
 
 Interval = tuple[float, float]
 
-DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it
+DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; without effect on restitution of a homogeneous body
 
 GROUND_TOLERANCE = 1e-9
-"""Largest distance / body size of vertices on the ground, and of feet on the base."""
+"""Tolerance of vertices on the ground and of feet on the base: distance / body size."""
 
-# smallest distance of a foot from the vertical through the centre of mass / distance of the feet
+# smallest ratio: distance of a foot from the vertical through the centre of mass / distance of the feet
 _SUPPORT_TOLERANCE = 1e-12
 
 
@@ -341,7 +341,7 @@ def assumed_rows(body: Any) -> list[tuple[str, str]]:
     return [*(("density", text) for text in density), *(("assumed", text) for text in body.assumed[len(density) :])]
 
 
-_ASSUMED_DENSITY = {  # by (all densities are assumed, the densities are scaled)
+_ASSUMED_DENSITY = {  # keys: (all densities are assumed, the densities are scaled)
     (True, False): ("{density:g} kg/m3 assumed (plain concrete); it affects mass and forces, not rotations"),
     (True, True): (
         "{density:g} kg/m3 assumed (plain concrete), scaled to {scaled:.6g}; it affects mass and forces, not rotations"

@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
 from rocking.messages import Index
 
-HEAVIEST = 1e36  # largest mass of a point, which avoids overflow of sums and moments [kg]
+HEAVIEST = 1e36  # largest mass of a point [kg]; this limit prevents overflow of sums and moments
 
 
 class MassPoints(Body):

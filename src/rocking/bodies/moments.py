@@ -32,7 +32,7 @@ class PlaneMoments:
 
 def ring_moments(ring: FloatArray) -> PlaneMoments:
     """Return exact moments of the area inside a ring, positive if counter-clockwise, by Green's theorem."""
-    # origin in the middle of the bounding box, against cancellation far from the user's origin
+    # the origin is the middle of the bounding box; this prevents cancellation far from the user's origin
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     x, y = (ring - middle).T
     x1, y1 = np.roll(x, -1), np.roll(y, -1)
@@ -124,8 +124,8 @@ def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
 
 def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
     """Return exact moments of the volume inside a closed surface of triangles, by the divergence theorem."""
-    # The density is 1. The origin is the middle of the bounding box, against cancellation. Each triangle (a, b, c) and
-    # the origin form a tetrahedron of signed volume V = a.(b x c)/6 and second moments
+    # The density is 1. The origin is the middle of the bounding box to prevent cancellation. Each triangle (a, b, c)
+    # and the origin form a tetrahedron of signed volume V = a.(b x c)/6 and second moments
     # V/20 (a a^T + b b^T + c c^T + s s^T) with s = a + b + c. Outward faces are counter-clockwise and count positive.
     middle = np.array([0.5 * (triangles[..., i].min() + triangles[..., i].max()) for i in range(3)])
     a, b, c = np.moveaxis(triangles - middle, 1, 0)

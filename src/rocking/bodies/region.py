@@ -15,7 +15,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, located
 from rocking.messages import Amount, Index, Message
 
-OVERLAP_TOLERANCE = 1e-9  # largest overlap / smaller area of regions with a common edge, for rounding
+OVERLAP_TOLERANCE = 1e-9  # tolerance for rounding: overlap / smaller area of regions with a common edge
 
 
 def checked_ring(name: str, points: Any) -> FloatArray:
@@ -52,7 +52,7 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
     """Refuse crossing rings, and holes outside their outline."""
     import shapely
 
-    # local coordinates, against rounding errors of GEOS far from the origin
+    # local coordinates prevent rounding errors of GEOS far from the origin
     origin = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
     rings: list[tuple[str | Message, FloatArray]] = [("outline", outline)]
     rings += [(Message("hole {hole}", {"hole": Index(i)}), hole) for i, hole in enumerate(holes)]

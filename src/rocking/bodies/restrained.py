@@ -22,7 +22,7 @@ class Restrained:
     body : Body
         The body: Block, Section or MassPoints.
     restraints : sequence of Restraint
-        Tendon, ViscousDamper, FrictionDamper, Fuse and Spring, in any number. Restraints without a name receive one.
+        Tendon, ViscousDamper, FrictionDamper, Fuse and Spring, in any number. Restraints without a name receive a name.
 
     Raises
     ------
@@ -31,9 +31,9 @@ class Restrained:
 
     Notes
     -----
-    The forces of restraints are finite, so that they give no impulse at an impact: the restitution of the body applies
-    (Dimitrakopoulos & DeJong 2012). Tests of walls with tendons and fuses report other losses at the impact; state the
-    coefficient of restitution for them.
+    The forces of restraints are finite. They give no impulse at an impact, and the restitution of the body applies
+    (Dimitrakopoulos & DeJong 2012). Tests of walls with tendons and fuses report other energy losses at the impact.
+    State the coefficient of restitution for such walls.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def facts_of(restraint: Restraint) -> dict[str, Any]:
 
 
 def _named(restraints: list[Restraint]) -> list[Restraint]:
-    """Return restraints with names: the kind and a number where none is stated."""
+    """Return the restraints with names. The default name is the kind and a number."""
     kinds = [restraint.kind for restraint in restraints]
     named = [copy.copy(restraint) for restraint in restraints]
     for k, restraint in enumerate(named):

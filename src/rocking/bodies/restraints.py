@@ -9,7 +9,7 @@ from rocking.errors import InvalidValueError
 
 Point = tuple[float, float]
 COINCIDENT = 1e-9
-"""Largest distance of two points that coincide, over the largest coordinate of the body [-]."""
+"""Largest distance of coincident points / largest coordinate of the body [-]."""
 
 _EXACT = "exact change of the distance between two points; the force acts along the current line"
 _CONNECTION = ("x", "length", "ground", "point", "name")
@@ -19,7 +19,7 @@ _CONNECTION = ("x", "length", "ground", "point", "name")
 class Restraint:
     """A device between a point of the ground and a point of the body.
 
-    Give `x` only for a device with both ends at the base of the upright body, such as a tendon in a duct. Give `x` and
+    Give `x` alone for a device with both ends at the base of the upright body, such as a tendon in a duct. Give `x` and
     `length` for a device below the base. Give `ground` and `point` for any other device, such as a tie at a height.
     Coordinates are those of the body: x as for its feet, z upwards from the ground. The tension is positive.
 
@@ -28,7 +28,7 @@ class Restraint:
     x : float, optional
         Position of the point on the base [m].
     length : float
-        Distance of the anchor below the base at `x` [m]; 0 if the anchor touches the base.
+        Distance of the anchor below the base at `x` [m]; 0 for an anchor at the base.
     ground : (float, float), optional
         Point (x, z) of the ground [m].
     point : (float, float), optional
@@ -99,9 +99,9 @@ class Restraint:
 class Tendon(Restraint):
     """An unbonded tendon: elastic, perfectly plastic or hardening, slack without tension.
 
-    The force is N = P + k (e - ep), from 0 to the yield force. The plastic elongation ep grows at the yield force, so
-    that prestress is lost. A slack tendon has no force until the slack is used. At the rupture elongation the tendon
-    breaks and its stored energy vanishes.
+    The force is N = P + k (e - ep), from 0 to the yield force. The plastic elongation ep grows at the yield force and
+    reduces the prestress. A slack tendon has no force until its elongation exceeds the slack. At the rupture
+    elongation the tendon breaks and its stored energy is lost.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ class ViscousDamper(Restraint):
 class FrictionDamper(Restraint):
     """A rigid friction damper, F = Fs sgn e', which sticks at smaller forces.
 
-    The damper delays uplift. It can hold the body at a rotation for good; the outcome is then HELD.
+    The damper delays uplift. The damper can also hold the body at a rotation until the end. The outcome is then HELD.
 
     Parameters
     ----------
@@ -265,8 +265,8 @@ class FrictionDamper(Restraint):
 class Fuse(Restraint):
     """A yielding fuse: bilinear with kinematic hardening, ``F = k (e - ep)``, ``|F - H ep| <= Fy``.
 
-    A buckling-restrained fuse has the same law in compression. With `tension_only` the fuse buckles without force. The
-    fuse breaks when its stroke is reached.
+    A buckling-restrained fuse has the same law in compression. With `tension_only`, the fuse buckles in compression
+    without force. The fuse breaks at its stroke.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ ACTIONS = ("both", "tension", "compression")
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(Restraint):
-    """An elastic spring, with a gap or hook before it acts.
+    """An elastic spring, optionally with a gap or a hook.
 
     The force is k (e - gap) beyond the gap in tension, and k (e + gap) beyond the gap in compression.
 

@@ -85,7 +85,7 @@ def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
     angle = -0.5 * math.pi + 2.0 * math.pi / sides * (np.arange(sides) + 0.5)
     x, y = 0.5 * w * np.cos(angle), 0.5 * h * np.sin(angle)
     y = y - y.min()
-    # the two lowest vertices are mirror images; this prevents a tilt of the base from rounding
+    # the two lowest vertices are exact mirror images, so that rounding does not tilt the base
     y[[0, -1]] = 0.0
     return np.column_stack([x, y])
 

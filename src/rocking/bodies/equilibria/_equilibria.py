@@ -163,7 +163,7 @@ class Equilibria:
         return tuple(passes.values())
 
     def lowest_pass(self, start: StablePose, end: StablePose) -> Pass:
-        """Return the lowest pass from one pose to another, with any intermediate poses.
+        """Return the lowest pass from one pose to another; the path can cross other poses.
 
         Parameters
         ----------
@@ -426,7 +426,7 @@ def _simplified(
     *,
     always: set[int],
 ) -> tuple[dict[int, int], set[int]]:
-    """Return the final minimum of each minimum without energy barriers below `min_rise`, and the cancelled edges."""
+    """Return the remaining minimum of each minimum without barriers below `min_rise`, and the removed edges."""
     joined = {minimum: minimum for minimum in minima.tolist()}
     leads = dict(joined)
     cancelled = set()
@@ -440,7 +440,7 @@ def _simplified(
         roots = end_of(joined, first), end_of(joined, second)
         if roots[0] == roots[1]:
             continue
-        # the basin with the higher minimum ends here
+        # the basin with the higher minimum joins the other basin
         (low, lower), (high, _) = sorted(zip(roots, (first, second), strict=True), key=lambda end: heights[end[0]])
         joined[high] = low
         if tops[edge] - heights[high] < min_rise and high not in always:

@@ -32,7 +32,7 @@ class BaseTolerance:
     azimuth : float
         Direction of this edge from the projection of the centre of mass [rad].
     uplift_acceleration : float
-        Smallest constant ground acceleration with uplift, about this edge [m/s2].
+        Smallest constant ground acceleration with uplift about the nearest edge [m/s2].
     barrier : float
         Energy barrier to another stable pose, as a rise of the centre of mass [m].
     energy : float
@@ -54,8 +54,8 @@ def base_tolerances(
 ) -> tuple[BaseTolerance, ...]:
     """Return the stability of a body if points close to the ground are contact points.
 
-    The contact points of a real body are often its largest uncertainty. For each tolerance, the points below it are
-    moved to the ground, and the hull, its support polygon and its passes are recomputed.
+    The contact points of a real body are often its largest uncertainty. For each tolerance, all points below this
+    height are moved to the ground. Then hull, support polygon and passes are recomputed.
 
     Parameters
     ----------

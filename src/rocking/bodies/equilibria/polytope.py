@@ -86,12 +86,12 @@ class Polytope:
         return _grouped(self.ends, len(self.vertices))
 
     def edges_of(self, facet: int) -> tuple[IntArray, IntArray]:
-        """Return the edges of a facet, and its side of each edge (0 left, 1 right)."""
+        """Return the edges of a facet, and the position of the facet relative to each edge (0 left, 1 right)."""
         order, first = self._by_facet
         return np.divmod(order[first[facet] : first[facet + 1]], 2)
 
     def edges_at(self, vertex: int) -> tuple[IntArray, IntArray]:
-        """Return the edges at a vertex, and its end of each edge (0 start, 1 end)."""
+        """Return the edges at a vertex, and the position of the vertex on each edge (0 start, 1 end)."""
         order, first = self._by_vertex
         return np.divmod(order[first[vertex] : first[vertex + 1]], 2)
 
@@ -102,7 +102,7 @@ class Polytope:
 
     @cached_property
     def borders(self) -> tuple[IntArray, IntArray, IntArray]:
-        """Corners of all facets counter-clockwise, the adjacent facet of the edge from each corner, and first indices.
+        """Corners of all facets, the adjacent facet at the edge after each corner, and the first index of each facet.
 
         The corners are counter-clockwise seen from outside.
         """
@@ -121,11 +121,11 @@ class Polytope:
 
     def descent(self, vertex: int, down: FloatArray) -> int:
         """Return the stable facet at the end of the steepest descent of the centre, from a contact on a vertex."""
-        # vertex: the lowest vertex for the downward unit vector `down` in the body's frame
+        # `vertex` is the lowest vertex for the downward unit vector `down` in the body's frame
         return self.rolled(int(self._swung(np.array([vertex]), np.asarray(down)[None])[0]))
 
     def rolled(self, facet: int) -> int:
-        """Return the stable facet at the end of the steepest descent from a facet; a stable facet is its own end."""
+        """Return the stable facet at the end of the steepest descent from a facet; for a stable facet, itself."""
         for _ in range(len(self.normals)):
             if self.stable[facet]:
                 return facet
@@ -263,7 +263,7 @@ def _closed(points: FloatArray, faces: IntArray) -> Surface | None:
 
 
 def _outer(points: FloatArray) -> FloatArray:
-    """Return the candidate points of the hull: points outside the hull of the extreme points in some directions."""
+    """Return the points that can be on the hull: points outside the hull of the extreme points in a few directions."""
     from scipy.spatial import ConvexHull, QhullError
 
     kept, size = points, float(np.abs(points).max())

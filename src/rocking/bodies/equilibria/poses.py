@@ -60,7 +60,7 @@ class StablePose(Equilibrium):
     centre : ndarray, shape (3,)
         Centre of mass in the body's coordinates [m].
     barrier : float
-        Energy barrier: rise of the centre of mass on the lowest path to another stable pose [m]; infinite without one.
+        Energy barrier: rise of the centre of mass on the lowest path to another stable pose [m]; infinite without path.
     """
 
     number: int
@@ -171,7 +171,7 @@ def set_down(down: FloatArray) -> FloatArray:
     level = x * x + y * y
     if z > 0.0 and not level > 0.0:
         return np.diag([1.0, -1.0, -1.0])
-    # cosine -z and axis down x (-z) = (-y, x, 0); 1 / (1 - z) without cancellation
+    # the cosine is -z, the axis is down x (-z) = (-y, x, 0); the factor 1 / (1 - z) has no cancellation
     factor = (1.0 + z) / level if z > 0.0 else 1.0 / (1.0 - z)
     turn: FloatArray = np.array(
         [[1.0 - x * x * factor, -x * y * factor, x], [-x * y * factor, 1.0 - y * y * factor, y], [-x, -y, -z]]

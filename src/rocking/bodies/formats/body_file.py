@@ -125,9 +125,9 @@ def parsed_toml(text: Any) -> dict[str, Any]:
         )
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:  # its text contains line and column
+    except tomllib.TOMLDecodeError as error:  # the text of the exception contains line and column
         raise BodyFileError("Invalid TOML: {reason}", reason=str(error)) from error
-    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
+    except (ValueError, RecursionError) as error:  # integers with thousands of digits, or thousands of nested brackets
         raise BodyFileError("Unreadable TOML: {reason}", reason=str(error).partition(";")[0]) from error
 
 
@@ -323,7 +323,7 @@ def _toml(value: Any) -> str:
 
 
 def _known_of(body: Block | Section, x: float, y: float) -> list[str]:
-    """Return the lines of the known values of a body, the centre relative to the origin (-x, -y) [m]."""
+    """Return the lines of the known values of a body; the centre is relative to the origin (-x, -y) [m]."""
     values = body.known
     lines = []
     if values is not None and values.centre is not None:

@@ -77,8 +77,8 @@ def section_from_dxf(
 
     Notes
     -----
-    Rings inside others are holes, by the even-odd rule: among all rings, or within each layer with `layers`. An inlay
-    is therefore a hole on one layer and an outline on another layer.
+    Rings inside other rings are holes (even-odd rule). The rule applies to all rings together, or within each layer if
+    `layers` is given. An inlay is therefore a hole on one layer and an outline on another layer.
     """
     regions = regions_from_dxf(path, density, units=units, layers=layers, chord_tolerance=chord_tolerance)
     with located(Path(path).name, "file"):
@@ -206,7 +206,7 @@ def _lwpolyline(entity: Any, tolerance: float | None) -> FloatArray:
 def _old_polyline(entity: Any, tolerance: float | None) -> FloatArray:
     if entity.get_mode() not in {"AcDb2dPolyline", "AcDb3dPolyline"}:
         raise BodyFileError("The entity is a mesh. Use a closed polyline.")
-    if entity.dxf.flags & 6:  # curve-fit and spline-fit
+    if entity.dxf.flags & 6:  # bits for fitted curves and fitted splines
         raise BodyFileError("The polyline is a fitted curve. Explode it into arcs.")
     vertices = [(_flat(v.dxf.location), float(v.dxf.bulge)) for v in entity.vertices]
     return _polyline(entity, vertices, bool(entity.is_closed), tolerance)

@@ -98,7 +98,7 @@ def _parsed(text: str) -> Any:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
         raise BodyFileError("Invalid JSON: {reason}", reason=str(error)) from error
-    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
+    except (ValueError, RecursionError) as error:  # integers with thousands of digits, or thousands of nested brackets
         raise BodyFileError("Unreadable JSON: {reason}", reason=str(error).partition(";")[0]) from error
 
 

@@ -33,7 +33,7 @@ FEWEST_POINTS = 50  # smallest number of points of a cloud without faces [-]
 
 _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
-_SMALL_ROTATION = 5.0  # [degree]
+_SMALL_ROTATION = 5.0  # largest rotation without a warning [degree]
 _BASE_TOLERANCE = 1e-6  # distance of corners from one plane / size of a mesh in single precision
 
 
@@ -48,8 +48,8 @@ def mesh_from_file(
     wall: float | None = None,
     inner_parts: InnerParts = "refuse",
 ) -> RepairedSurface:
-    """Return the volume inside a mesh: welded, oriented, closed, centred, z up; with one sentence per doubt."""
-    # without a weld tolerance equal vertices are merged, and for an open surface those within 1e-6 x its size
+    """Return the repaired, closed volume inside a mesh, centred and with z up, and one sentence per doubt."""
+    # By default, equal vertices are merged. In an open surface, vertices within 1e-6 x the size are merged too.
     path = Path(path)
     scale = length_unit(units)
     turn = _turn(up)

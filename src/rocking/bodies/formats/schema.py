@@ -17,7 +17,7 @@ _FILE_UNIT = "[unit of the file]"
 
 
 class StrictTable(BaseModel):
-    """A table without unknown keys; numbers are finite."""
+    """Base class of tables. Unknown keys and numbers that are not finite are errors."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)
 
@@ -245,7 +245,7 @@ TABLES: dict[str, type[StrictTable]] = {
     "section": SectionTable, "mass_points": MassPointsTable,
 }  # fmt: skip
 BODIES = tuple(TABLES)
-"""Tables of which a body file contains exactly one."""
+"""A body file contains exactly one of these tables."""
 
 
 def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str = "{}") -> None:
@@ -259,7 +259,7 @@ def _check_one(table: StrictTable, owner: str, keys: tuple[str, ...], shown: str
 
 
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
-MOST_PARTS = 500  # largest number of parts; the check for overlaps grows with its square
+MOST_PARTS = 500  # largest number of parts; the time of the check for overlaps is proportional to its square
 
 
 class BoxTable(StrictTable):
@@ -365,7 +365,7 @@ class PartTable(StrictTable):
 
 
 SHAPES = ("box", "cylinder", "cone", "frustum", "sphere", "ellipsoid", "extrusion", "revolution", "mesh")
-"""Tables of which a part contains exactly one."""
+"""A part contains exactly one of these tables."""
 
 
 class SolidTable(StrictTable):

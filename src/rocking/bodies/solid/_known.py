@@ -27,10 +27,10 @@ ASSUMED = Message(
 def known_moments(
     parts: Sequence[Part], part_moments: SolidMoments, centre: FloatArray | None, inertia: Any
 ) -> SolidMoments:
-    """Return the moments of parts with known values in place of their own."""
-    # centre: in the frame of the parts [m]; inertia: tensor about the centre of mass, or principal moments along x, y
-    # and z [kg m2]. For an unknown inertia, the second moments are scaled along each axis like their largest possible
-    # value ``m (c - low) (high - c)``, with the ends low and high of the body.
+    """Return the moments of parts, with known values in place of the computed values."""
+    # The centre is in the frame of the parts [m]. The inertia is the tensor about the centre of mass, or the principal
+    # moments along x, y and z [kg m2]. For an unknown inertia, the second moment along each axis is scaled like the
+    # largest possible value ``m (c - low) (high - c)``. low and high are the ends of the body on this axis.
     centre_of_mass = part_moments.centre if centre is None else centre
     boxes = np.array([part.box() for part in parts])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
@@ -78,9 +78,10 @@ def _second(inertia: Any) -> FloatArray:
 def _reached(
     parts: Sequence[Part], moments: SolidMoments, lowest: FloatArray, size: FloatArray, *, is_stated: bool
 ) -> float:
-    """Return the possible fraction of the second moments for masses within the hull; refuse a centre outside."""
+    """Return the largest factor, at most 1, on the second moments that is possible for masses within the hull."""
     # The limit in every direction is ``m (c - low) (high - c)`` (R. Bhatia, C. Davis, "A better bound on the
-    # variance", 2000). The check has 64 directions. is_stated: refuse a fraction below 1.
+    # variance", 2000). The check has 64 directions. A centre outside the hull is an error. With is_stated, a factor
+    # below 1 is an error too.
     fraction = 1.0
     for direction in _directions():
         frame = _frame(direction)

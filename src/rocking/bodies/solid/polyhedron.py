@@ -99,7 +99,7 @@ class Polyhedron(Shape):
         return Polyhedron(self.vertices * mirror, self.faces[:, ::-1], simple=True, patches=[self.patches * mirror])
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return volumes [m3] and centres [m] of tetrahedra to the centre, or None if faces are hidden from it."""
+        """Return volumes [m3] and centres [m] of pieces between faces and centre; None if a face is turned away."""
         apex = self._moments.centre
         corners = self.corners - apex
         cones = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1) / 6.0

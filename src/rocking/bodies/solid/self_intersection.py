@@ -118,7 +118,7 @@ def overlapping_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntAr
 
 
 def _halved(middles: FloatArray) -> IntArray:
-    """Return the indices of the boxes in the order of the tree, repeated to a power of two."""
+    """Return the indices of the boxes in the order of the tree; repeated indices give a power of two."""
     full = 1 << max(0, len(middles) - 1).bit_length()
     padded = middles[np.minimum(np.arange(full), len(middles) - 1)]
     order = np.arange(full)

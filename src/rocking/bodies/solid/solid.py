@@ -45,7 +45,7 @@ class Solid:
         Parts of one rigid body; they may touch but not overlap. A shape without density has that of plain concrete,
         2400 kg/m3.
     base : array_like, shape (n, 2), or Base, optional
-        Points (x, y) of the base [m]; the default is the corners on the ground, or the round face there.
+        Points (x, y) of the base [m]; the default is the corners or the round face on the ground.
     ground : float
         Height of the ground, equal to that of the lowest point [m].
     base_tolerance : float, optional
@@ -275,8 +275,8 @@ class Solid:
     def in_plane(self, azimuth: float = 0.0) -> Section:
         """Return the 2D body that rocks in one direction, between the ends of the base.
 
-        If no edge of the base is normal to the direction, the ends are corners. The solid itself then has an earlier
-        uplift about an edge, see `equilibria`.
+        If no edge of the base is normal to the direction, the ends are corners. The uplift of the solid about an edge
+        then occurs at a smaller acceleration, see `equilibria`.
 
         Parameters
         ----------
@@ -453,7 +453,7 @@ def _weighing(parts: Sequence[Part], density: float) -> tuple[Part, ...]:
 
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:
-    """Return the base of parts: the hull of their corners on the ground, or the round face there."""
+    """Return the base of parts: the hull of their corners on the ground, or their round face on the ground."""
     prints = [footprint(part, 0.0, tolerance) for part in parts]
     points = np.concatenate([print_[0] for print_ in prints])
     discs = [disc for print_ in prints for disc in print_[1]]

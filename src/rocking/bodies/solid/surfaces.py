@@ -16,7 +16,7 @@ from rocking.portable import applied, gauss_legendre, gauss_rule, times
 
 
 class Surface(ABC):
-    """A surface in cells, one per row, for splitting into four and for sampling by a Gauss rule."""
+    """A surface as an array of cells. Each cell can be split into four, and be sampled by a Gauss rule."""
 
     @abstractmethod
     def cells(self) -> FloatArray:
@@ -48,8 +48,9 @@ def gauss(order: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
-    """Return barycentric coordinates (n^2, 3) and weights of sum 1 of a rule of degree 2 n - 1: a collapsed square."""
-    # Gauss-Jacobi nodes with the weight u towards the collapsed corner preserve the order
+    """Return barycentric coordinates (n^2, 3) and weights of a rule of degree 2 n - 1 in a triangle; their sum is 1."""
+    # The triangle is a collapsed square. Gauss-Jacobi nodes with the weight u towards the collapsed corner preserve
+    # the order.
     k = np.arange(1.0, order)
     side = np.sqrt(k * (k + 1.0)) / (2.0 * k + 1.0)
     i = np.arange(order)
@@ -77,7 +78,7 @@ def area_vectors(triangles: FloatArray) -> FloatArray:
 
 def boxes(triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return lowest and highest coordinates of each triangle [m]."""
-    # one corner at a time, which is several times faster than along the axis
+    # a loop over the three corners is several times faster than min and max along the axis
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 

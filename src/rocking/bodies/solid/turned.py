@@ -47,8 +47,8 @@ class Turned(Shape):
 
     def moments(self) -> SolidMoments:
         """Return volume, centre and second moments, exact for every piece."""
-        # ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``: rho or its square is a polynomial of
-        # the height, and three Gauss points are exact up to degree five
+        # ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``. Rho or its square is a polynomial of
+        # the height. Three Gauss points are exact up to degree five.
         (a, b), (nodes, weights) = self.half_axes, gauss(3)
         sums = np.zeros(4)
         middle = 0.5 * float(self.extent(np.eye(3))[:, 2].sum())
@@ -69,7 +69,7 @@ class Turned(Shape):
         return SolidMoments(volume, np.array([0.0, 0.0, middle + height]), second)
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
-        """Return the surface after rotation and translation, one piece per piece of the profile."""
+        """Return the surface after rotation and translation, one surface per piece of the profile."""
         turn = np.eye(3) if rotation is None else rotation
         move = np.zeros(3) if translation is None else translation
         return [TurnedSurface(piece.data, self.half_axes, piece.arc, turn, move) for piece in self.meridians]
@@ -98,7 +98,7 @@ class Turned(Shape):
         return np.stack([x, y, np.broadcast_to(height[:, None], x.shape)], axis=-1).reshape(-1, 3)
 
     def footprint(self) -> Footprint:
-        """Return the discs at bottom and top for a round plan, else points on their rims."""
+        """Return the discs at bottom and top for a round plan, and points on their rims for an elliptical plan."""
         (a, b), discs, rims = self.half_axes, [], []
         flat = [p for p in self.meridians if not p.arc and p.data[0, 1] == p.data[1, 1]]
         phi = np.linspace(0.0, 2.0 * math.pi, 361)[:-1]

@@ -85,7 +85,8 @@ def divided(solid: Solid, divisions: int) -> Units:
 def voxels(solid: Solid, divisions: int) -> Units:
     """Return the body divided into cubes of one grid.
 
-    A cube on the surface has mass and centre of those of its 27 subcubes with the middle inside the body.
+    A cube on the surface is divided into 27 subcubes. Its mass and centre are those of the subcubes with their middle
+    inside the body.
 
     Parameters
     ----------

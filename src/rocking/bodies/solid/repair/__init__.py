@@ -1,4 +1,5 @@
-"""Repair of the surface of a mesh or of a point cloud: one step per file, each with its entry in the log of repairs.
+"""Repair of the surface of a mesh or of a point cloud: one step per file.
 
-`steps.py` has the order of the steps. A step takes points, faces and the log, and returns points and faces.
+A function per step takes points, faces and the log of repairs, and returns points and faces. `steps.py` defines the
+order of the steps.
 """

@@ -15,10 +15,10 @@ from rocking.messages import Message, Option
 LOW = 0.1  # largest median height of the rim of a bottom / height of the body [-]
 _LEVEL = 0.7  # smallest vertical component of the unit normal of a bottom [-]
 _NOTCH = 0.01  # largest height of the rim of a bottom above its median / height of the body [-]
-_INCLINED = 0.05  # largest inclination of a bottom without a statement [deg]
+_INCLINED = 0.05  # largest inclination of a bottom that is not reported [deg]
 _SLIT = 1e-6  # largest area / squared diagonal of a hole without area [-]
 _LOOSE = 0.5  # largest fraction of open edges of a surface [-]
-_LISTED = 3  # number of holes in a sentence [-]
+_LISTED = 3  # largest number of holes in a message [-]
 
 
 def close_holes(points: FloatArray, faces: IntArray, log: RepairLog) -> tuple[FloatArray, IntArray]:
@@ -47,7 +47,7 @@ def close_holes(points: FloatArray, faces: IntArray, log: RepairLog) -> tuple[Fl
         if area <= _SLIT * width**2:
             slits += 1
             continue
-        # volume of a dome of half the width over the hole
+        # the bound is the volume of a dome over the hole with a height of half the width
         bound, moment = bound + area * width / 3.0, moment + area * width / 3.0 * points[ring].mean(axis=0)
         rings.append(ring)
         log.patches.append(points[ring[patch]])
@@ -119,7 +119,7 @@ def _not_closed(loops: list[IntArray], points: FloatArray, log: RepairLog) -> st
 
 
 def _is_bottom(points: FloatArray, faces: IntArray, ring: IntArray) -> bool:
-    """Return True for the rim of a bottom: about horizontal, median height low, and outward normal downwards."""
+    """Return True for the rim of a bottom: it is nearly horizontal and low, and its outward normal points downwards."""
     low, high, normal = points[:, 2].min(), points[:, 2].max(), _normal(points[ring])
     is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal)
     if not is_level or np.median(points[ring, 2]) - low > LOW * (high - low):

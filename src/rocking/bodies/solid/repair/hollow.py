@@ -9,7 +9,7 @@ from rocking.errors import GeometryError
 
 _ROUND = 12  # number of segments of the ball around its equator [-]
 _MOST_HOLLOWED = 2000  # largest number of faces without further simplification [-]
-_COARSE = (0.02, 0.05, 0.1, 0.2)  # distance of the simplification / wall thickness, until the faces are few [-]
+_COARSE = (0.02, 0.05, 0.1, 0.2)  # tolerances of the simplification / wall thickness, tried in this order [-]
 
 
 def hollow_out(points: FloatArray, faces: IntArray, wall: float, log: RepairLog) -> tuple[FloatArray, IntArray]:

@@ -9,7 +9,7 @@ from rocking.messages import Message
 
 
 def orient_faces(faces: IntArray, log: RepairLog) -> IntArray:
-    """Return consistently oriented faces; in each connected piece the smaller number of faces is reversed."""
+    """Return consistently oriented faces; in each connected piece, the smaller group of faces is reversed."""
     first, second, disagree = neighbours(faces)
     labels = connected(len(faces), first, second)
     flip = _parities(len(faces), first, second, disagree)
@@ -27,7 +27,7 @@ def orient_faces(faces: IntArray, log: RepairLog) -> IntArray:
 
 def _parities(count: int, first: IntArray, second: IntArray, disagree: BoolArray) -> BoolArray:
     """Return True for faces with an orientation opposite to the first face of their piece, along a spanning tree."""
-    # the graph contains every face twice, original and reversed; the first face connects to the consistent one
+    # The graph has two nodes per face, original and reversed. Links connect consistent orientations of neighbours.
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import minimum_spanning_tree
 

@@ -15,7 +15,7 @@ from rocking.messages import Message, Option
 MOST_SHELLS = 200  # largest number of separate pieces of a surface [-]
 _PROBES = 40  # number of vertices of a shell that are located relative to another shell [-]
 _GRID = 12  # number of points along each side of the common box of two shells [-]
-_NAMED = 3  # largest number of parts in a sentence [-]
+_NAMED = 3  # largest number of parts in a message [-]
 _TWICE = 2e-3  # largest distance / size of two shells of a double scan [-]
 _READINGS = {reading: Option("body.inner_parts", reading) for reading in ("solid", "cavity")}
 
@@ -78,7 +78,7 @@ def _filled(matter: BoolArray, within: BoolArray, inner: InnerParts) -> tuple[Bo
     for i in np.argsort(depth, kind="stable").tolist():
         about = np.flatnonzero(within[i])
         outside = bool(len(about)) and bool(filled[about[depth[about].argmax()]])
-        # `inner` decides for a shell of matter within matter, and for a shell of a cavity within a cavity
+        # `inner` applies to a shell of matter within matter, and to a shell of a cavity within a cavity
         filled[i] = matter[i] if matter[i] != outside else inner == "solid"
         borders[i] = filled[i] != outside
     return filled, borders
@@ -125,12 +125,12 @@ def _without_double_scans(
     points: FloatArray, shells: list[IntArray], volumes: FloatArray, matter: BoolArray, within: BoolArray,
     log: RepairLog,
 ) -> IntArray:  # fmt: skip
-    """Return the indices of the shells without inner shells of double scans."""
+    """Return the indices of all shells except the inner shells of double scans."""
     areas = np.array([total_area(points[shell]) for shell in shells])
     gaps = (np.abs(volumes) - np.abs(volumes)[:, None]) / areas  # from inner i to outer j
     size = largest_extent(points)
     twice = within & (volumes * volumes[:, None] > 0.0) & (gaps < _TWICE * size)
-    if log.inner_parts == "cavity":  # a second shell is the inner side of a thin wall
+    if log.inner_parts == "cavity":  # an inner shell with the same orientation is the inner side of a thin wall
         twice &= ~matter
     for i, j in np.argwhere(twice).tolist():
         log.add_repair(
@@ -159,7 +159,7 @@ def _unite_shells(
     bodies = [_outward(points, shells[i]) for i in involved]
     union = Manifold.batch_boolean([manifold(points, shell) for shell in bodies], OpType.Add)
     volumes = [polyhedron_moments(points[shell]).mass for shell in bodies]
-    # for a double scan, each shell, the union and the intersection are possible
+    # for a double scan, the true volume can be that of one shell, of the union or of the intersection
     doubt = len(bodies) * float(union.volume()) - sum(volumes)
     overlap = sum(volumes) - float(union.volume())
     log.add_repair(
@@ -206,7 +206,7 @@ def _nested(points: FloatArray, shells: list[IntArray]) -> tuple[BoolArray, list
 
 
 def _overlap(first_shell: FloatArray, second_shell: FloatArray) -> bool:
-    """Return True if two shells overlap although neither contains vertices of the other."""
+    """Return True if two shells overlap and neither shell contains vertices of the other shell."""
     low = np.maximum(first_shell.min(axis=(0, 1)), second_shell.min(axis=(0, 1)))
     high = np.minimum(first_shell.max(axis=(0, 1)), second_shell.max(axis=(0, 1)))
     if (high - low <= 1e-9 * np.ptp(first_shell, axis=(0, 1)).max()).any():
@@ -214,7 +214,7 @@ def _overlap(first_shell: FloatArray, second_shell: FloatArray) -> bool:
     points = grid_points(low, high, _GRID)
     for shell in (first_shell, second_shell):
         points = points[inside(points, shell) | inside(points, shell[:, ::-1])]
-    # all of them: one shell contains the other, as the vertices of the inner shell show
+    # the common box must be smaller than the smaller shell: otherwise one shell contains the other
     volume_difference = np.prod(high - low) - np.prod(
         np.minimum(np.ptp(first_shell, axis=(0, 1)), np.ptp(second_shell, axis=(0, 1)))
     )

@@ -23,7 +23,7 @@ def simplify(points: FloatArray, faces: IntArray, log: RepairLog) -> tuple[Float
     bound = FINEST * largest_extent(points)
     try:
         body = manifold(points, faces)
-    except GeometryError:  # touching faces; the simplification only affects speed
+    except GeometryError:  # the surface has touching faces; without simplification only the speed is lower
         return points, faces
     for fraction in (1.0, 0.5, 0.25, 0.1):
         fewer_points, fewer = triangles_of(body.simplify(fraction * bound))

@@ -1,7 +1,7 @@
 """From the triangles or points of a file to a closed surface: the order of the repairs.
 
-Faces have neighbours only after merging of vertices, which is necessary for orientation and the closing of holes.
-Volumes need a closed surface, and the union of shells needs separate shells.
+Vertices are merged first, because orientation and closing of holes need the neighbours of each face. Volumes need a
+closed surface, and the union of shells needs separate shells.
 """
 
 from collections.abc import Callable
