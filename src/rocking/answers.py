@@ -1,4 +1,4 @@
-"""Answers: displayed results by the names of their quantities, and their numbers in the units of the reader."""
+"""Answers: results for display, by quantity name. Numbers are shown in the units of the reader."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,14 +24,14 @@ class AnswerRows:
 
     @classmethod
     def of_records(cls, records: Iterable[Mapping[str, Any]]) -> "AnswerRows":
-        """Return records of values by the names of quantities as a table; None for missing values."""
+        """Return a table of records. A record contains values by quantity name; missing values become None."""
         listed = list(records)
         names = dict.fromkeys(name for record in listed for name in record)
         return cls({name: [record.get(name) for record in listed] for name in names})
 
     @classmethod
     def of(cls, records: np.ndarray, *, without: Sequence[str] = ()) -> "AnswerRows":
-        """Return the rows of a structured array with quantities as fields."""
+        """Return a table of a structured array. The fields of the array are quantities."""
         return cls({name: records[name].tolist() for name in records.dtype.names or () if name not in without})
 
     def __len__(self) -> int:
@@ -39,12 +39,12 @@ class AnswerRows:
 
     @property
     def records(self) -> list[dict[str, Any]]:
-        """Rows, as values by the names of their quantities."""
+        """Rows of the table. A row contains values by quantity name."""
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*self.columns.values(), strict=True)]
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:
-        """Columns for files: numbers, or text; lists as text with dashes."""
+        """Columns for files. A column contains numbers or text; lists become text with dashes."""
         return {name: _array(name, values) for name, values in self.columns.items()}
 
 
@@ -57,8 +57,8 @@ class Answer:
     {'kind': 'Block', 'sides': {'left': {'semi_diagonal': 0.5}}, 'units': {'semi_diagonal': 'm'}}
     """
 
-    # by the name of a quantity: a number, array, text, message, or such values by a label; None for missing values
-    # by the name of a section: another answer, rows, or such values
+    # under the name of a quantity: a number, array, text or message, None if missing, or a mapping from labels to these
+    # under the name of a section: another answer, rows, or a mapping with these values
     values: Mapping[str, Any]
     quantities: Mapping[str, Quantity] = field(
         default_factory=dict
@@ -71,12 +71,12 @@ class Answer:
         return name in self.values
 
     def __or__(self, more: "Mapping[str, Any] | Answer") -> "Answer":
-        """Return the answer with more values."""
+        """Return this answer with additional values."""
         other = more if isinstance(more, Answer) else Answer(more)
         return Answer({**self.values, **other.values}, {**self.quantities, **other.quantities})
 
     def plain(self) -> dict[str, Any]:
-        """Return the values for JSON, null for numbers that are not finite, with units and messages."""
+        """Return values, units and messages for JSON. Numbers that are not finite become null."""
         own = dict(self.quantities)
         tree = plain(self, own)
         owners = dict.fromkeys(name for _, name in _owners(tree, (), own) if name)
@@ -86,7 +86,7 @@ class Answer:
 
     @property
     def bare(self) -> list[str]:
-        """Keys of numbers without an entry in `rocking.quantities`; empty in a correct answer."""
+        """Keys of the numbers that have no entry in `rocking.quantities`. A correct answer has no such keys."""
         own = dict(self.quantities)
         tree = plain(self, own)
         return [path for path, name in _owners(tree, (), own) if not name]
@@ -103,7 +103,7 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
 
 
 def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:
-    """Return a value for JSON, null for numbers that are not finite; own: receives the quantities of answers."""
+    """Return a value for JSON; numbers that are not finite become null. Quantities of answers are added to `own`."""
     own = {} if own is None else own
     if isinstance(value, Answer):
         own |= value.quantities
@@ -121,7 +121,7 @@ def plain(value: Any, own: dict[str, Quantity] | None = None) -> Any:
 
 
 def _owners(value: Any, path: tuple[str, ...], own: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
-    """Yield the keys of every number, and the last key with a quantity; empty without one."""
+    """Yield the path of keys of every number, and the last key that is a quantity (empty text if there is none)."""
     if isinstance(value, dict):
         for name, item in value.items():
             yield from _owners(item, (*path, name), own)
@@ -144,7 +144,7 @@ class Display:
     >>> display.text("semi_diagonal", 0.5), display.text("slenderness_angle", 0.25), display.heading("duration")
     ('500 mm', '14.32 deg', 'duration [s]')
 
-    An acceleration in another unit than g has a value in g too.
+    An acceleration in another unit is also shown in g.
 
     >>> display.text("uplift_acceleration", 2.94199), Display(acceleration="g").text("uplift_acceleration", 2.94199)
     ('2.942 m/s2 (0.3 g)', '0.3 g')
@@ -202,7 +202,7 @@ class Display:
     def lines(
         self, values: Mapping[str, Any], names: Sequence[str], *, in_full: bool = False
     ) -> Iterator[tuple[str, str]]:
-        """Yield label and text of the named quantities in an answer, of a body also by side.
+        """Yield label and text of the named quantities of an answer. The text of a body may have a value for each side.
 
         With `in_full`, the label is the meaning of the quantity.
 
@@ -226,10 +226,9 @@ class Display:
             yield entry.meaning if in_full else entry.heading, text
 
     def table(self, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = ()) -> "list[ShownColumn]":
-        """Return the columns of a table for the reader: the named columns that exist; all without names.
+        """Return the existing named columns of a table for the reader; all columns if `names` is empty.
 
-        The interval of a quantity is in a second column. An acceleration in another unit than g has a second column
-        in g.
+        The interval of a quantity is in a second column. An acceleration in another unit also has a column in g.
 
         >>> rows = [{"observed": 0.5, "observed_low": 0.25, "observed_high": 0.75}]
         >>> [(column.heading, column.cells) for column in Display().table(rows)]
@@ -257,7 +256,7 @@ class Display:
         if lows is not None and highs is not None:
             end = f"{name}_low" if f"{name}_low" in self.own else name
             ends = ([self.cell(end, value) for value in column] for column in (lows, highs))
-            # a missing bound is open
+            # the text of a missing bound is "open"
             texts = [" to ".join("open" if end == "-" else end for end in pair) for pair in zip(*ends, strict=True)]
             texts = ["-" if text == "open to open" else text for text in texts]
             yield from [ShownColumn("95 %", texts)] if {*texts} != {"-"} else []

@@ -36,7 +36,7 @@ def number(name: str, value: Any, unit: str = "-") -> float:
 
 
 def of_kind(name: str, value: object, kind: type | tuple[type, ...], description: str) -> None:
-    """Refuse a value of another type; words: description of the allowed type."""
+    """Raise an error if the type of `value` is not `kind`; `description` describes the allowed type."""
     if not isinstance(value, kind):
         raise InvalidValueError(
             "{parameter} must be {allowed}, got {given}", parameter=name, allowed=description, value=value,
@@ -48,7 +48,7 @@ _READERS = {"motion": "read_motion", "motions": "read_motion", "body": "read_bod
 
 
 def given(name: str, value: object, where: str = "") -> str:
-    """Return the text of an input value, and the function for its conversion to a motion or a body.
+    """Return the text of an input value. It also names the function that converts the value to a motion or a body.
 
     >>> given("motion", "x.at2"), given("body", 3.0)
     ("'x.at2'; rocking.read_motion('x.at2') reads a file", '3.0')
@@ -114,7 +114,7 @@ def within(
 
 
 def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
-    """Refuse values that do not increase; the error contains the first such value."""
+    """Raise an error unless the values increase. The error contains the first value that does not increase."""
     wrong = np.flatnonzero(np.diff(values) <= 0.0)
     if wrong.size:
         before, after = values[wrong[0] : wrong[0] + 2].tolist()
@@ -131,14 +131,14 @@ def increasing(name: str, values: FloatArray, unit: str = "-") -> None:
 
 
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
-    """Return `values` as float64 of the same shape, finite and above zero; no copy if they already are."""
+    """Return `values` as a float64 array, finite and above zero. The array is not copied if it already is float64."""
     result = real_array(name, values, unit)
     all_positive(name, result, unit)
     return result
 
 
 def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
-    """Return `values` as float64 of the same shape, finite or not; no copy if they already are."""
+    """Return `values` as a float64 array, finite or not. The array is not copied if it already is float64."""
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -151,7 +151,10 @@ def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
 def finite(
     name: str, values: Any, unit: str = "-", shape: tuple[int | None, ...] = (None,), minimum: int = 1
 ) -> FloatArray:
-    """Return `values` as a read-only copy of finite numbers of a shape; None is any size >= `minimum`."""
+    """Return a read-only copy of `values`, which must be finite and have the given shape.
+
+    None in `shape` allows any size >= `minimum`.
+    """
     result = real_array(name, values, unit).copy()
     expected = [max(count, minimum) if size is None else size for count, size in zip(result.shape, shape, strict=False)]
     if result.ndim != len(shape) or list(result.shape) != expected:
@@ -173,7 +176,7 @@ def finite(
 
 
 def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
-    """Refuse an array unless all numbers are finite and above zero."""
+    """Raise an error unless all numbers of an array are finite and above zero."""
     # min() and max() propagate NaN: two reductions suffice
     if not values.size or (values.min() > 0.0 and values.max() < math.inf):
         return
@@ -186,7 +189,7 @@ def all_positive(name: str, values: FloatArray, unit: str = "-") -> None:
 
 
 def all_within(name: str, values: FloatArray, low: float, high: float, array: FloatArray) -> float:
-    """Refuse an array unless all numbers are between two positive limits; return the smallest number."""
+    """Raise an error unless all numbers of an array are between two positive limits. Return the smallest number."""
     if not values.size:
         return high
     smallest = float(values.min())
@@ -217,7 +220,7 @@ def one_of(name: str, value: Any, allowed: Iterable[Word]) -> Word:
     """
     options = list(allowed)
     match = spelling(value, options)
-    if not isinstance(match, str) or match not in options:  # an array has no truth value
+    if not isinstance(match, str) or match not in options:  # an array cannot be compared with words
         raise InvalidValueError(
             parameter=name, allowed=f"one of {', '.join(options)}", value=value, hint=nearest(value, options)
         )
@@ -225,7 +228,7 @@ def one_of(name: str, value: Any, allowed: Iterable[Word]) -> Word:
 
 
 def spelling(word: Any, allowed: Iterable[str]) -> Any:
-    """Return the allowed word that differs from a word only in case; otherwise the word itself."""
+    """Return the allowed word that equals `word` except for case. If there is none, return `word`."""
     if not isinstance(word, str):
         return word
     options = list(allowed)
@@ -237,7 +240,7 @@ def spelling(word: Any, allowed: Iterable[str]) -> Any:
 
 
 def nearest(word: Any, allowed: Iterable[str]) -> str:
-    """Return the hint about an unknown word with the most similar one; empty without a similar word.
+    """Return a hint with the allowed word that is most similar to an unknown word; empty if none is similar.
 
     >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
     ("did you mean 'housner'?", 'numbers have a decimal point: 0.9')
@@ -251,7 +254,7 @@ def nearest(word: Any, allowed: Iterable[str]) -> str:
 
 
 def number_hint(text: str) -> str:
-    """Return the hint about a text with a decimal comma or a unit after a number; empty for other texts.
+    """Return a hint for a number with a decimal comma or a unit; empty for other texts.
 
     >>> number_hint("sine:amplitude=0,5,period=1"), number_hint("50 cm")
     ('numbers have a decimal point: 0.5', 'remove the unit after the number, 50; see the help for units')
@@ -270,7 +273,7 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][
 
 
 def quantity(name: str, text: str, unit: str) -> tuple[float, str]:
-    """Return a number [unit], and the unit in its text; empty without one.
+    """Return the number of a text, converted to `unit`, and the unit in the text (empty if there is none).
 
     >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
     ((0.4, 'cm'), (2.0, ''))

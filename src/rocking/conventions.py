@@ -62,10 +62,10 @@ DEFAULT_FRICTION: Final = Assumed(0.5)
 
 
 DEFAULT_RESTITUTION: Final = "calibrated"
-"""Restitution model where none is stated, of every mechanics."""
+"""Default restitution model of all mechanics."""
 
 COMPARED_RESTITUTIONS: Final = ("ked", "housner")
-"""Restitution models that every verdict with the default model is compared with."""
+"""Restitution models for comparison with the default model."""
 
 
 def given_or_assumed(value: float) -> str:
@@ -74,7 +74,7 @@ def given_or_assumed(value: float) -> str:
 
 
 def percent(fraction: float) -> str:
-    """Return a fraction in percent with about three digits; only 1 gives 100 %.
+    """Return a fraction in percent with about three digits. The result is 100 % only for a fraction of 1.
 
     >>> percent(0.14), percent(0.0078), percent(0.00031), percent(1.0), percent(0.99987)
     ('14 %', '0.78 %', '0.031 %', '100 %', '99.987 %')

@@ -57,7 +57,7 @@ class RockingError(Exception):
     Attributes
     ----------
     places : tuple of Place
-        Tables and files of the refused value, the outermost first.
+        Locations of the refused value: tables and files, the outermost first.
     more : int
         Number of further errors in the same input.
 
@@ -94,7 +94,7 @@ class RockingError(Exception):
 
     @property
     def unit(self) -> str:
-        """Unit of the allowed values; empty if they have none."""
+        """Unit of the allowed values; empty if the values have no unit."""
         allowed = self.allowed
         unit = allowed.facts.get("unit") if isinstance(allowed, Message) else getattr(allowed, "unit", None)
         return "" if unit in {None, "-", "1"} else str(unit)
@@ -117,7 +117,7 @@ class RockingError(Exception):
 
     @property
     def sentence(self) -> Message:
-        """Places, fault and hint as one message."""
+        """Location, error and hint as one message."""
         return self._sentence(self.places)
 
     def _sentence(self, places: Sequence[Place]) -> Message:
@@ -204,7 +204,7 @@ class RockingError(Exception):
         self.hint = Message("{first}; {second}", {"first": self.hint, "second": hint}) if self.hint else hint
 
     def at(self, name: str, line: int = 0) -> Self:
-        """Add a file to the places of the error, as the outermost one.
+        """Add a file as the outermost location of the error.
 
         Parameters
         ----------
@@ -222,7 +222,7 @@ class RockingError(Exception):
         return self
 
     def without_file(self, name: str) -> Self:
-        """Remove the name of a file from the places of the error; its line stays.
+        """Remove the name of a file from the locations of the error, but keep its line.
 
         Parameters
         ----------
@@ -268,7 +268,7 @@ class RockingError(Exception):
 
 
 def _plain(value: Any) -> Any:
-    """Return a value for JSON: a number, a text, true, false or None; else its Python representation."""
+    """Return a value for JSON: a number, text, true, false or None. Other values become their Python representation."""
     value = value.value if isinstance(value, Amount) else value
     value = _scalar(value)
     if value is None or isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
@@ -381,7 +381,7 @@ class SlowEngineWarning(UserWarning):
 
 
 def how_to_install(feature: str, module: str, error: ImportError) -> str:
-    """Return the sentence about a missing package and its installation, for a `MissingExtraError`.
+    """Return the text of a `MissingExtraError`: the missing package and the command to install it.
 
     Parameters
     ----------
@@ -404,7 +404,7 @@ def how_to_install(feature: str, module: str, error: ImportError) -> str:
     """
     package = module.partition(".")[0]
     missing = (error.name or package).partition(".")[0]
-    # double quotes for all shells; in some shells brackets are a pattern
+    # double quotes work in all shells; without quotes, some shells read brackets as a pattern
     package_name = f'"rocking[{_EXTRAS[package]}]"' if package in _EXTRAS else missing
     return f"{feature} needs {missing}: pip install {package_name}"
 
@@ -449,7 +449,7 @@ def warn(sentence: str, category: type[Warning]) -> None:
 
 
 def silenced(category: type[Warning]) -> bool:
-    """Return True if warnings of a class are always ignored, so that their sentences are not needed.
+    """Return True if warnings of a class are always ignored. Their texts need not be computed then.
 
     Parameters
     ----------
@@ -459,7 +459,7 @@ def silenced(category: type[Warning]) -> bool:
     Returns
     -------
     bool
-        False if a filter depends on the sentence or on the module.
+        False if a filter depends on the text of the warning or on the module.
 
     Examples
     --------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Exported(ABC):
     """A result with a table for files and data frames."""
 
-    _blank: ClassVar[bool] = True  # True if missing values are empty in CSV, else nan
+    _blank: ClassVar[bool] = True  # True: missing values are empty in CSV; False: nan
 
     @abstractmethod
     def exported(self) -> "Table":

@@ -1,4 +1,4 @@
-"""Messages: an English text with named fields, and the facts for these fields."""
+"""Messages: English texts with named fields, and the facts for these fields."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 
 class Fact:
-    """A fact of a message; each interface has its own spelling, `str` is that of Python."""
+    """A fact of a message. Each interface writes a fact in its own form; `str` gives the form of Python."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Parameter(Fact):
     """
 
     path: str
-    shown: str  # end of the path in the sentence
+    shown: str  # end of the path, shown in the sentence
 
     @property
     def name(self) -> str:
@@ -32,7 +32,7 @@ class Parameter(Fact):
 
 @dataclass(frozen=True)
 class Option(Fact):
-    """A parameter for the reader to add, and its value.
+    """A parameter that the reader shall add, with its value.
 
     >>> str(Option("motion.units", "g")), str(Option("motion.component")), str(Option("identify.trend", True))
     ('units="g"', 'component=', 'trend=True')
@@ -129,7 +129,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Index(Fact):
-    """The index of a region, a hole or a point; from zero in Python and files, from one on the page.
+    """The index of a region, a hole or a point. It starts at 0 in Python and files, and at 1 in the web page.
 
     >>> str(Index(2))
     '2'
@@ -143,7 +143,7 @@ class Index(Fact):
 
 @dataclass(frozen=True)
 class WrittenFile(Fact):
-    """A file written by a command, a fact only for its readers."""
+    """A file that a command has written."""
 
     name: str
 
@@ -155,7 +155,7 @@ Spelling = Callable[[Fact], str]
 
 
 def by_key(fact: Fact) -> str:
-    """Return a fact with the input key in place of an option, for all interfaces.
+    """Return the text of a fact for all interfaces. An option is written as a key of the input file.
 
     >>> by_key(Option("motion.units", "g"))
     'motion.units = g'
@@ -166,7 +166,7 @@ def by_key(fact: Fact) -> str:
 
 
 class Message(str):
-    """An English sentence with its text of named fields and the facts of these fields.
+    """An English sentence, with its template and the facts for the fields of the template.
 
     >>> units = Message(
     ...     "{file} does not state its unit; give {option}", {"file": "a.txt", "option": Option("units", "g")}
@@ -177,11 +177,11 @@ class Message(str):
 
     text: str  # the English text, the key of its translations
     facts: Mapping[str, Any]
-    many: str  # the text if the fact `count` is not 1; empty without such a form
+    many: str  # the plural: the text if the fact `count` is not 1; empty if there is none
     context: str  # distinguishes equal texts with different translations
 
     def __new__(cls, text: str, facts: Mapping[str, Any] | None = None, many: str = "", context: str = "") -> Self:
-        """Return a message with facts by the names of the fields."""
+        """Return a message. `facts` contains the facts by field name."""
         facts = facts or {}
         message = super().__new__(cls, _filled(text, facts, many, str))
         message.text, message.facts, message.many, message.context = text, facts, many, context
@@ -196,7 +196,7 @@ class Message(str):
         return {"text": self.text, "facts": {name: _data(fact) for name, fact in self.facts.items()}, **more}
 
     def spelt(self, spelling: Spelling) -> str:
-        """Return the sentence with its facts in the spelling of an interface."""
+        """Return the sentence. `spelling` converts its facts to text."""
         return _filled(self.text, self.facts, self.many, spelling)
 
     def of(self, facts: Mapping[str, Any]) -> "Message":
@@ -205,7 +205,7 @@ class Message(str):
 
     @classmethod
     def followed(cls, sentence: str, addition: str) -> str:
-        """Return a sentence and another one after a semicolon; only the sentence without another."""
+        """Return a sentence and an addition, separated by a semicolon. Without addition, return the sentence."""
         return cls("{sentence}; {more}", {"sentence": sentence, "more": addition}) if addition else sentence
 
     @classmethod
@@ -218,7 +218,7 @@ class Message(str):
 
 
 def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return values with plain texts in place of messages, for files.
+    """Return values for files. Messages are replaced by plain text.
 
     >>> type(plain_texts({"motion": Message("sine pulse")})["motion"])
     <class 'str'>
@@ -227,12 +227,12 @@ def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def as_message(text: str) -> Message:
-    """Return a text as a message; messages are unchanged."""
+    """Convert a text to a message. A message is returned unchanged."""
     return text if isinstance(text, Message) else Message(text)
 
 
 def messages_of(value: Any) -> dict[str, dict[str, Any]]:
-    """Return the messages with facts in plain values, by their sentences."""
+    """Return all messages inside a value that have facts, as plain values by sentence."""
     if isinstance(value, Message):
         return {str(value): value.data()} if value.facts else {}
     if isinstance(value, Mapping):

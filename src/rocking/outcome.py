@@ -13,7 +13,7 @@ from rocking.messages import Message
 
 
 class Coded(Enum):
-    """Texts with codes for arrays, files and the C++ engines; new members follow the existing ones."""
+    """Texts with integer codes for arrays, files and the C++ engines. New members must follow the existing members."""
 
     @property
     def code(self) -> int:
@@ -22,7 +22,7 @@ class Coded(Enum):
 
 
 class Outcome(Coded):
-    """Outcome of a time history; priority: overturned, flew, rocked and slid, held."""
+    """Outcome of a time history, in the order of priority: overturned, flew, rocked and slid, held."""
 
     NO_UPLIFT = "stayed at rest without uplift"
     ROCKED = "rocked and stayed standing"
@@ -95,13 +95,13 @@ def mode_shares(modes: Any) -> list[dict[str, Any]]:
 
 
 def overturned(outcome: Any) -> FloatArray:
-    """Return 1 for histories that overturned, 0 for others."""
+    """Return 1 for histories that overturned, 0 for other histories."""
     # NaN without a result
     return of_results(outcome, np.asarray(outcome) == Outcome.OVERTURNED.code)
 
 
 def of_results(outcome: Any, flags: Any) -> FloatArray:
-    """Return flags of histories as 1 and 0, NaN for those without a result."""
+    """Return flags of histories as 1 and 0, or NaN for histories without a result."""
     return np.where(np.asarray(outcome) == Outcome.FAILED.code, np.nan, flags)
 
 
@@ -126,14 +126,14 @@ def flags(results: Any) -> dict[str, FloatArray]:
 
 
 def contact_words(lost: Any) -> str:
-    """Return a sentence with the number of histories with a tensile contact force; empty for none."""
+    """Return a sentence with the number of histories with a tensile contact force; empty if the number is 0."""
     results = np.asarray(lost, dtype=np.float64)
     results = results[np.isfinite(results)]
     return contact_sentence(int((results == 1.0).sum()), results.size)
 
 
 def contact_sentence(lost: int, count: int) -> str:
-    """Return the sentence from two counts: histories with a tensile contact force, and with a result."""
+    """Return the sentence for `lost` histories with a tensile contact force, of `count` histories with a result."""
     if not lost:
         return ""
     fraction = percent(lost / count)

@@ -1,7 +1,7 @@
 """Warnings about allowed but implausible input values.
 
-Each doubt is a `PlausibilityWarning` that begins with "check the input". A warnings filter of Python silences it, for
-example in dimensionless studies: ``warnings.simplefilter("ignore", rocking.errors.PlausibilityWarning)``.
+All warnings are a `PlausibilityWarning` and begin with "check the input". A warnings filter of Python suppresses them,
+for example in dimensionless studies: ``warnings.simplefilter("ignore", rocking.errors.PlausibilityWarning)``.
 """
 
 from collections.abc import Iterable, Iterator
@@ -17,42 +17,45 @@ from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.messages import Message
 
 CENTRE_HEIGHTS = 0.025, 50.0
-"""Half the heights of the smallest and largest usual bodies [m]: specimens of 5 cm, towers of 100 m."""
+"""Half the heights of the smallest and largest usual bodies, 5 cm (specimens) and 100 m (towers) [m]."""
 
 SLENDERNESS = 0.05, 200.0  # h/b of a slab of 1 x 0.05 m, and of a glass sheet of 2 m height and 1 cm thickness [-]
-DENSITIES = 10.0, 23000.0  # polystyrene foam; osmium, the densest element, has 22590 [kg/m3]
+DENSITIES = 10.0, 23000.0  # limits [kg/m3]: polystyrene foam, and osmium, the densest element (22590)
 
 LARGEST_PGA = 41.0
-"""Limit above all records: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
+"""Largest plausible PGA [m/s2].
+
+Largest record: 40.2, Iwate-Miyagi 2008, all components (Aoi et al. 2008, Science 322:727).
+"""
 
 MIN_PGA = 1e-4
-"""About 1e-5 g, the noise of strong-motion accelerometers [m/s2]."""
+"""Smallest plausible PGA [m/s2]: about 1e-5 g, the noise of strong-motion accelerometers."""
 
 LARGEST_PGV, LARGEST_PGD = 5.0, 15.0
-"""Limits above near-fault records, about 4 m/s and 10 m at TCU068, Chi-Chi 1999 [m/s], [m]."""
+"""Limits of PGV [m/s] and PGD [m]. Near-fault records reach about 4 m/s and 10 m (TCU068, Chi-Chi 1999)."""
 
 END_VELOCITY = 0.1, 0.25
 """Limits of the ground velocity at the end of a record [m/s], and as a fraction of the largest velocity [-]."""
 
-GRAVITIES = 1.6, 25.0  # of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]
+GRAVITIES = 1.6, 25.0  # limits [m/s2]: Moon 1.62, Jupiter 24.8
 
 FRICTIONS = 10.0, 100.0
-"""Values of 10 often mean feet that do not slide, and exceed any surface; feet with 100 or more never slide [-]."""
+"""Limits of an implausible coefficient of friction [-]: no surface reaches 10; from 100, feet never slide."""
 
 PERIODS = 0.01, 60.0
-"""Limits of pulse periods: resolution of records; longer than near-fault pulses of about 14 s [s]."""
+"""Limits of pulse periods [s]: the resolution of records, and a value above near-fault pulses of about 14 s."""
 
 LONGEST_STEP = 0.2  # largest plausible time step [s]: 5 Hz does not resolve strong motion
 
 MIN_COEFFICIENT = 0.25
-"""Housner coefficient of a block of equal width and height; the smallest measured one is 0.67, at h/b = 1.5 [-]."""
+"""Housner coefficient of a block of equal width and height [-]; the smallest measured value is 0.67 (h/b = 1.5)."""
 
 MOST_CUT = 0.05, 0.999
-"""Truncated probability beyond the energy bound: limits for a warning and for an error [-]."""
+"""Limits of the truncated probability beyond the energy bound [-], for a warning and for an error."""
 
 
 def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
-    """Return the doubts about a body: height of its centre [m], slenderness, densities of its parts [kg/m3]."""
+    """Return the warnings about a body: height of its centre [m], slenderness, densities of its parts [kg/m3]."""
     low, high = CENTRE_HEIGHTS
     doubts = []
     if centre_height > high:
@@ -91,7 +94,7 @@ def of_body(centre_height: float, slenderness: float, densities: Iterable[float]
 
 
 def of_acceleration(peak: float) -> tuple[str, ...]:
-    """Return the doubt about a peak ground acceleration [m/s2]."""
+    """Return a warning if a peak ground acceleration is implausibly large [m/s2]."""
     if peak <= LARGEST_PGA:
         return ()
     return (
@@ -114,7 +117,7 @@ def of_quiet(peak: float) -> tuple[str, ...]:
 
 
 def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str, ...]:
-    """Return the doubt about a record by its final velocity, peak velocity [m/s] and peak displacement [m]."""
+    """Return a warning about an implausible final velocity [m/s], peak velocity [m/s] or peak displacement [m]."""
     if velocity > LARGEST_PGV or displacement > LARGEST_PGD:
         return (
             Message(
@@ -141,7 +144,7 @@ def of_integrals(end: float, velocity: float, displacement: float) -> tuple[str,
 
 
 def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
-    """Return the doubt about the largest of scaled motions; unscaled motions already have their doubts."""
+    """Return a warning if the largest scaled motion is implausible. Unscaled motions were checked before."""
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
     most = np.where(factors == 1.0, 0.0, np.abs(factors)).max(axis=-1)
     if not most.any():
@@ -151,7 +154,7 @@ def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
 
 
 def of_gravity(gravity: float) -> tuple[str, ...]:
-    """Return the doubt about an acceleration of gravity [m/s2]."""
+    """Return a warning if an acceleration of gravity is implausible [m/s2]."""
     low, high = GRAVITIES
     if low <= gravity <= high:
         return ()
@@ -165,7 +168,7 @@ def of_gravity(gravity: float) -> tuple[str, ...]:
 
 
 def of_friction(coefficient: float) -> tuple[str, ...]:
-    """Return the doubt about a coefficient of friction."""
+    """Return a warning if a coefficient of friction is implausible."""
     low, high = FRICTIONS
     if not low < coefficient < high:
         return ()
@@ -179,7 +182,7 @@ def of_friction(coefficient: float) -> tuple[str, ...]:
 
 
 def of_period(period: float) -> tuple[str, ...]:
-    """Return the doubt about the period of a pulse [s]."""
+    """Return a warning if the period of a pulse is implausible [s]."""
     low, high = PERIODS
     if low <= period <= high:
         return ()
@@ -193,7 +196,7 @@ def of_period(period: float) -> tuple[str, ...]:
 
 
 def of_time_step(step: float) -> tuple[str, ...]:
-    """Return the doubt about the step between samples [s]."""
+    """Return a warning if the time step is implausible [s]."""
     if step <= LONGEST_STEP:
         return ()
     return (
@@ -205,7 +208,7 @@ def of_time_step(step: float) -> tuple[str, ...]:
 
 
 def of_coefficient(value: float) -> tuple[str, ...]:
-    """Return the doubt about a given coefficient of restitution; zero means that the body stops."""
+    """Return a warning if a stated coefficient of restitution is implausible. Zero is allowed: the body stops."""
     if value == 0.0 or value >= MIN_COEFFICIENT:
         return ()
     return (
@@ -218,7 +221,7 @@ def of_coefficient(value: float) -> tuple[str, ...]:
 
 
 def of_truncation(cut: float, foot: str, most: float) -> tuple[str, ...]:
-    """Return the doubt about the truncated probability of a coefficient of restitution with energy gain."""
+    """Return a warning if much of a distribution is truncated, because an impact would gain energy."""
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
             "the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], and "
@@ -241,7 +244,7 @@ _RAW: ContextVar[bool] = ContextVar("raw", default=False)
 
 @contextmanager
 def before_processing() -> Iterator[None]:
-    """Suppress the doubts about values of records inside: their processing steps follow."""
+    """Suppress warnings about values of unprocessed records in this context."""
     token = _RAW.set(True)
     try:
         yield
@@ -250,12 +253,12 @@ def before_processing() -> Iterator[None]:
 
 
 def warn_of_values(sentences: Iterable[str]) -> None:
-    """Issue doubts about the values of a motion as warnings, unless processing steps follow."""
+    """Issue warnings about the values of a motion, unless processing steps follow."""
     if not _RAW.get():
         warn(sentences)
 
 
 def warn(sentences: Iterable[str]) -> None:
-    """Issue doubts as warnings at the calling line outside this package."""
+    """Issue warnings at the calling line outside this package."""
     for sentence in sentences:
         errors.warn(f"check the input: {sentence}", PlausibilityWarning)

@@ -2,8 +2,9 @@
 
 IEEE 754 defines the rounding of sums, products, quotients and square roots, and numpy has a fixed order of summation.
 BLAS and LAPACK select kernels by processor, with different rounding. In numpy, exp, log, tan, arctan2 and powers have
-other versions for AVX-512, with differences of one unit in the last place. Events and results therefore use none of
-them: the functions here need no library for three-vectors, and functions of one number are those of the C library.
+other versions for AVX-512, which differ by one unit in the last place. Events and results therefore use neither BLAS
+nor LAPACK nor these numpy functions. This module computes with three-vectors without a library, and uses the C library
+for functions of one number.
 """
 
 import math
@@ -20,7 +21,7 @@ _FEW, _SHORT = 16, 4
 
 
 def _sum(terms: Iterable[float]) -> float:
-    """Return the sum in order; the rounding of `sum` differs since Python 3.12."""
+    """Return the sum in the order of the terms. The built-in `sum` rounds differently since Python 3.12."""
     return reduce(add, terms, 0.0)
 
 
@@ -35,7 +36,7 @@ def norm(vector: FloatArray) -> float:
 
 
 def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return matrices times vectors; for points, their products with one vector.
+    """Return the products of matrices and vectors, or the products of points with one vector.
 
     >>> applied(np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([1.0, -1.0])).tolist()
     [-1.0, -1.0]
@@ -55,7 +56,7 @@ def times(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def trapezoid(values: FloatArray, widths: FloatArray | float) -> float:
-    """Return the integral of samples by the trapezoidal rule; the name in numpy depends on its version.
+    """Return the integral of samples by the trapezoidal rule, independent of the numpy version.
 
     >>> trapezoid(np.array([0.0, 1.0, 4.0]), 1.0)
     3.0
@@ -111,7 +112,7 @@ def powers(x: Any, count: int) -> FloatArray:
 
 
 def each(function: Callable[..., float], *values: Any) -> FloatArray:
-    """Return a function from `math` of every number.
+    """Apply a function of `math` to every number.
 
     >>> each(math.atan2, [0.0, 0.0], 1.0).tolist()
     [0.0, 0.0]
@@ -123,8 +124,8 @@ def each(function: Callable[..., float], *values: Any) -> FloatArray:
 
 def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the Gauss rule of a measure of mass one, from the recurrence of its orthogonal polynomials."""
-    # nodes from eigenvalues (Golub and Welsch) to eight digits; Newton iterations from these have the same bits
-    # everywhere, independent of the last digits from LAPACK
+    # nodes are eigenvalues (Golub and Welsch), rounded to eight digits; Newton iterations then give the same bits
+    # on every processor, because the last digits of LAPACK have no influence
     x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
     ahead = [*side.tolist(), 1.0]  # the scale of the last polynomial is arbitrary
     for _ in range(4):

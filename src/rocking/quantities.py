@@ -21,9 +21,9 @@ class Quantity:
     meaning: str
     codes: dict[int, str] = field(default_factory=dict)  # meanings of integer codes
     standard_name: str = ""  # name in the table of the CF conventions, if any
-    label: str = ""  # heading for readers; the name, if empty
-    digits: str = ".4g"  # number format for readers; % in percent with about three digits
-    spelled: dict[str, str] = field(default_factory=dict)  # texts for readers in place of short words
+    label: str = ""  # heading for readers; if empty, the name
+    digits: str = ".4g"  # number format for readers; "%" means percent with about three digits
+    spelled: dict[str, str] = field(default_factory=dict)  # longer texts for readers, by short word
     text_of: Callable[[int], str] | None = None  # function from numbers to texts for readers
 
     @property
@@ -48,12 +48,12 @@ class Quantity:
 
 
 def attributes(name: str) -> dict[str, Any]:
-    """Return the file attributes of a result: unit, meaning and codes, by xarray and the CF conventions."""
+    """Return unit, meaning and codes of a quantity as file attributes of xarray and the CF conventions."""
     return QUANTITIES[name].attributes
 
 
 def with_units(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the attributes of a file with the units of quantities.
+    """Return the attributes of a file, with the units of the quantities among them added.
 
     >>> with_units({"mass": 2.0, "engine": "fast", "semi_diagonal_left": 1.0})
     {'mass': 2.0, 'engine': 'fast', 'semi_diagonal_left': 1.0, 'mass_units': 'kg', 'semi_diagonal_left_units': 'm'}
@@ -70,9 +70,9 @@ _ENDS = {
 
 
 def quantity(name: str, own: Mapping[str, Quantity] = MappingProxyType({})) -> Quantity | None:
-    """Return the entry of a name; own: entries of one answer, which take precedence.
+    """Return the quantity of a name. Quantities in `own`, those of one answer, take precedence.
 
-    The endings _low, _high, _left and _right mean a bound of the interval, or one foot.
+    The endings _low and _high mean a bound of the 95 % interval, _left and _right mean a foot.
 
     >>> quantity("scatter_low").meaning
     'logarithmic scatter, lower bound of the 95 % interval'
@@ -680,7 +680,7 @@ QUANTITIES: dict[str, Quantity] = {
 
 
 def closely(**digits: str) -> dict[str, Quantity]:
-    """Return quantities with other digits for readers, for answers with higher precision.
+    """Return quantities with other number formats, for answers with higher precision.
 
     >>> closely(time=".2f")["time"].digits
     '.2f'
@@ -688,7 +688,7 @@ def closely(**digits: str) -> dict[str, Quantity]:
     return {name: replace(QUANTITIES[name], digits=format_spec) for name, format_spec in digits.items()}
 
 
-# other keys of answers: sections, sentences, labels, and numbers with a quantity of their answer only
+# other keys of answers: sections, sentences, labels, and numbers whose quantity is defined by the answer
 _PARTS = """
     adjusted advice all all_bodies amplitude_step analysis answer answers assumptions base base_tolerances basins
     better_by bodies body by_data_set called_safe cases cells_per_basin claim claims code_methods_outside
@@ -717,6 +717,6 @@ def is_named(key: str) -> bool:
 
 
 TIMES = tuple(entry.name for entry in _HISTORY if entry.unit == "s")
-"""Times of a history, which scale with the time of the motion."""
+"""Names of the times of a history. They scale with the time of the motion."""
 HISTORY = tuple(entry.name for entry in _HISTORY if not entry.name.startswith("twin"))
 """Quantities of every history of a study of plane bodies, in the order of tables."""

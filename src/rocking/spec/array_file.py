@@ -45,7 +45,7 @@ class ArrayFile:
         return names
 
     def motion(self, name: str, keys: Mapping[str, Any]) -> GroundMotion:
-        """Return the motion of an array; keys: units and time_step, where the file has none."""
+        """Return the motion of an array. `keys` contains units and time_step if the file does not contain them."""
         samples = np.asarray(self._array(name), dtype=np.float64)
         if samples.ndim != 1:
             raise InvalidValueError("array {name!r:.60} must be 1-D, got shape {shape}", name=name, shape=samples.shape,

@@ -26,7 +26,7 @@ def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
 
 
 def without_restraints(body: Body | Restrained | Solid) -> Body | Solid:
-    """Return a body without restraints; a body with restraints is refused."""
+    """Return a body, or raise an error if it has restraints."""
     if isinstance(body, Restrained):
         raise InvalidValueError("This analysis does not support restraints. Remove [[restraint]].")
     return body
@@ -51,7 +51,7 @@ def any_body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body | Rest
 
 
 def body_for_motion(table: dict[str, Any], inputs: InputFiles | None, *, in_space: bool) -> Body | Restrained | Solid:
-    """Return the body of a table; in_space: as a 3D body, also for a 2D body with a stated depth."""
+    """Return the body of a table. With `in_space`, a 2D body with a stated depth becomes a 3D body."""
     body = any_body_of(table, inputs)
     if not in_space or not isinstance(body, (Body, Restrained)):
         return body
@@ -111,7 +111,7 @@ def _from_angle(table: dict[str, Any]) -> Body:
 
 
 def _note_outlines(tables: dict[str, Any], folder: str, inputs: InputFiles) -> None:
-    """Note the outline files of a body; ignore errors, which the reader reports."""
+    """Note the outline files of a body. Errors are ignored here, because the reader reports them later."""
     try:
         regions = tables.get("section", {}).get("region", [])
         names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from rocking.spec.restitution_tables import RandomTable, RestitutionTable
 
 MOST_IN_MEMORY = 100_000
-"""Largest number of motions from several sources; a single synthetic family is computed in chunks."""
+"""Largest number of motions from several sources. A single synthetic family has no limit: it is computed in chunks."""
 
 COMPLEMENTARITY = "complementarity"
-"""Restitution of a body that slides and hops: all impacts follow from complementarity."""
+"""Restitution of a body that slides and hops. The complementarity problem computes all impacts."""
 
 
 def restitutions_of(
@@ -45,7 +45,7 @@ def restitutions_of(
     *,
     mechanics: Mechanics | None = None,
 ) -> dict[str, Any]:
-    """Return models, coefficients, pairs by side or laws, by label; with friction also None for complementarity."""
+    """Return the restitutions by label: models, coefficients, pairs by side, or laws; None for complementarity."""
     chosen_mechanics = mechanics or mechanics_for_all(bodies, None)
     with located("restitution"):
         if not chosen_mechanics.in_plane and (table.distribution is not None or table.left is not None):
@@ -76,7 +76,7 @@ def restitutions_of(
 
 
 def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
-    """Return a model by name, or a model of the user, whose file becomes an input of the job."""
+    """Return a model by name, or a model of the user. The file of the user becomes an input file of the job."""
     name = file_of(word) if inputs is not None else None
     return model(word) if inputs is None or name is None else model_in_file(word, inputs.file(name))
 
@@ -98,16 +98,16 @@ def _sampled_restitution(
         sampled, label = law.of_sample(table.values, **options), f"{len(table.values)} values"
         label += f" from {min(table.values):g} to {max(table.values):g}"
     else:
-        mean, deviation = table.mean or 0.0, table.deviation or 0.0  # both are there: checked by the table
+        mean, deviation = table.mean or 0.0, table.deviation or 0.0  # the table ensures that both are stated
         sampled, label = law.normal(mean, deviation, **options), f"{mean:g} +- {deviation:g}"
-    # largest truncated probability of all bodies
+    # largest truncated probability over all bodies
     cuts = [cut_of(sampled, body) for body in bodies]
     largest_cuts = {foot: max((cut[foot] for cut in cuts), default=0.0) for foot in FEET}
     return f"drawn per {table.each}: {label}, seed {seed}{cut_words(largest_cuts)}", sampled
 
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Any]) -> tuple[Any, str]:
-    """Return the law from the measurements for the body: all quantiles, or a sample of `count` values."""
+    """Return the restitution law from the measurements for the body: all quantiles, or a sample of `count` values."""
     from rocking.evidence._restitution_distribution import restitution_distribution
 
     if len(bodies) != 1:
@@ -131,7 +131,7 @@ def motions_of(
     tables: "list[MotionTable]", inputs: InputFiles, *, paired: bool = False, plane: bool = False
 ) -> MotionSet:  # fmt: skip
     """Return the motions of the tables: a `SyntheticSet` for a single family, otherwise a `MotionList`."""
-    # paired: both horizontal components of a record are one motion; plane: components along x and z only
+    # paired: both horizontal components of a record are one motion; plane: only components along x and z are allowed
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):
         with located(f"motions[{k}]"):
@@ -196,7 +196,7 @@ def _record(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion":
 
 
 def doubted_once(read: Callable[[], Any], name: str) -> Any:
-    """Return a record after its processing steps; the doubts about values are those of the processed record."""
+    """Return a record after its processing steps. Warnings about values refer to the processed record."""
     with plausibility.before_processing():
         motion = read()
     plausibility.warn(f"{name}: {doubt}" for doubt in (*motion.doubts, *integral_doubts(motion)))
@@ -211,10 +211,10 @@ def _unprocessed(path: Path, table: "MotionKeys", inputs: InputFiles) -> "Motion
 
 
 def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | None, scale: float = 1.0) -> Any:
-    """Return the motions along x, y and z by axis, scaled by their own factors and a common one."""
+    """Return the motions along x, y and z by axis. They are scaled by their own factors and a common factor."""
     motions: dict[str, Any] = {}
     tables = table.components
-    # common steps of all components are applied to all components together
+    # if all components have the same steps, the steps are applied to all components together
     chains = {tuple(axis_table.process or ()) for axis_table in tables.values()}
     is_joint = len(tables) > 1 and len(chains) == 1 and chains != {()}
     for axis, axis_table in tables.items():
@@ -236,7 +236,7 @@ def components_of(table: "ComponentsTable | MotionTable", inputs: InputFiles | N
 
 
 def motion_of(table: "OneMotionTable", inputs: InputFiles | None = None, *, raw: bool = False) -> "Motion":
-    """Return one motion, scaled to `pga` or `pgv`, without the factor `scale`; raw: without processing steps."""
+    """Return one motion, scaled to `pga` or `pgv`, without the factor `scale`. With `raw`, without processing steps."""
     if table.pulse is not None:
         return pulse(table.pulse)
     if table.record is not None:

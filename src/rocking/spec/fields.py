@@ -1,4 +1,7 @@
-"""Base class and value types of all tables of a job file. Loads pydantic: import only to read a file."""
+"""Base class and value types of all tables of a job file.
+
+This module loads pydantic. Import it only to read a file.
+"""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -18,7 +21,7 @@ Text = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 def key(description: str, default: Any = None, **limits: Any) -> Any:
-    """Return a field with its meaning, which appears in the help of options and in the manual."""
+    """Return a field with its meaning. The help of options and the manual show the meaning."""
     return Field(default=default, description=description, **limits)
 
 
@@ -36,7 +39,7 @@ def kinds_of(field: FieldInfo) -> list[Any]:
 
 
 def limits_of(field: FieldInfo) -> dict[str, float]:
-    """Return the stated limits of a number: ge, gt, le, lt."""
+    """Return the limits of a number by name: ge, gt, le, lt."""
     entries = [metadata for kind in (field, *get_args(field.annotation)) for metadata in getattr(kind, "metadata", ())]
     entries += [metadata for kind in get_args(field.annotation) for metadata in getattr(kind, "__metadata__", ())]
     constraints = [
@@ -59,7 +62,7 @@ class JobTable(StrictTable):
     model_config = ConfigDict(defer_build=True)
 
     def chosen(self, *names: str) -> str:
-        """Return the only stated key of several; raise an error for none or more."""
+        """Return the only stated key of several keys. Raise an error if none or more than one is stated."""
         stated = [name for name in names if getattr(self, name) is not None]
         if len(stated) != 1:
             raise InvalidValueError(
@@ -109,7 +112,7 @@ class Values(JobTable):
     def numbers(self) -> FloatArray:
         if self.values is not None:
             return np.array(self.values, dtype=np.float64)
-        start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are stated: checked above
+        start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are stated, as checked above
         if self.spacing == "log":
             return geometric(start, stop, count)
         return np.linspace(start, stop, count)

@@ -58,7 +58,7 @@ _TEXTS = {
     "doubts": "doubts about the coefficient",
     "question": "hash of the file and of the options",
 }
-_FEW, _EVERY = 12, 1.0  # largest number of trials without processes; interval between writes of the table [s]
+_FEW, _EVERY = 12, 1.0  # largest number of trials without parallel processes; interval between writes of the table [s]
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class IdentificationProblem:
 
     @classmethod
     def of(cls, document: "IdentificationDocument", inputs: InputFiles) -> "IdentificationProblem":
-        """Return the problem of an input file; inputs: the files that it may name."""
+        """Return the problem of an input file. `inputs` records the files that it names."""
         body = None
         if document.body is not None:
             with located("body"):
@@ -92,7 +92,7 @@ class IdentificationProblem:
 
     @property
     def passed_over(self) -> dict[str, str]:
-        """Reasons by name of the other files of the folder, without hidden files and body files."""
+        """Reasons why the other files of the folder are no trials, by file name; without hidden and body files."""
         return self._sorted_out[1]
 
     @cached_property
@@ -120,14 +120,14 @@ class IdentificationProblem:
 
     def answer(self, path: Path | None = None) -> Identification:
         """Return the identification of one measurement."""
-        # in a folder, the options of tables do not apply to sounds
+        # in a folder, the options for tables do not apply to sound files
         reading = {} if path is not None and path.suffix.lower() in SOUNDS else self.reading
         return identify(read_measurement(path or self.path, **reading), self.body, **self.options)
 
     def answers(
         self, keep: Path | None = None, workers: int | None = None, progress: Callable[[int], None] | None = None
     ) -> "IdentifiedTrials":
-        """Return the identification of every trial of the folder; keep: a table to continue, written regularly."""
+        """Return the identification of every trial. `keep` is a table of results, which is continued and saved."""
         trials = self.trials
         hashes = {path: self._question(path) for path in trials}
         kept_rows = {row["question"]: row for row in _rows_in(keep) if not row["refused"]} if keep is not None else {}
@@ -185,11 +185,11 @@ class IdentificationProblem:
 class IdentifiedTrials(Exported):
     """Results of the trials of a folder."""
 
-    name: str  # of the folder
+    name: str  # name of the folder
     body: Body | None
-    rows: tuple[Row, ...]  # by the names of the columns
+    rows: tuple[Row, ...]  # values by column name
     computed: int  # number of trials that were not read from a table
-    # reasons by name of the other files of the folder
+    # reasons why other files of the folder are no trials, by file name
     passed_over: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -206,8 +206,8 @@ class IdentifiedTrials(Exported):
     def mean(self) -> IntervalEstimate | None:
         """Geometric mean of all trials and its 95 % interval; None for fewer than two trials.
 
-        The interval follows from the scatter of the trials (Student's t), or from their own intervals if these are
-        wider. It includes the common error of the body dimensions.
+        The interval follows from the scatter of the trials (Student's t), or from the intervals of the trials if these
+        are wider. The interval includes the common error of the body dimensions.
         """
         good_rows = self.good_rows
         if len(good_rows) < 2:
@@ -229,7 +229,7 @@ class IdentifiedTrials(Exported):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Warnings about trials with equal results to nine digits, perhaps two files of one event."""
+        """Warnings about trials whose results agree to nine digits. They may be two files of one event."""
         trials_by_result: dict[tuple[Any, ...], list[str]] = {}
         for row in self.rows:
             if not row["refused"]:
@@ -289,7 +289,7 @@ def passed_over_words(others: Mapping[str, str]) -> str:
 
 
 def _no_recording(path: Path) -> str:
-    """Return the reason if a file is not a recording, else an empty text."""
+    """Return the reason why a file is not a recording; empty if it is a recording."""
     if not path.is_file():
         return "a folder" if path.is_dir() else "not a file"
     if path.suffix.lower() not in ENDINGS:
@@ -313,7 +313,7 @@ def _has_numbers(path: Path) -> bool:
 
 
 def is_table(path: Path) -> bool:
-    """Return True if a file is a table of trials. Never raises."""
+    """Return True if a file is a table of trials. This function never raises an error."""
     return path.suffix.lower() == ".csv" and _header_of(path) == _table(()).header
 
 
@@ -359,7 +359,7 @@ def _table(rows: Iterable[Row], provenance: Mapping[str, Any] | None = None) -> 
 
 
 def _digest(motion: Any) -> str:
-    """Return a text that identifies a motion, with a hash."""
+    """Return a text with a hash that identifies a motion."""
     values = getattr(motion, "acceleration", np.zeros(0))
     return f"{motion!r} {hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()}"
 
@@ -373,7 +373,7 @@ def _header_of(path: Path) -> list[str]:
 
 
 def _rows_in(path: Path) -> list[Row]:
-    """Return the rows of a table of trials, without incomplete lines; empty for other files."""
+    """Return the complete rows of a table of trials; empty for other files."""
     table = _table(())
     if not is_table(path):
         return []
@@ -392,7 +392,7 @@ def _rows_in(path: Path) -> list[Row]:
 
 @contextmanager
 def _kept(path: Path | None, rows: dict[Path, Row]) -> Iterator[None]:
-    """Write the finished rows at the end, also after an error."""
+    """Write the finished rows to `path` at the end of the context, also after an error."""
     try:
         yield
     finally:

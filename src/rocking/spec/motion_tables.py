@@ -8,7 +8,7 @@ from rocking.errors import InvalidValueError
 from rocking.spec.fields import JobTable, Names, Positive, Seed, Text, key
 
 OF_FILES = {"format", "units", "time_step", "skip", "component", "vertical", "vertical_file", "process"}
-"""Keys of a motion that are for record files only."""
+"""Keys of a motion that are allowed for record files only."""
 
 
 class FileKeys(JobTable):
@@ -36,7 +36,7 @@ class MotionKeys(FileKeys):
     pgv: Positive | None = key("peak ground velocity of the scaled synthetic motions [m/s]")
 
     def _one_source(self, keys: dict[str, set[str]]) -> str:
-        """Return the only source of the motion, after refusing keys of another."""
+        """Return the only source of the motion. Raise an error if a key belongs to another source."""
         source = self.chosen(*keys)
         stated = {name for name in self.model_fields_set if getattr(self, name) is not None}
         odd = sorted(stated & set().union(*keys.values()) - keys[source])
@@ -137,7 +137,7 @@ class MotionTable(_Along, MotionKeys):
 
     @property
     def size(self) -> int:
-        """Number of motions. A folder, a pattern or a list counts as 1, and so do components along x, y and z."""
+        """Number of motions. A folder, a pattern, a list, or components along x, y and z count as 1."""
         return self.count or len(self.records or self.pulse or [1])
 
     @property

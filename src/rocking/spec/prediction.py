@@ -1,4 +1,4 @@
-"""The problem of a prediction: an uncertain body and its motions; and its answer."""
+"""The problem of a prediction, an uncertain body with its motions, and the result."""
 
 import math
 from collections.abc import Callable
@@ -31,7 +31,7 @@ class PredictionProblem:
 
     @classmethod
     def of(cls, document: "PredictionDocument", inputs: InputFiles) -> "PredictionProblem":
-        """Return the problem of an input file; inputs: the files that it may name."""
+        """Return the problem of an input file. `inputs` records the files that it names."""
         with located("body"):
             body = without_restraints(any_body_of(document.body, inputs))
         motions: Any
@@ -100,7 +100,7 @@ def options_of(document: "PredictedBody", body: Body | Solid, inputs: InputFiles
 
 
 def _azimuth(body: Body | Solid, axis: Any, azimuth: Any) -> float:
-    """Return the azimuth of a body whose axis, in the axes of its file, is the x component of the motion [rad]."""
+    """Return the azimuth [rad] that turns an axis of the body file into the x component of the motion."""
     if azimuth is not None:
         raise InvalidValueError("Use predict.axis or predict.azimuth, not both.")
     turn = getattr(body, "turn", None)  # from the axes of a scan file

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rocking.studies.study_plan import Study
 
 QUESTIONS: "dict[str, type[StudyQuestion]]" = {}
-"""The classes of studies by their kind; `rocking.spec.questions` fills it."""
+"""The classes of studies by kind. `rocking.spec.questions` fills this dictionary."""
 
 Progress = Callable[[int], None] | None
 
@@ -43,18 +43,18 @@ class CampaignTable(JobTable):
 
 
 class StudyQuestion(JobTable):
-    """A study of many histories: its tables, its problem and its answer. There is one subclass per kind of campaign.
+    """A study of many histories: its tables, its problem and its result. There is one subclass per kind of campaign.
 
     A subclass defines `kind`, its own table as first field, `answer`, `study`, and `plot` if there is a figure.
     """
 
     kind: ClassVar[str] = ""  # value of campaign.kind
-    without_body: ClassVar[str] = ""  # reason for the absence of [body]; empty if there is a body
-    plane: ClassVar[bool] = False  # the bodies move along x and z only
-    one_restitution: ClassVar[bool] = False  # a figure shows one restitution
-    needs_motions: ClassVar[bool] = False  # all motions are computed before the first history
-    names_files: ClassVar[bool] = False  # the own table contains file names; a browser sends none
-    of_files: ClassVar[dict[str, set[str]]] = {}  # keys by table that affect only the files of a campaign
+    without_body: ClassVar[str] = ""  # reason why [body] is not allowed; empty if it is allowed
+    plane: ClassVar[bool] = False  # True if the bodies move along x and z only
+    one_restitution: ClassVar[bool] = False  # True if a figure shows one restitution
+    needs_motions: ClassVar[bool] = False  # True if all motions are computed before the first history
+    names_files: ClassVar[bool] = False  # True if the table contains file names, which browsers do not send
+    of_files: ClassVar[dict[str, set[str]]] = {}  # keys that affect only the files of a campaign, by table
 
     campaign: CampaignTable
     motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
@@ -123,7 +123,7 @@ class StudyQuestion(JobTable):
 
     @property
     def sizes(self) -> list[int]:
-        """Numbers whose product is the number of histories, in an adaptive study of the first round."""
+        """Numbers whose product is the number of histories. In an adaptive study, this is the first round."""
         return [self.motion_count, max(1, len(self.bodies)), self.choices]
 
     @property
@@ -133,11 +133,11 @@ class StudyQuestion(JobTable):
 
     @property
     def elements(self) -> dict[str, int]:
-        """Other numbers than histories that a page limits."""
+        """Further numbers, besides the histories, that the web page limits."""
         return {}
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Compute the study in memory; return the result of its function in `rocking.studies`, or a comparison."""
+        """Compute the study in memory. Return the result of its function in `rocking.studies`, or a comparison."""
         return self.study(problem).computed(progress, threads)
 
     def study(self, problem: "StudyProblem") -> "Study":
@@ -145,11 +145,11 @@ class StudyQuestion(JobTable):
         raise NotImplementedError
 
     def findings(self, problem: "StudyProblem", dataset: Any) -> list[dict[str, Any]]:
-        """Return a summary of all results as records of quantities; empty for a summary by outcome."""
+        """Return a summary of all results, as records of quantities. If it is empty, the summary is by outcome."""
         return []
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Return the figure of a finished campaign for one restitution; None: for the first or for all."""
+        """Return the figure of a finished campaign for one restitution. None means the first restitution, or all."""
         raise InvalidValueError(
             'A campaign of kind "{kind}" has no figure', kind=self.kind, hint="export its table as .csv, .xlsx or .nc"
         )

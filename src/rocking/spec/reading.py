@@ -1,4 +1,4 @@
-"""Reading of input files: text, tables, errors in one sentence, and the files that they name."""
+"""Reading of input files: their text, their tables, the files that they name, and errors in one sentence."""
 
 import hashlib
 import tomllib
@@ -24,7 +24,7 @@ class InputFiles:
     """The files that a job names, with their hashes."""
 
     folder: Path  # folder of the job file
-    # by the name in the job, or the name from a pattern: path, sha256, and bytes
+    # path, sha256 and size in bytes, by the file name in the job or the name that matched a pattern
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def file(self, name: str) -> Path:
@@ -45,7 +45,7 @@ class InputFiles:
         return path
 
     def named(self, pattern: str) -> list[str]:
-        """Return the files of a pattern, such as ``**/*.at2``, relative to the job file, in alphabetic order."""
+        """Return the files that match a pattern such as ``**/*.at2``, relative to the job file, in alphabetic order."""
         if not is_pattern(pattern) or (self.folder / pattern).exists():
             return [pattern]
         root, parts = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (
@@ -67,7 +67,7 @@ class InputFiles:
 
 
 class CommandFiles(InputFiles):
-    """The files that a command names, without hashes; their readers report errors."""
+    """The files that a command names, without hashes. The functions that read these files report errors."""
 
     def file(self, name: str) -> Path:
         return self.folder / name
@@ -137,7 +137,7 @@ def checked(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
 
 
 def validated(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
-    """Return the validated tables of the current schema; an error has one sentence."""
+    """Return the validated tables of the current schema. An error consists of one sentence."""
     from pydantic import ValidationError
 
     from rocking.bodies.formats.words import from_pydantic
@@ -149,7 +149,7 @@ def validated(kind: "type[_Kind]", tables: dict[str, Any]) -> "_Kind":
 
 
 def tables_in(path: Path) -> dict[str, Any] | None:
-    """Return the unchecked tables of a TOML file; None for any other file. Never raises."""
+    """Return the unchecked tables of a TOML file; None for any other file. This function never raises an error."""
     if path.suffix.lower() != ".toml":
         return None
     try:

@@ -33,7 +33,7 @@ def is_set(name: str, inputs: InputFiles) -> bool:
 
 
 def is_one_set(names: Sequence[str], inputs: InputFiles) -> bool:
-    """Return True if the names are read as a set: a set among them, or files of one folder, maybe of one record."""
+    """Return True if the names are read as one set: one name is a set, or several files are in one folder."""
     folders = [(inputs.folder / name).parent for name in names]
     return len(set(folders)) < len(folders) or any(is_set(name, inputs) for name in names)
 
@@ -41,7 +41,7 @@ def is_one_set(names: Sequence[str], inputs: InputFiles) -> bool:
 def record_set(
     table: "MotionTable", inputs: InputFiles, workers: int = 1, progress: Callable[[int], None] | None = None
 ) -> tuple[RecordSet, Selection | None]:
-    """Return the records of a table, and their selection if there is a target."""
+    """Return the records of a table and, if the table has a target spectrum, their selection."""
     records: list[Components] = []
     left_out: list[tuple[str, Reason]] = []
     if refused := sorted({"component", "vertical", "vertical_file"} & table.model_fields_set):
@@ -80,7 +80,7 @@ def record_set(
 
 
 def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
-    """Return names in groups: one group per set, and one group of all single files."""
+    """Return the names in groups: one group per set, and one group with all single files."""
     groups: list[list[str]] = []
     files: list[str] = []
     for name in names:
@@ -95,10 +95,10 @@ def _read_together(names: Sequence[str], inputs: InputFiles) -> list[list[str]]:
 
 
 def _read(names: Sequence[str], inputs: InputFiles, options: dict[str, Any]) -> RecordSet:
-    """Return the records of a set, or of single files; every single file must be readable."""
+    """Return the records of a set or of single files. Every single file must be readable."""
     paths = {name: inputs.folder / name for name in names}
     record_set = read_records([*paths.values()], **options)
-    if is_pattern(names[0]) and record_set.left_out:  # the user named these files
+    if is_pattern(names[0]) and record_set.left_out:  # the user named these files, so every one must be readable
         raise _unreadable(*record_set.left_out[0])
     if len(names) > 1:
         unreadable = dict(record_set.left_out)
@@ -118,7 +118,7 @@ def _unreadable(file: str, reason: Reason) -> RockingError:
 
 
 def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, alone: bool = True) -> list[Any]:
-    """Return the motions of a study; paired: two horizontal components are one motion, for 3D bodies.
+    """Return the motions of a study. With `paired` (3D bodies), both horizontal components are one motion.
 
     Zero motions are ignored. If records are the only source, at least one must have a nonzero acceleration.
     """
@@ -152,7 +152,7 @@ def motions_of_set(table: "MotionTable", inputs: InputFiles, *, paired: bool, al
 
 
 def with_files(table: "MotionKeys", inputs: InputFiles) -> Sequence[str]:
-    """Return the steps of a table with file paths relative to the input file; note these files."""
+    """Return the processing steps of a table with paths relative to the input file; note their files as inputs."""
     texts = []
     for step in (step_text for text in table.process or () for step_text in text.split(";")):
         before, mark, after = step.partition("stations=")
@@ -170,7 +170,7 @@ def stations_of(steps: Sequence[str]) -> str | None:
 
 
 def _note(name: str, inputs: InputFiles) -> list[Path]:
-    """Note the hash of every file of a name; return the paths of the record files."""
+    """Note the hash of every file of a name. Return the paths of the record files."""
     path = inputs.folder / name
     rows = rows_of_list(path)
     if rows is not None:

@@ -1,4 +1,4 @@
-"""Reference of the keys of input files, from their tables, for the manual."""
+"""Reference of the keys of input files for the manual, made from the classes of the tables."""
 
 import re
 import types
@@ -40,7 +40,7 @@ _TABLES: dict[str, tuple[type[JobTable], str]] = {
     "campaign": (CampaignTable, "`rocking campaign`"),
 }
 
-_COMMANDS = {"minimum": "overturning-pga"}  # names of commands that differ from their table
+_COMMANDS = {"minimum": "overturning-pga"}  # commands whose name differs from the name of their table
 
 _BODIES: dict[str, type[BaseModel]] = {
     "the file": schema.BodyFile,
@@ -114,7 +114,7 @@ def described(table: type[BaseModel]) -> dict[str, dict[str, Any]]:
 
 
 def steps() -> dict[str, dict[str, Any]]:
-    """Return meaning and keys of every processing step of a record; one: the step needs exactly one key."""
+    """Return meaning and keys of every processing step; `single_key` is True if a step needs exactly one key."""
     from rocking.motions.intensity import MEASURES
     from rocking.motions.pipeline import STEPS
     from rocking.motions.pipeline import keys_of as keys_of_step
@@ -157,7 +157,7 @@ _PARAMETERS = re.compile(r"^(\w+(?:, \w+)*) : .*\n((?: {4}.*\n?)+)", re.MULTILIN
 
 
 def _documented(function: Callable[..., Any], keys: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
-    """Return the facts of some parameters of a function from its docstring."""
+    """Return the facts of the given parameters of a function, read from its docstring."""
     text = (getdoc(function) or "").partition("\nReturns\n")[0]
     descriptions = {
         key: " ".join(description.split())
@@ -187,7 +187,7 @@ def _facts_of_key(description: str, default: Any, annotation: Any, *, needed: bo
 
 
 def _choices(annotation: Any) -> tuple[str, ...]:
-    """Return the allowed values of a key, if it is a flag or a list of choices."""
+    """Return the allowed values of a key that is a flag or a choice."""
     if annotation is bool:
         return ("false", "true")
     return tuple(map(str, get_args(annotation))) if get_origin(annotation) is Literal else ()
@@ -199,7 +199,7 @@ def _summary(documented: Any) -> str:
 
 
 def keys_of(name: str) -> list[str]:
-    """Return the keys of a table as written in files; empty for an unknown table."""
+    """Return the keys of a table as they are written in files; empty for an unknown table."""
     table = _tables().get(name)
     return [] if table is None else [field.alias or key for key, field in table[0].model_fields.items()]
 
@@ -274,7 +274,7 @@ def _table(name: str, table: type[BaseModel], where: str = "") -> Iterator[str]:
     yield ""
 
 
-_HUGE = 1e9  # limits of the storage, not of the quantity
+_HUGE = 1e9  # larger limits are limits of memory, not of the quantity
 _SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
 
 
@@ -290,7 +290,7 @@ def _as_code(value: Any) -> str:
 
 
 def _default_of_setting(key: str) -> str:
-    """Return the default of a setting: a common one, or those of rocking, with friction and in 3D."""
+    """Return the default of a setting: one common value, or the values for rocking, friction and 3D."""
     suffixes = {PlaneSettings: "", ContactSettings: " with friction", SpaceSettings: " in 3D"}
     values = {suffix: settings().stated.get(key) for settings, suffix in suffixes.items() if key != "friction"}
     if len({*values.values()}) == 1:

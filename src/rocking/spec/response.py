@@ -1,4 +1,4 @@
-"""The problem of a response: one body and its motion, from the tables of an input file; and its answer."""
+"""The problem of a response, one body and its motion, from the tables of an input file, and the result."""
 
 import math
 import warnings
@@ -28,16 +28,16 @@ class ResponseProblem:
     """Body, motion, restitutions and settings of a response."""
 
     body: Any  # a `Body` or a `Solid`
-    motion: Any  # not scaled; by axis for a 3D body, None for free rocking
+    motion: Any  # unscaled motion, for a 3D body a mapping from axes to motions; None for free rocking
     restitutions: dict[str, Any] = field(
         default_factory=lambda: {DEFAULT_RESTITUTION: DEFAULT_RESTITUTION}
-    )  # by label, values as in `simulate`
-    settings: Settings = field(default_factory=PlaneSettings)  # of mechanics and integration
+    )  # restitutions by label, with values as in `simulate`
+    settings: Settings = field(default_factory=PlaneSettings)  # settings of mechanics and integration
     engine: str = "auto"
     assumed_friction: float = DEFAULT_FRICTION  # coefficient of friction for the sliding check [-]
     initial_rotation: float | None = None  # initial rotation / slenderness angle of its side [-]
-    start_height: float = 0.0  # of the lowest point above the ground, with friction [m]
-    start_velocity: tuple[float, ...] = ()  # of the lowest point: (x, up) in 2D, (x, y, up) in 3D [m/s]
+    start_height: float = 0.0  # height of the lowest point above the ground, with friction [m]
+    start_velocity: tuple[float, ...] = ()  # velocity of the lowest point: (x, up) in 2D, (x, y, up) in 3D [m/s]
     scale: float = 1.0  # scale factor of the motion [-]
 
     def __post_init__(self) -> None:
@@ -88,7 +88,7 @@ class ResponseProblem:
 
     @property
     def start(self) -> SpatialStart | Start:
-        """Initial position and velocity; in 3D the tilt is towards +x, or -x if `initial_rotation` < 0."""
+        """Initial position and velocity. A 3D body is tilted towards +x, or towards -x if `initial_rotation` < 0."""
         velocity = self.start_velocity or (0.0,) * len(self.axes)
         if isinstance(self.body, PLANE_BODIES):
             x, up = velocity
@@ -102,7 +102,7 @@ class ResponseProblem:
         options: dict[str, Any] = dict(self.settings.stated)
         if "engine" in self.mechanics.options:
             options["engine"] = self.engine
-        with warnings.catch_warnings():  # the output of the response contains its doubts
+        with warnings.catch_warnings():  # the output of the response contains these warnings
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.initial_rotation is not None or self.dropped:
                 options["start"] = self.start
@@ -114,7 +114,7 @@ class ResponseProblem:
 def problem_of(
     tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
 ) -> ResponseProblem:
-    """Return the problem of tables with their body and motion; scale replaces the scale factor of the tables."""
+    """Return the problem of tables, body and motion. `scale` replaces the scale factor of the tables."""
     table, start = getattr(tables, "motion", None), tables.response
     mechanics = mechanics_for(body, start.friction)
     ground = start.model_dump(include={"friction", "normal_restitution", "normal_restitution_law"}, exclude_none=True)
@@ -157,7 +157,7 @@ def _refuse(reason: str, table: Any, keys: set[str]) -> None:
 
 
 def response_problem(document: "ResponseDocument", files: InputFiles, *, in_space: bool = False) -> ResponseProblem:
-    """Return the problem of an input file; files: the files that it may name, in_space: use a 3D body."""
+    """Return the problem of an input file. `files` records the files that it names; `in_space` requires a 3D body."""
     table = document.motion
     with located("body"):
         body = body_for_motion(document.body, files, in_space=in_space or (table is not None and table.y is not None))

@@ -1,11 +1,11 @@
-"""Schema numbers of input files, and the renamed keys of each number."""
+"""Schema numbers of input files, and the keys that each schema renamed."""
 
 from collections.abc import Iterator
 from typing import Any
 
 from rocking.errors import InvalidValueError
 
-SCHEMA = 2  # current number; a file without a number has 1
+SCHEMA = 2  # current schema; a file without a number has schema 1
 
 RENAMED: dict[int, dict[str, str]] = {
     1: {
@@ -27,16 +27,16 @@ RENAMED: dict[int, dict[str, str]] = {
         "settings.bounce_law": "normal_restitution_law",
     },
 }
-"""New names of keys by schema number of the old name, and by path of the old key, such as ``table.key``."""
+"""New names of keys, by schema number of the old name and by path of the old key, such as ``table.key``."""
 
-_FORMS = {"range": "minimum", "unknown": "predict"}  # tables by their name in the form of an assessment
+_FORMS = {"range": "minimum", "unknown": "predict"}  # names of tables, by their name in the form of an assessment
 _FORM_KEYS = {
     "decide": {"what": "command"},
     "measure": {"known": "body", "what": "command"},
     "records": {"asked": "sent"},
     "space": {"asked": "analysis"},
 }
-"""New names of keys by the form of a project, and by the old name."""
+"""New names of keys, by form of a project and by old name."""
 
 
 def migrated(tables: dict[str, Any]) -> dict[str, Any]:

@@ -31,13 +31,13 @@ class StudyProblem:
     document: Any  # an instance of a subclass of `StudyQuestion`
     bodies: list[Any]  # all 2D or all 3D; empty for spectra
     motions: MotionSet
-    restitutions: dict[str, Any]  # by label
-    settings: Settings  # of mechanics and integration
+    restitutions: dict[str, Any]  # restitutions by label
+    settings: Settings  # settings of mechanics and integration
     inputs: InputFiles  # input files with their hashes
 
     @classmethod
     def of(cls, document: "StudyQuestion", files: Path | InputFiles) -> "StudyProblem":
-        """Return the problem of the tables; files: the files that they may name, or the folder of these files."""
+        """Return the problem of the tables. `files` records the named files, or is their folder."""
         inputs = files if isinstance(files, InputFiles) else InputFiles(files)
         with located("settings"):
             stated, axes = document.settings.stated(), document.axes
@@ -68,7 +68,7 @@ class StudyProblem:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Settings and engine, as keywords of the studies."""
+        """Settings and engine as keywords for the functions of studies."""
         return {**self.settings.stated, "engine": self.document.settings.engine}
 
     @property
@@ -83,7 +83,7 @@ class StudyProblem:
 
     @property
     def with_compared_models(self) -> dict[str, "StudyProblem"]:
-        """The problem by compared restitution model; empty where the document states a restitution."""
+        """The problem with each compared restitution model; empty if the document states a restitution."""
         stated = "restitution" in self.document.model_fields_set | {axis.name for axis in self.document.axes}
         return {} if stated else {name: replace(self, restitutions={name: name}) for name in COMPARED_RESTITUTIONS}
 
@@ -98,7 +98,7 @@ class StudyProblem:
         return motions if isinstance(motions, MotionList) else MotionList([motions[k] for k in range(len(motions))])
 
     def only(self, field_name: str) -> Any:
-        """Return the only body, motion or restitution; raise an error for several."""
+        """Return the only body, motion or restitution. Raise an error if there are several."""
         items: Any = getattr(self, field_name)
         if len(items) != 1:
             raise InvalidValueError(

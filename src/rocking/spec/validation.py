@@ -1,4 +1,4 @@
-"""Validation with a folder: a body, records and a table of outcomes give predictions of the trials and their scores."""
+"""Validation with a folder (body, records, observed outcomes): predictions of the trials, and scores."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ _HOW = "a folder contains one body file, record files or one array file (.npz), 
 
 
 def files_of(folder: Path) -> tuple[Path, Path]:
-    """Return the body file and the table of outcomes of a folder; the table names the records."""
+    """Return the body file and the table of outcomes of a folder. The table names the records."""
     if not folder.is_dir():
         raise InvalidValueError("The folder does not exist", hint=_HOW).at(str(folder))
     files = sorted(path for path in folder.iterdir() if path.is_file())
@@ -55,7 +55,7 @@ def files_of(folder: Path) -> tuple[Path, Path]:
 
 
 def is_question(path: Path) -> bool:
-    """Return True if a file has a table [body] or [predict], False for a body file. Never raises."""
+    """Return True if a file has a table [body] or [predict], False for a body file. Never raises an error."""
     return bool({"body", "predict"} & set(tables_in(path) or ()))
 
 
@@ -80,14 +80,14 @@ def _only_file(paths: Sequence[Path], folder: Path, content: str) -> Path:
 class FolderValidation(Exported):
     """Predictions of the trials of a folder, and their scores."""
 
-    name: str  # of the body
+    name: str  # name of the body
     source: str  # name of the table of outcomes
     prediction: Prediction  # with one motion per record and scale
     trials: tuple[Trial, ...]
     refused: tuple[RefusedRow, ...]
     ignored: tuple[str, ...]  # ignored columns of the table
-    repairs: tuple[str, ...]  # of a scan
-    scores: dict[str, Validation]  # by event, overturning first
+    repairs: tuple[str, ...]  # repairs of a scan
+    scores: dict[str, Validation]  # scores by event, overturning first
     updated: "Update | None" = None
 
     def answer(self) -> Answer:
@@ -129,14 +129,14 @@ class FolderValidation(Exported):
 
 @dataclass(frozen=True, eq=False)
 class Update:
-    """Model error of the body, updated by its tests, and scores with the tests of all other earthquakes only."""
+    """Model error of a body after its tests. The scores of an earthquake use the tests of all other earthquakes."""
 
     error: ModelError
     left_out: Validation
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Factors, their source, and the verdict on the left-out earthquakes."""
+        """Sentences: factors, their source, and the verdict on the left-out earthquakes."""
         facts = {"factors": self.error.text, "source": self.error.source}
         return (
             Message("Updated model error: {factors} ({source}).", facts),
@@ -163,13 +163,14 @@ class ValidationProblem:
     outcomes: Outcomes
     trials: tuple[Trial, ...]  # with readable records
     refused: tuple[RefusedRow, ...]
-    clusters: tuple[str, ...]  # earthquake of each trial, or its record files; components of one file are one motion
-    motions: dict[tuple[Any, float], dict[str, GroundMotion]]  # by files and scale
+    # earthquake of each trial, or its record files; all components of one file have the same cluster
+    clusters: tuple[str, ...]
+    motions: dict[tuple[Any, float], dict[str, GroundMotion]]  # motions by axis, for record files and scale
     name: str
 
     @classmethod
     def of(cls, document: "ValidationDocument", files: tuple[Path, Path], inputs: InputFiles) -> "ValidationProblem":
-        """Return the problem of a folder; files: its body file, and its table of outcomes."""
+        """Return the problem of a folder. `files` contains its body file and its table of outcomes."""
         with located("body"):
             body = without_restraints(any_body_of(document.body, inputs))
         if document.predict.pga is not None:
@@ -195,7 +196,7 @@ class ValidationProblem:
     def answer(
         self, progress: Callable[[int], None] | None = None, threads: int | None = None, *, update: bool = False
     ) -> FolderValidation:  # fmt: skip
-        """Predict every trial from the body alone, and score the predictions; update: also the model error."""
+        """Predict every trial from the body alone and score the predictions; with `update`, update the model error."""
         motions = list(self.motions.values())
         prediction = predict(self.body, motions, **self.options, threads=threads, progress=progress)
         index_of_key = {key: k for k, key in enumerate(self.motions)}
@@ -235,7 +236,7 @@ class ValidationProblem:
         self, scored: Validation, motion_index: IntArray, pga: FloatArray, pgv: FloatArray, prediction: Prediction,
         threads: int | None,
     ) -> Update:  # fmt: skip
-        """Return the model error with the tests, and the scores of the left-out earthquakes."""
+        """Return the model error updated with the tests, and the scores of left-out earthquakes."""
         mechanics = sampled_bodies(self.body, list(self.motions.values()), self.options | {"model_error": WIDE})
         logarithms, overturned = wide_samples(mechanics, prediction.count, prediction.seed, threads)
         stated, names = self.options.get("model_error"), np.array(self.clusters)
@@ -246,14 +247,14 @@ class ValidationProblem:
 
 
 class _Records:
-    """Records by their text in the table of outcomes, each read once; stores errors too."""
+    """Records by their text in the table of outcomes. Every record is read once; errors are stored too."""
 
     def __init__(self, inputs: InputFiles, keys: dict[str, Any]) -> None:
         self._inputs, self._keys, self._read = inputs, keys, dict[str, GroundMotion | RockingError]()
 
     @cached_property
     def _arrays(self) -> ArrayFile | None:
-        """The array file of the folder, if there is one."""
+        """The array file of the folder; None if there is none."""
         paths = sorted(path for path in self._inputs.folder.iterdir() if path.suffix.lower() == SUFFIX)
         if len(paths) > 1:
             raise InvalidValueError(
@@ -309,7 +310,7 @@ class _Records:
         return doubted_once(lambda: processed(arrays.motion(word, self._keys), self._keys.get("process") or ()), word)  # type: ignore[no-any-return]
 
     def _file_and_component(self, word: str) -> dict[str, str]:
-        """Return the record file and the component from FILE#COMPONENT."""
+        """Return record file and component of the text FILE#COMPONENT."""
         path, mark, component = word.rpartition("#")
         if mark and not (self._inputs.folder / word).is_file():
             return {"record": path, "component": component}
@@ -317,6 +318,6 @@ class _Records:
 
 
 def _peaks(motion: dict[str, GroundMotion]) -> tuple[float, float]:
-    """Return PGA [m/s2] and PGV [m/s] of the larger horizontal component."""
+    """Return the PGA [m/s2] and the PGV [m/s] of the horizontal component with the larger value."""
     horizontal = [component for axis, component in motion.items() if axis != "z"]
     return max(component.peak for component in horizontal), max(map(peak_ground_velocity, horizontal))

@@ -26,7 +26,7 @@ _MARGIN = 150_000  # attributes and overhead of HDF5 [bytes]
 
 
 def to_dataset(table: Table) -> "xr.Dataset":
-    """Return the columns of a table and its further tables; a column named as the rows is coordinate."""
+    """Return a dataset of a table and its related tables. A column with the name of the rows becomes a coordinate."""
     xarray = extra("xarray", "a labelled dataset")
     variables = {name: (table.row, column.values, column.attributes) for name, column in table.columns.items()}
     for row, other in table.related.items():
@@ -89,9 +89,9 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], column: Column) -> No
 
 @contextmanager
 def _netcdf_file(path: Path, mode: str, size: int) -> Iterator[Any]:
-    """Open a netCDF file if the disk has enough free bytes, and close it in any case."""
+    """Open a netCDF file if the disk has enough free space. The file is always closed."""
     h5netcdf: Any = extra("h5netcdf", "netCDF")
-    # checked first: on a full disk HDF5 writes again at the end of the process, and may crash
+    # check the disk first: on a full disk, HDF5 writes again at the end of the process and may crash
     if shutil.disk_usage(path.parent).free < size + _MARGIN:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     file = h5netcdf.File(path, mode)
@@ -100,7 +100,7 @@ def _netcdf_file(path: Path, mode: str, size: int) -> Iterator[Any]:
         file.close()
     except BaseException as error:
         with suppress(OSError):
-            os.truncate(path, 0)  # frees space for closing
+            os.truncate(path, 0)  # free the space that closing the file needs
         with suppress(Exception):
             file.close()
         cause = re.search(r"errno = (\d+), error message = '([^']*)'", str(error))
@@ -110,12 +110,12 @@ def _netcdf_file(path: Path, mode: str, size: int) -> Iterator[Any]:
 
 
 def _size(values: np.ndarray) -> int:
-    """Return the smallest size of values in a file [bytes]."""
+    """Return the minimum size of values in a file [bytes]."""
     return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
 
 
 def _plain(structure: Any) -> Any:
-    """Return a structure with plain texts in place of messages, which MATLAB files do not support."""
+    """Return a structure with plain texts instead of messages, because MATLAB files do not support messages."""
     if isinstance(structure, Mapping):
         return {name: _plain(value) for name, value in structure.items()}
     if isinstance(structure, np.ndarray) and structure.dtype == object and structure.ndim == 1:
@@ -127,7 +127,7 @@ def to_mat(
     content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
 ) -> Path:
     """Write a table, results over dimensions, or a structure as a MATLAB file of version 5."""
-    # apart: separate structures for columns of the table, their full names and meanings
+    # apart: write columns, full names and meanings of a table as separate structures
     from scipy.io import savemat
 
     match content:
@@ -158,7 +158,7 @@ def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
         return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
     related = {row: other.columns for row, other in table.related.items()}
 
-    # numbers as double; text as a column of cells
+    # numbers become double; text becomes a column of cells
     def cells(column: Column) -> Any:
         return column.values.astype(object if column.is_text else np.float64)
 

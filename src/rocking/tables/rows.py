@@ -1,4 +1,4 @@
-"""Files of rows: CSV, Parquet, Excel; written in pieces, so that files may exceed the memory."""
+"""Files of rows: CSV, Parquet, Excel. They are written in pieces, so that a file may be larger than the memory."""
 
 import csv
 import json
@@ -33,7 +33,7 @@ def to_dataframe(table: Table) -> "pd.DataFrame":
 
 def to_csv(table: Table | Grid, path: Path, *, blank: bool = True, for_excel: bool = False) -> Path:
     """Write a table as comma-separated values with all digits; the header contains the units."""
-    # for_excel: a byte order mark for UTF-8, and quoted text, so that a semicolon in it is no separator in Excel
+    # for_excel: write a byte order mark for UTF-8, and quote text so that Excel does not split it at semicolons
     with path.open("w", newline="", encoding="utf-8-sig" if for_excel else "utf-8") as file:
         writer = csv.writer(file, quoting=csv.QUOTE_NONNUMERIC if for_excel else csv.QUOTE_MINIMAL)
         writer.writerow(map(safe_cell, table.header))
@@ -73,8 +73,9 @@ def to_excel(
     others: str = ".parquet or .csv", dressed: bool = False,
 ) -> None:  # fmt: skip
     """Write tables as a workbook without formulas."""
-    # packed in memory: an archive on a full disk cannot be closed and raises errors later
-    # others: formats for more rows; dressed: bold fixed headings, fitted column widths, all digits (else 16), slower
+    # the archive is made in memory, because it cannot be closed on a full disk and then raises errors later
+    # others: file formats for more rows, named in the error
+    # dressed: bold fixed headings, fitted column widths and all digits instead of 16, but slower
     for _, table in sheets:
         if len(table) > MOST_ROWS_OF_EXCEL:
             kind = f" {table.row}" if isinstance(table, Grid) else ""
@@ -121,7 +122,7 @@ def _fill(page: Any, table: Table | Grid) -> None:
         cell.font = fonts.Font(bold=True)
     page.append(head)
     for piece in table.pieces():
-        # unescaped text: the type of the cell excludes formulas
+        # the text needs no escaping, because the type of the cell excludes formulas
         columns = (
             [text or None for text in column.array.tolist()] if column.is_text else column.cells(slice(None))
             for column in decoded(piece.columns).values()
@@ -132,7 +133,7 @@ def _fill(page: Any, table: Table | Grid) -> None:
 
 def _filled(cell: Any, value: Cell) -> Any:
     """Put a value into a cell: text without formulas, a number with all digits."""
-    # by default the writer has 16 digits
+    # the writer itself keeps only 16 digits
     cell.value = value if isinstance(value, str) else repr(float(value))  # type: ignore[arg-type]
     cell.data_type = "s" if isinstance(value, str) else "n"
     return cell

@@ -50,7 +50,7 @@ class Column:
     variable: str | None = None  # name in netCDF and MATLAB files, if different
     dims: tuple[str, ...] = ()  # dimensions of the values, unless they are the rows of a table
     codes: Mapping[int, str] = field(default_factory=dict)  # meanings of integer codes
-    # index of the value of each row; without it, values are in the order of the rows
+    # for each row, the index of its value; if None, values are in the order of the rows
     index: np.ndarray | None = None
     standard_name: str = ""  # name in the table of the CF conventions, if any
 
@@ -107,10 +107,10 @@ class Table:
     ['rotation [rad]']
     """
 
-    row: str  # name of a row: the dimension in netCDF files
+    row: str  # name of the rows: the dimension in netCDF files
     columns: Mapping[str, Column]
     provenance: Mapping[str, Any] = field(default_factory=dict)  # sources and methods, as plain values
-    # further tables of the same result, by the name of a row
+    # further tables of the same result, by the name of their rows
     related: Mapping[str, "Table"] = field(default_factory=dict)
     no_unit: str = ""  # unit in headings of dimensionless numbers; no brackets if empty
 
@@ -119,7 +119,7 @@ class Table:
 
     @classmethod
     def of(cls, row: str, arrays: Arrays, **more: Any) -> "Table":
-        """Return a table of arrays by their names in `rocking.quantities`; more: other fields."""
+        """Return a table of arrays by their names in `rocking.quantities`; `more` contains other fields."""
         return cls(row, {name: Column.of(name, values) for name, values in arrays.items()}, **more)
 
     @classmethod
@@ -145,7 +145,7 @@ class Table:
         return list(zip(*(column.values.tolist() for column in self.columns.values()), strict=True))
 
     def cells(self, *, blank: bool = True) -> Iterator[tuple[Cell, ...]]:
-        """Return the rows for a file without formulas; if blank, cells without a finite number are empty."""
+        """Return the rows without formulas. With `blank`, cells of numbers that are not finite are empty."""
         columns = decoded(self.columns).values()
         for first in range(0, len(self), PIECE):
             rows = slice(first, first + PIECE)
@@ -158,13 +158,13 @@ class Table:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Results over dimensions, in pieces: they may exceed the memory."""
+    """Results over dimensions, in pieces, because the results may be larger than the memory."""
 
     row: str  # name of the rows, in the plural
     dims: Mapping[str, int]  # length of every dimension; the last one changes fastest
     coordinates: Mapping[str, Column]  # columns along dimensions, with `dims`
-    results: Mapping[str, Any]  # types of the results, by their names in `rocking.quantities`
-    # returns an iterator over first row, last row (not included) and arrays of the results between them
+    results: Mapping[str, Any]  # data types of the results, by their names in `rocking.quantities`
+    # returns an iterator over pieces: first row, last row (excluded), and arrays of the results of these rows
     arrays: Callable[[], Iterator[tuple[int, int, Arrays]]]
     provenance: Mapping[str, Any] = field(default_factory=dict)  # sources and methods, as plain values
 
@@ -178,7 +178,7 @@ class Grid:
 
     @property
     def columns(self) -> dict[str, Column]:
-        """Columns without rows."""
+        """Columns with zero rows."""
         return dict(self._piece(0, 0, {name: np.empty(0, kind) for name, kind in self.results.items()}).columns)
 
     @property
@@ -217,11 +217,11 @@ class Grid:
 
 
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
-    """Yield the rectangular blocks of the flat entries first to last: position, and slice of these entries."""
+    """Yield rectangular blocks of the flat entries `first` to `last`: position in the grid, slice of the entries."""
     entry = first
     while entry < last:
         position = [int(i) for i in np.unravel_index(entry, shape)]
-        # the longest run from here: complete rows of the innermost dimensions, if they start at zero
+        # take complete rows of the innermost dimensions as long as they start at zero
         axis, width = len(shape) - 1, 1
         while axis > 0 and position[axis] == 0 and entry + width * shape[axis] <= last:
             width *= shape[axis]
@@ -235,7 +235,7 @@ def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
 
 
 def safe_cell(cell: Cell) -> Cell:
-    """Return a cell that is no formula in a spreadsheet.
+    """Return a cell that a spreadsheet does not read as a formula.
 
     >>> safe_cell("=1+1"), safe_cell(-1.5)
     ("'=1+1", -1.5)
@@ -253,7 +253,7 @@ def _checked(cell: Cell) -> Cell:
 
 
 def escaped(text: str) -> str:
-    """Return text that is no formula in a spreadsheet.
+    """Return a text that a spreadsheet does not read as a formula.
 
     >>> escaped("=1+1"), escaped("vase")
     ("'=1+1", 'vase')
@@ -278,7 +278,7 @@ def target_of(path: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Turn system errors into an error with path and reason."""
+    """Convert system errors to an error with path and reason."""
     try:
         yield
     except OSError as error:
@@ -287,7 +287,7 @@ def writing(path: Path | str) -> Iterator[None]:
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """Yield a temporary path; on success the file replaces `path` in one step."""
+    """Yield a temporary path. On success, the temporary file replaces `path` in one step."""
     unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         yield unfinished
@@ -299,14 +299,14 @@ def written_whole(path: Path) -> Iterator[Path]:
 
 
 def text_array(values: Sequence[Any]) -> np.ndarray:
-    """Return text as an array."""
+    """Return texts as an array of objects."""
     array = np.empty(len(values), dtype=object)
-    array[:] = [str(value) if isinstance(value, str) else value for value in values]  # plain texts in place of messages
+    array[:] = [str(value) if isinstance(value, str) else value for value in values]  # messages become plain texts
     return array
 
 
 def prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
-    """Return columns with prefixed variable names, for several tables in one file."""
+    """Return columns with a prefix in their variable names, for several tables in one file."""
     return {
         name: Column(column.values, column.unit, column.meaning, f"{prefix}_{column.variable or name}")
         for name, column in columns.items()

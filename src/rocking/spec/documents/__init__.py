@@ -1,1 +1,1 @@
-"""Question files other than those of studies: one class per file."""
+"""Input files that are not studies: one class per kind of file."""

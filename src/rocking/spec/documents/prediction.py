@@ -1,4 +1,4 @@
-"""The files of a prediction and of an assessment."""
+"""The input files of a prediction and of an assessment."""
 
 from typing import Annotated, Any
 

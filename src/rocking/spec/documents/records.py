@@ -1,4 +1,4 @@
-"""The files of one record and of a set of records."""
+"""The input files for one record and for a set of records."""
 
 from typing import Annotated
 

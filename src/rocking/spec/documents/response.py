@@ -55,7 +55,7 @@ class ResponseTables(JobTable):
 
 
 def check_start(moved: bool, start: ResponseTable) -> None:
-    """Refuse a document without a motion or an initial state, and one with both motion and initial rotation."""
+    """Raise an error without motion and initial state, or with both motion and initial rotation."""
     if moved and start.initial_rotation is not None:
         raise InvalidValueError("Use a motion or response.initial_rotation, not both.")
     if not moved and start.initial_rotation is None and not start.dropped:

@@ -34,4 +34,4 @@ def question_in(tables: dict[str, Any]) -> StudyQuestion:
     if isinstance(kind, str) and kind in classes:
         return validated(classes[kind], tables)
     own = {name for question in classes.values() for name in question.model_fields} - {*StudyQuestion.model_fields}
-    return validated(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # which refuses
+    return validated(StudyQuestion, {name: table for name, table in tables.items() if name not in own})  # fails

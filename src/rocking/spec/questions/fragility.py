@@ -46,7 +46,7 @@ class ExportTable(JobTable):
 
 
 def _one_state(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
-    """Return a limit state; raise one error for an invalid value, independent of the number of allowed types."""
+    """Return a limit state. Raise a single error for an invalid value, not one error per allowed type."""
     try:
         return validate(value)
     except ValidationError as error:
@@ -112,7 +112,7 @@ class AnalysisQuestion(BodyQuestion):
     def analysis(
         self, problem: "StudyProblem", restitution: Any, motions: "MotionSet | None" = None
     ) -> "FragilityQuestion":
-        """Return the analysis with one restitution; motions: those of the problem, in memory."""
+        """Return the analysis with one restitution. `motions` replaces the motions of the problem."""
         from rocking.studies.fragility.question import FragilityQuestion
         from rocking.studies.fragility.subject import Subject
 
@@ -123,7 +123,7 @@ class AnalysisQuestion(BodyQuestion):
         )  # fmt: skip
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the analysis, or for stripes with several restitutions their comparison."""
+        """Return the analysis. For stripes with several restitutions, return the comparison of the restitutions."""
         motions, body = problem.kept_motions, problem.only("bodies")  # computed once for all levels
         if len(problem.restitutions) == 1 or self.one_restitution:
             return self.analysis(problem, problem.only("restitutions"), motions).computed(threads, progress)
@@ -141,7 +141,8 @@ class AnalysisQuestion(BodyQuestion):
 
         with located("fragility"):
             questions = {label: self.analysis(problem, analysis) for label, analysis in problem.restitutions.items()}
-            products = [question.histories for question in questions.values()]  # they differ in their sides only
+            # the products differ only in the data of the sides
+            products = [question.histories for question in questions.values()]
             sides = {n: np.concatenate([analysis.sides[n] for analysis in products], axis=1) for n in products[0].sides}
             merged = replace(products[0], sides=sides)
         question = next(iter(questions.values()))
@@ -161,7 +162,7 @@ class AnalysisQuestion(BodyQuestion):
         }
 
         def finish(results: dict[str, Any]) -> dict[str, Any]:
-            """Return every analysis with its own results, by restitution."""
+            """Return the analysis of each restitution with its results."""
             return {
                 label: analysis.answer({name: values[k :: len(questions)] for name, values in results.items()})
                 for k, (label, analysis) in enumerate(questions.items())
@@ -185,7 +186,7 @@ class StripesQuestion(AnalysisQuestion):
 
 
 class IncrementalQuestion(AnalysisQuestion):
-    """Fragility of one body from all levels at which a motion begins or ceases to overturn it."""
+    """Fragility of one body from all levels at which a motion begins or ceases to overturn the body."""
 
     kind: ClassVar[str] = "incremental"
     one_restitution: ClassVar[bool] = True
@@ -193,8 +194,8 @@ class IncrementalQuestion(AnalysisQuestion):
     def analysis(
         self, problem: "StudyProblem", restitution: Any, motions: "MotionSet | None" = None
     ) -> "FragilityQuestion":
-        """Return the analysis with one restitution; motions: those of the problem, in memory."""
-        # [fragility] contains the tolerance of the search, [settings] that of the engine
+        """Return the analysis with one restitution. `motions` replaces the motions of the problem."""
+        # [fragility] contains the tolerance of the search; [settings] contains the tolerance of the engine
         if "tolerance" in self.settings.stated():
             raise InvalidValueError("settings.tolerance is not allowed in an incremental analysis. Remove it.")
         return super().analysis(problem, restitution, motions)
@@ -224,7 +225,7 @@ class CloudQuestion(AnalysisQuestion):
         return replace(study, exports=(*study.exports, MEASURES))
 
     def ims(self) -> list[str]:
-        """Return the compared intensity measures: those of [export], or the default ones and `im`."""
+        """Return the compared intensity measures: those in [export], or the default measures and `im`."""
         from rocking.motions.intensity import measure
         from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
 
@@ -236,7 +237,7 @@ class CloudQuestion(AnalysisQuestion):
         return list(dict.fromkeys(names))
 
     def columns(self, motions: "MotionSet") -> dict[str, FloatArray]:
-        """Return numbers from the metadata of the motions: the columns of [export], or the available default columns.
+        """Return metadata of the motions as numbers: the columns in [export], or the default columns that exist.
 
         A name that begins with ``ln`` is the logarithm of the named column.
         """
@@ -267,7 +268,7 @@ class CloudQuestion(AnalysisQuestion):
 
 
 def _number(name: str, metadata: Any) -> float:
-    """Return a number of the metadata, or its logarithm; raise ValueError with the reason if there is no number."""
+    """Return a number of the metadata, or its logarithm. If there is no number, raise ValueError with the reason."""
     key = name.removeprefix(_LOGARITHM)
     if key not in metadata:
         raise ValueError("got no value")

@@ -89,7 +89,7 @@ class InventoryQuestion(StudyQuestion):
     def read(
         self, problem: "StudyProblem"
     ) -> "tuple[Inventory, Callable[[Progress], Hazard], Thresholds, Any]":  # fmt: skip
-        """Return the objects, a function that computes the motions, the limits of the ratings, and the stated model."""
+        """Return the objects, a function that computes the motions, the rating limits and the stated restitution."""
         from rocking.decision.inventory import Thresholds, read_inventory
         from rocking.decision.inventory.hazard import SEED, Hazard, IntensityLevel
         from rocking.studies.motion_sets import SyntheticSet
@@ -115,9 +115,9 @@ class InventoryQuestion(StudyQuestion):
         def hazard(progress: Progress = None) -> Hazard:
             with located("inventory"):
                 if isinstance(motions, SyntheticSet):
-                    assert level is not None  # checked by the class of the question
+                    assert level is not None  # the class of the study ensures a level
                     own = self.motions[0].seed
-                    seed = SEED if own is None else own  # as on the command line
+                    seed = SEED if own is None else own  # the same default as on the command line
                     return Hazard.of_family(motions.family, level, count=motions.count, seed=seed, progress=progress)
                 return Hazard.of_records([motions[k] for k in range(len(motions))], level)
 

@@ -139,7 +139,7 @@ class LongRunQuestion(BodyQuestion):
 
     @property
     def own(self) -> Any:
-        """Its own table."""
+        """The table of this study."""
         return getattr(self, self.own_table())
 
     @property

@@ -79,7 +79,7 @@ class MapQuestion(BodyQuestion):
         return 4 * (self.map.x.size + self.map.y.size) * 2**refine * self.choices if refine else 0
 
     def answer(self, problem: "StudyProblem", progress: Progress = None, threads: int | None = None) -> Any:
-        """Return the map as `MapArrays`, or with several restitutions their comparison."""
+        """Return the map as `MapArrays`. With several restitutions, return their comparison."""
         from rocking.studies._overturning_map import map_arrays
 
         options = {**problem.stated, "threads": threads, "progress": progress}
@@ -119,7 +119,7 @@ class MapQuestion(BodyQuestion):
             planes = [Plane(question, x, y) for question in questions]
             histories = MapHistories.of(planes)
         several = {"restitution": len(planes)} if len(planes) > 1 else {}
-        # as in `overturning_map`; the provenance contains the engine, a dimension the restitutions
+        # attributes as in `overturning_map`, without the engine (in the provenance) and the restitutions (a dimension)
         attributes = {k: v for k, v in planes[0].attributes({}).items() if k not in {"software", "engine", *several}}
         coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.meaning) for axis in (y, x)}
         if several:
@@ -132,7 +132,7 @@ class MapQuestion(BodyQuestion):
         return replace(study, search=search, exports=("histories", "refined", "boundary"))
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Return the figure of the map, with the boundaries if refined."""
+        """Return the figure of the map. If the map is refined, the figure shows the boundaries."""
         from rocking.plots.overturning_map import overturning_map_picture
 
         lines = finished.answer.value[1] if self.is_adaptive else ()

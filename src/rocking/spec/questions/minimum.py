@@ -102,7 +102,7 @@ class MinimumQuestion(BodyQuestion):
         return Study(first_round(search), dims, coordinates, attributes, exports, search=search)
 
     def plot(self, finished: Any, restitution: str | None) -> "Figure":
-        """Return a figure with one panel per restitution, and one lane per motion and body."""
+        """Return a figure with one panel per restitution. A panel has one lane per motion and body."""
         from rocking.plots.transitions import transitions_of_many_picture
 
         problem, several = finished.problem, len(finished.problem.bodies) > 1
@@ -111,7 +111,7 @@ class MinimumQuestion(BodyQuestion):
             f"{problem.motions[k].name}, body {body}" if several else problem.motions[k].name
             for k in range(motions) for body in range(bodies)
         ]  # fmt: skip
-        every = finished.answer.value  # the body changes fastest, then the restitution
+        every = finished.answer.value  # order: the body changes fastest, then the restitution, then the motion
         rows = {
             label: [every[(k * len(labels) + number) * bodies + body] for k in range(motions) for body in range(bodies)]
             for number, label in enumerate(labels) if restitution in {None, label}

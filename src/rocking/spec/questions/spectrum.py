@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.study_plan import Study
 
-_LONGEST = 1e100  # period whose square is still a number [s]
+_LONGEST = 1e100  # longest period whose square does not overflow [s]
 
 
 class SpectrumTable(JobTable):
