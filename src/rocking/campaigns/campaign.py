@@ -29,8 +29,8 @@ from rocking.studies.histories import Histories
 class Campaign:
     """A large number of histories, stored in a folder. A run continues after an interruption or after damage to files.
 
-    `create` makes a campaign, `open` continues it. The results are equal to the last bit for any workers, chunk size,
-    order and interruptions.
+    `create` makes a campaign, `open` continues it. The results are equal to the last bit for any number of workers, any
+    chunk size, any order of the chunks and any interruptions.
 
     Parameters
     ----------
@@ -111,12 +111,12 @@ class Campaign:
         folder : path
             The folder; nothing is written there.
         verify : bool
-            Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
+            Read all results, and exclude damaged results. Otherwise the ledger is used without a check.
 
         Returns
         -------
         CampaignStatus
-            The recorded progress at this instant.
+            Recorded progress at the time of the call.
         """
         path = Path(folder)
         with disk.guarded(path):
@@ -149,12 +149,12 @@ class Campaign:
         Parameters
         ----------
         verify : bool
-            Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
+            Read all results, and exclude damaged results. Otherwise the ledger is used without a check.
 
         Returns
         -------
         CampaignStatus
-            The recorded progress at this instant.
+            Recorded progress at the time of the call.
         """
         return self.status_of(self.folder, verify=verify)
 
@@ -177,7 +177,7 @@ class Campaign:
         order_seed: int | None = None,
         progress: Callable[[Progress], object] | None = None,
     ) -> Summary:
-        """Compute missing and damaged chunks; a damaged ledger is set aside and rebuilt from the shards.
+        """Compute missing and damaged chunks; a damaged ledger is renamed and rebuilt from the shards.
 
         Parameters
         ----------
@@ -189,9 +189,9 @@ class Campaign:
             Start method of processes. Default: "spawn".
         order_seed : int, optional
             Random seed of the order of the chunks. Default: the order of the histories in each segment. The results
-            are independent of it.
+            do not depend on this order.
         progress : callable, optional
-            Called with a `Progress` at the start and after every recorded chunk, while the next ones are computed.
+            Called with a `Progress` at the start and after every recorded chunk, while the next chunks are computed.
 
         Returns
         -------
@@ -209,7 +209,7 @@ class Campaign:
         CampaignStorageError
             If the disk is full or cannot be written.
         CampaignDamagedError
-            If a file changes while it runs.
+            If a file changes during the run.
         CampaignWorkerError
             If a chunk cannot be computed.
         CampaignInterrupted
@@ -229,13 +229,13 @@ class Campaign:
         Yields
         ------
         HistoryRange
-            First history, last one (not included), and their results.
+            First history, history after the last one, and the results of these histories.
         """
         with disk.guarded(self.folder):
             yield from ledger.pieces(self.folder, self.plan)
 
     def results(self, *names: str) -> Arrays:
-        """Return results of all histories, 83 bytes per history, less for selected columns.
+        """Return results of all histories: 83 bytes per history, or less for selected results.
 
         Parameters
         ----------
@@ -256,7 +256,7 @@ class Campaign:
         return results
 
     def sha256(self) -> str:
-        """Return the hash of all results; it is independent of the chunk size.
+        """Return the hash of all results. This hash does not depend on the chunk size.
 
         Returns
         -------

@@ -37,11 +37,11 @@ def _kinds(header: Any) -> dict[str, np.dtype[Any]]:
 DEFAULT_CHUNK = 65536
 """Histories of a chunk of the fast engine: about 0.3 s of work; the safe storage needs a few milliseconds."""
 
-REFERENCE_CHUNK = 256  # histories of a chunk of the reference engine, which is about 100 times slower
+REFERENCE_CHUNK = 256  # histories per chunk of the reference engine, which is about 100 times slower
 
 
 class Chunk(NamedTuple):
-    """Some histories, from the first to before the last; parent: name of the chunk of a piece."""
+    """The histories from `first` to before `last`; for a piece, `parent` is the name of its chunk."""
 
     number: int
     first: int
@@ -50,7 +50,7 @@ class Chunk(NamedTuple):
     parent: str = ""
 
     def piece(self, first: int, last: int) -> "Chunk":
-        """Return a piece with its own name; the chunk itself for all its histories."""
+        """Return a piece of this chunk with its own name, or the chunk itself for all its histories."""
         if (first, last) == (self.first, self.last):
             return self
         parent = self.parent or self.name
@@ -67,9 +67,9 @@ class Plan:
     [(0, 40), (40, 80), (80, 100)]
     """
 
-    key: str  # name of the histories
+    key: str  # hash that identifies the histories
     count: int  # number of histories
-    size: int  # histories of a chunk
+    size: int  # number of histories per chunk
     engine: str  # engine with fingerprint: "fast, 0123456789abcdef"
     software: str  # version of this package
     format: int = FORMAT  # version of the files
@@ -90,7 +90,7 @@ class Plan:
         return -(-self.count // self.size)
 
     def chunk(self, number: int) -> Chunk:
-        """Return a chunk; its name is the SHA-256 of the plan without its size and of the first and last history."""
+        """Return a chunk. Its name is the SHA-256 of the plan without the chunk size, and of first and last history."""
         if not 0 <= number < self.chunks:
             raise InvalidValueError(parameter="chunk", allowed=f"in [0, {self.chunks - 1}]", value=number)
         first = number * self.size

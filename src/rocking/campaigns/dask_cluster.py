@@ -46,7 +46,7 @@ class DaskExecutor(Executor):
         self.address, self.ahead, self.timeout = address, checks.whole("ahead", ahead, 1, MOST_WORKERS), timeout
 
     def run(self, job: WorkerTask, chunks: Iterator[Chunk], stop: Stop, retried: Retried) -> Iterator[Done]:
-        """Compute chunks; lost chunks are submitted again, chunks of an ended worker by the cluster itself."""
+        """Compute chunks. Lost chunks are submitted again; the cluster itself repeats the chunks of an ended worker."""
         try:
             dask = import_module("distributed")
         except ImportError as error:
@@ -70,7 +70,7 @@ class _Window:
             pickled = pickle.dumps(job)
         except (AttributeError, TypeError, pickle.PicklingError) as error:
             raise CampaignWorkerError(cannot_be_sent(error)) from error
-        # a task instead of scattered data: another worker can repeat it
+        # the data are a task instead of scattered data, so that another worker can repeat this task
         self._loaded = client.submit(pickle.loads, pickled, pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
 
@@ -108,7 +108,7 @@ class _Window:
         self._flying[self._client.submit(_compute, self._loaded, chunk, pure=False)] = (chunk, attempts)
 
     def _landed(self) -> list[Any]:
-        # polling instead of waiting: after the loss of the scheduler a wait raises and cancels the futures
+        # polling, because a wait raises an error and cancels the futures after the loss of the scheduler
         end = time.monotonic() + _LOOK
         while not (landed := [future for future in self._flying if future.done()]) and time.monotonic() < end:
             time.sleep(0.002)

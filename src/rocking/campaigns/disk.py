@@ -28,7 +28,7 @@ class CampaignError(RockingError):
 
 
 class CampaignMismatchError(CampaignError):
-    """The folder contains another campaign, or none."""
+    """The folder contains another campaign, or no campaign."""
 
 
 class CampaignBusyError(CampaignError):
@@ -59,7 +59,7 @@ class CampaignInterrupted(KeyboardInterrupt):
 
 
 def write_new(path: Path, data: bytes) -> None:
-    """Write a file; after a power failure at any instant it is complete or absent."""
+    """Write a file, which is complete or absent after a power failure at any instant."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}{_UNFINISHED}")
     try:
         _write_through(unfinished, data)
@@ -86,7 +86,7 @@ def make_folder(folder: Path) -> None:
     """Make a folder and its parents, written to disk."""
     fresh = [parent for parent in (folder, *folder.parents) if not parent.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    for created in reversed(fresh or [folder]):  # also an existing folder: its process may have been killed before this
+    for created in reversed(fresh or [folder]):  # an earlier process may have been killed before this step
         sync_folder(created.parent)
 
 
@@ -102,7 +102,7 @@ def refuse_used(folder: Path, mark: str, allowed: set[str], hint: str) -> None:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove incomplete files of ended processes; only while nobody writes."""
+    """Remove incomplete files of ended processes. Call only while no process writes."""
     for path in folder.glob(f".*{_UNFINISHED}"):
         path.unlink(missing_ok=True)
 
@@ -176,7 +176,7 @@ class FolderLock:
 
     def __enter__(self) -> "FolderLock":
         handle = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
-        deadline = time.monotonic() + _PATIENCE  # who only looks whether it is held, holds it for an instant
+        deadline = time.monotonic() + _PATIENCE  # a process that only checks the lock holds it for an instant
         while not _take(handle):
             if time.monotonic() > deadline:
                 runs = _text(handle)
@@ -222,7 +222,7 @@ if sys.platform == "win32":
     import msvcrt
 
     def _take(handle: int) -> bool:
-        os.lseek(handle, 1 << 20, os.SEEK_SET)  # far behind the text, so that others can read it
+        os.lseek(handle, 1 << 20, os.SEEK_SET)  # a lock far behind the text, which others can read
         try:
             msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
         except OSError:

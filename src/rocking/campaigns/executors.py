@@ -24,7 +24,7 @@ from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.studies.histories import Histories
 
 PIECE = 1.0
-"""Time between records [s]: a kill loses no more."""
+"""Time between records [s]; a killed process loses at most the work of this time."""
 
 _ASK = 0.3
 _FIRST = {"fast": 64, "reference": 4}
@@ -76,7 +76,7 @@ class Interruption:
 
 
 class Pace:
-    """Number of histories per step, adapted to a short waiting time from one step to the next."""
+    """Number of histories per step, adapted so that a step takes a short time."""
 
     def __init__(self, engine: str, together: int = 1, synthetic: bool = False) -> None:
         self.least = _FIRST[kind_of(engine)]
@@ -87,14 +87,14 @@ class Pace:
         self.begun = False
 
     def until(self, first: int, last: int) -> int:
-        """Return the end of the next step; steps are equal, because short ones leave lanes idle."""
+        """Return the end of the next step. The steps are equal, because short steps leave lanes idle."""
         left = last - first
         end = first + -(-left // -(-left // self.step))
         between = end - end % self.together
         return between if end < last and between > first else end
 
     def took(self, count: int, seconds: float) -> None:
-        """Adapt to a step and its time [s]."""
+        """Adapt the number to the time of a step [s]."""
         if self._first is None:
             self._first = count, seconds
         elif not self.begun:
@@ -104,7 +104,7 @@ class Pace:
             self.step = max(1, min(step, _FASTER * self.step, DEFAULT_CHUNK))
 
     def settled(self, seconds: float) -> float:
-        """Return the time of a piece without the start-up of its first step: code, motions [s]."""
+        """Return the time of a piece without the start-up in its first step (loading of code and motions) [s]."""
         startup, self._startup = self._startup, 0.0
         return seconds - startup if startup < seconds else seconds
 
@@ -154,18 +154,18 @@ class WorkerTask:
             )  # fmt: skip
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Stop = lambda: False) -> bytes | None:
-        """Return the shard of a chunk, or of its first piece of about a second; None if stopped."""
+        """Return the shard of a chunk, or of its first piece of about a second; None after a stop."""
         results = empty_results(chunk.last - chunk.first, self.histories.columns)
         last = self.fill(results, chunk, threads, stop)
         return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)
 
     def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Stop) -> int | None:
-        """Compute a chunk, or its first second; return the first missing history, None if stopped."""
+        """Compute a chunk for about a second; return the first history that is missing, or None after a stop."""
         self.check()
         first, begun = chunk.first, time.perf_counter()
         while first < chunk.last:
             spent, done = time.perf_counter() - begun, first - chunk.first
-            # a piece ends after a second, unless the rest needs less than half a second
+            # a piece ends after a second, unless the remaining histories need less than half a second
             if spent > PIECE and done > 0 and (chunk.last - first) * spent > _REST * PIECE * done:
                 break
             if done and stop():
@@ -180,7 +180,7 @@ class WorkerTask:
         return first
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
-        """Write the shard of a chunk or piece; seconds: its time."""
+        """Write the shard of a chunk or piece; `seconds` is its computing time."""
         done = chunk.piece(*shard.range_of(data))
         disk.write_new(path_of(self.folder, done), data)
         return Done(done, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
@@ -215,8 +215,8 @@ class Executor(ABC):
         Yields
         ------
         Done
-            Chunks with shards on disk, in any order, or the first piece of a slow chunk. The iterator then returns the
-            rest, also after its end.
+            Chunks with shards on disk, in any order, or the first piece of a slow chunk. The iterator `chunks` then
+            returns the remaining piece, even after its end.
         """
 
 
@@ -228,8 +228,8 @@ def cannot_be_sent(error: Exception) -> str:
 class Serial(Executor):
     """Computes the chunks one after another in this process.
 
-    A second thread computes the next chunk while a chunk is packed, written, recorded and reported. This thread calls
-    `Histories.run`, never twice at a time, and possibly during the progress function. At most two chunks and one file
+    A second thread computes the next chunk while a chunk is packed, written, recorded and reported. The second thread
+    calls `Histories.run`, one call at a time, possibly during the progress function. At most two chunks and one file
     are in memory. The thread ends with the run.
 
     Parameters
@@ -251,12 +251,12 @@ class Serial(Executor):
             return None if last is None else (last, job.pace.settled(time.perf_counter() - start))
 
         def begin() -> tuple[Chunk, Arrays, Future[tuple[int, float] | None]] | None:
-            """Begin the next chunk, if any; its results are complete at the end of its task."""
+            """Begin the next chunk, if there is one. Its results are complete at the end of its task."""
             chunk = next(chunks, None)
             if chunk is None:
                 return None
             results = empty_results(chunk.last - chunk.first, job.histories.columns)
-            # the context of the caller includes the overflow settings of NumPy
+            # the task has the context of the caller, which includes the overflow settings of NumPy
             return chunk, results, pool.submit(copy_context().run, compute, results, chunk)
 
         try:
@@ -264,7 +264,7 @@ class Serial(Executor):
             while begun is not None:
                 chunk, results, future = begun
                 while not wait([future], _LOOK).done:
-                    pass  # Ctrl-C does not interrupt an unlimited wait on all systems
+                    pass  # on some systems, Ctrl-C does not interrupt a wait without time limit
                 done = future.result()
                 if done is None:
                     return
@@ -272,7 +272,7 @@ class Serial(Executor):
                 yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, done[0]), results), done[1])
                 if stop():  # the next chunk is discarded
                     return
-                begun = begun or begin()  # rest of the last chunk
+                begun = begun or begin()  # `chunks` may now return the remaining piece of the last chunk
         finally:
             over.set()  # the thread stops at its next check
             pool.shutdown()

@@ -32,9 +32,9 @@ _KEPT, _BASE = 100, 150_000_000
 class Forecast:
     """Remaining time and disk space of a campaign."""
 
-    histories: int  # remaining number
+    histories: int  # number of remaining histories
     chunks: int
-    work: Estimate  # time of one core, from a distributed sample
+    work: Estimate  # computing time of one core, from a distributed sample
     needed: int  # required disk space [bytes]
     free: int
 
@@ -117,14 +117,14 @@ def _free(folder: Path) -> int:
 
 
 def trial(histories: Histories) -> Estimate:
-    """Return the mean time of a history, from runs distributed over all of them.
+    """Return the mean time of a history, from runs distributed over all histories.
 
     The generation of a motion is timed separately, and divided by its number of histories. The interval is twice the
     standard error.
     """
     count, synthetic = histories.count, not histories.motions.in_memory
     start = time.perf_counter()
-    _timed(histories, 0, min(count, _WARM))  # start-up: motions, code
+    _timed(histories, 0, min(count, _WARM))  # this run includes the start-up: loading of motions and code
     middle = count // 2
     size = int(_SHARE / max(_timed(histories, middle, min(middle + _WARM, count)), 1e-9))
     size = max(1, min(size, _RUN, histories.together if synthetic else count, count))
@@ -134,7 +134,7 @@ def trial(histories: Histories) -> Estimate:
         first -= first % histories.together if synthetic else 0
         last = min(first + size, count)
         cost = _timed(histories, first, last)
-        if synthetic:  # the second run has the motions in memory
+        if synthetic:  # the first run generates the motions, the second run finds them in memory
             again = _timed(histories, first, last)
             used = np.unique(histories.rows(first, last).motion).size
             cost = again + max(0.0, cost - again) * (last - first) / used * min(1.0, len(histories.motions) / count)

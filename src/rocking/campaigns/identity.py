@@ -24,7 +24,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.histories import Histories
 
-LAST_DIGITS = "another processor, build or ROCKING_ISA"  # causes of other last digits
+LAST_DIGITS = "another processor, build or ROCKING_ISA"  # possible causes of results with other last digits
 _EACH = 16
 _OF_REFERENCE = 4
 NAME = "campaign.json"
@@ -33,7 +33,7 @@ _SHOWN = 5
 
 
 def engine_of(histories: Histories) -> str:
-    """Return the engine with a fingerprint: equal texts, such as ``fast, 0123456789abcdef``, mean equal bits."""
+    """Return the engine with a fingerprint, such as ``fast, 0123456789abcdef``; equal texts mean equal results."""
     engine = fast_engine.chosen(histories.engine, histories.law)
     mechanics = dict.fromkeys(mechanics_of(block.settings) for block in histories.parts)
     return f"{engine}, {'-'.join(_fingerprint(engine, _isa(engine, kind), kind) for kind in mechanics)}"
@@ -63,7 +63,7 @@ def _fingerprint(engine: str, instruction_set: str, mechanics: Mechanics) -> str
 
 def _motions() -> tuple[list[Segments], list[Segments], list[Segments]]:
     """Return pulses, and records without and with a vertical component."""
-    # parabolic waves, four segments up and four down, of exact binary fractions
+    # parabolic waves, four segments up and four segments down, of exact binary fractions
     bump = np.array([0.0, 4.0, -4.0, 0.5, -0.5, 0.0, 0.25, -0.25])
     waves = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * bump
     pulses = [Segments(step, size * waves) for size, step in ((2.0, 0.25), (6.0, 0.25), (12.0, 0.5), (3.0, 0.75))]
@@ -102,11 +102,11 @@ class Identity:
     """Plan of a campaign, and the description of its histories."""
 
     plan: Plan
-    histories: dict[str, Any]  # description
+    histories: dict[str, Any]  # description of the histories
 
     @classmethod
     def of(cls, histories: Histories, size: int | None = None) -> "Identity":
-        """Return the identity of a new campaign: equal for all engines with equal last digits."""
+        """Return the identity of a new campaign. Engines with equal last digits of results have equal identities."""
         size = usual_chunk(histories) if size is None else size
         content = histories.description()
         plan = Plan(histories.key(content), histories.count, size, engine_of(histories), software())
@@ -140,7 +140,7 @@ class Identity:
             ) from error
 
     def write(self, folder: Path) -> None:
-        """Write the file; it makes the folder a campaign."""
+        """Write the file of the identity. A folder with this file is a campaign."""
         content = {"plan": asdict(self.plan), "histories": self.histories}
         disk.write_new(folder / NAME, _encoded(content, _sum(content)))
 
@@ -150,7 +150,7 @@ class Identity:
         was, now = self.plan, other.plan
         if was.key != now.key:
             differences = list(_differences(self.histories, other.histories, ""))
-            differences.sort(key=lambda text: "..." in text)  # readable differences come first
+            differences.sort(key=lambda text: "..." in text)  # sort readable differences first
             more = f"; and {len(differences) - _SHOWN} more" if len(differences) > _SHOWN else ""
             shown = "; ".join(differences[:_SHOWN]) + more
             raise CampaignMismatchError(
@@ -173,7 +173,7 @@ class Identity:
 
 
 def usual_chunk(histories: Histories) -> int:
-    """Return the default number of histories per chunk; those of a synthetic motion remain together."""
+    """Return the default number of histories per chunk; histories of one synthetic motion remain together."""
     together = 1 if histories.motions.in_memory else histories.together
     engine = fast_engine.chosen(histories.engine, histories.law)
     usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK

@@ -1,4 +1,4 @@
-"""The ledger of finished chunks, written by the process of the campaign only, and the results read from them."""
+"""The ledger of finished chunks, and the reading of their results. Only the campaign's process writes the ledger."""
 
 import hashlib
 import sqlite3
@@ -36,7 +36,7 @@ CREATE TABLE IF NOT EXISTS events (
 
 
 class LedgerEntry(NamedTuple):
-    """A finished chunk, or a piece of one."""
+    """Record of a finished chunk, or of a finished piece of a chunk."""
 
     number: int
     first: int
@@ -65,13 +65,13 @@ class Ledger:
 
     @property
     def begun(self) -> bool:
-        """True if the tables exist; a new file has none for an instant."""
+        """True if the tables exist; a new file has no tables for an instant."""
         (tables,) = self._database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
         return bool(tables)
 
     @contextmanager
     def instant(self) -> Iterator[None]:
-        """Read at one instant: between two queries another process may merge pieces."""
+        """Read all queries at one instant, because another process may merge pieces between two queries."""
         self._database.execute("BEGIN")
         try:
             yield
@@ -121,7 +121,7 @@ class Ledger:
             yield record
 
     def check(self, plan: Plan) -> None:
-        """Refuse a ledger that is damaged or of another campaign."""
+        """Refuse a ledger that is damaged or belongs to another campaign."""
         (state,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if state != "ok" or version != FORMAT:
@@ -182,7 +182,7 @@ def _writable(path: Path) -> sqlite3.Connection:
         if version == 0:
             database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
     except sqlite3.DatabaseError:
-        database.close()  # at once: later it would remove the log of the new ledger
+        database.close()  # close now, because a later close would remove the log of the new ledger
         raise
     if fresh:
         sync_folder(path.parent)
@@ -190,12 +190,12 @@ def _writable(path: Path) -> sqlite3.Connection:
 
 
 def _readable(path: Path) -> sqlite3.Connection:
-    """Open without writing if nobody writes; the log exists during a run or after a kill only."""
+    """Open read-only if no process writes. The log exists only during a run or after a kill."""
     address = f"{path.absolute().as_uri()}?mode=ro"
     if path.with_name(f"{path.name}-wal").exists():
         try:
             return _connected(address)
-        except sqlite3.OperationalError:  # the folder is read-only: newer records of the log are not visible
+        except sqlite3.OperationalError:  # in a read-only folder, newer records of the log are not visible
             if not path.exists():
                 raise
     return _connected(f"{address}&immutable=1")
@@ -215,8 +215,8 @@ class HistoryRange(NamedTuple):
     """Results of some histories."""
 
     first: int
-    last: int  # not included
-    results: Arrays  # by the names of `Histories.columns`
+    last: int  # history after the last one
+    results: Arrays  # results by the names in `Histories.columns`
 
 
 def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
@@ -232,7 +232,7 @@ def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
 
 
 def digest(ranges: Iterator[HistoryRange]) -> str:
-    """Return the SHA-256 of results, names and types; it is independent of the chunk size."""
+    """Return the SHA-256 of results, names and types. This hash does not depend on the chunk size."""
     columns: dict[str, Any] = {}
     for piece in ranges:
         for name, values in piece.results.items():
@@ -249,10 +249,10 @@ class Verification:
     histories: int
     verified: int  # histories with unchanged results
     chunks: int  # complete chunks with unchanged results
-    # one sentence per recorded shard that is changed, incomplete, of other histories, or missing; one for an unreadable
-    # ledger
+    # one sentence per recorded shard that is changed, incomplete, missing, or belongs to other histories, and one
+    # sentence for an unreadable ledger
     damaged: tuple[str, ...]
-    missing: tuple[tuple[int, int], ...]  # missing histories: first, last (not included)
+    missing: tuple[tuple[int, int], ...]  # ranges of missing histories: first history, history after the last one
 
     @property
     def is_complete(self) -> bool:
@@ -281,7 +281,7 @@ def _verified(folder: Path, plan: Plan, records: list[tuple[Chunk, str]]) -> Ver
             _read(folder, chunk, sealed)
         except CampaignDamagedError as error:
             if chunk.parent and not any(listed == chunk for listed, _ in _records(folder, plan)):
-                return verified(folder)  # a running process has merged it meanwhile
+                return verified(folder)  # a running process has merged this piece meanwhile
             damaged.append(str(error))
         else:
             verified_ranges.append((chunk.first, chunk.last))
@@ -296,7 +296,7 @@ def _verified(folder: Path, plan: Plan, records: list[tuple[Chunk, str]]) -> Ver
 
 
 def _records(folder: Path, plan: Plan) -> list[tuple[Chunk, str]]:
-    """Return the recorded chunks and pieces with their seals; overlapping ones are an error."""
+    """Return the recorded chunks and pieces with their seals."""
     if not (folder / NAME).exists():
         return []
     with Ledger(folder) as ledger, ledger.instant():

@@ -37,8 +37,8 @@ class Failure(NamedTuple):
 
 def serve(job: WorkerTask, connection: Connection) -> None:
     """Compute chunks until the end, or until the process of the campaign has ended."""
-    # the end of the process of the campaign closes a pipe, but a forked sibling may keep the pipe open; a new parent is
-    # another sign, but the parent may be a fork server: both are checked
+    # The end of the campaign's process closes a pipe, but a forked sibling can keep the pipe open. The parent process
+    # then changes too, but the parent can be a fork server. Therefore both are checked.
     father, campaign = os.getppid(), multiprocessing.parent_process()
 
     def orphaned() -> bool:
@@ -110,11 +110,11 @@ class _Member:
 
     def send(self, chunk: Chunk, attempts: int) -> None:
         self.tasks.append((chunk, attempts))
-        with contextlib.suppress(OSError):  # the worker has ended; its tasks include this chunk
+        with contextlib.suppress(OSError):  # an error means that the worker has ended; its tasks include this chunk
             self.connection.send(chunk)
 
     def answers(self, ready: set[Any]) -> Iterator[Done | Failure | None]:
-        """Yield the results of the worker; None if it has ended."""
+        """Yield the results of the worker; None if the worker has ended."""
         if self.connection not in ready and self.process.sentinel not in ready:
             return
         try:

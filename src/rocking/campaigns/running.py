@@ -27,22 +27,22 @@ from rocking.studies.histories import Histories
 class EarlierRun:
     """Shards and records of an earlier run."""
 
-    folder: Path  # of the shards
+    folder: Path  # folder of the shards
     plan: Plan
     ledger: Ledger
-    adopted: int = 0  # unrecorded shards: the run ended between writing and recording them
+    adopted: int = 0  # number of adopted shards: the run ended after writing and before recording them
     # sentences on damaged and missing shards
     set_aside: list[str] = field(default_factory=list)
     # sorted pieces of unfinished chunks, by chunk number
     pieces: dict[int, list[Chunk]] = field(default_factory=dict)
-    finished: np.ndarray = field(init=False)  # flag per chunk
+    finished: np.ndarray = field(init=False)  # True for finished chunks
 
     def __post_init__(self) -> None:
         """Mark all chunks as unfinished."""
         self.finished = np.zeros(self.plan.chunks, bool)
 
     def recover(self, stop: Callable[[], bool] = lambda: False) -> "EarlierRun":
-        """Check all shards, remove records of damaged ones, and adopt unrecorded ones."""
+        """Check all shards, remove the records of damaged shards, and adopt unrecorded shards."""
         for path in (self.folder, self.folder.with_name(PIECES)):
             disk.remove_unfinished(path)
         is_recorded = np.zeros(self.plan.chunks, bool)
@@ -62,14 +62,14 @@ class EarlierRun:
         return self
 
     def _recover_pieces(self, stop: Callable[[], bool]) -> None:
-        """Check the pieces of unfinished chunks, adopt unrecorded ones, and remove the others."""
+        """Check the pieces of unfinished chunks, adopt unrecorded pieces, and remove all other pieces."""
         recorded: set[str] = set()
         for record in list(self.ledger.pieces()):
             if stop():
                 return
             piece = self.plan.chunk(record.number).piece(record.first, record.last)
             if self.finished[record.number]:
-                self.ledger.forget(piece.name)  # its chunk is complete
+                self.ledger.forget(piece.name)  # the chunk of this piece is complete
             elif self._intact(piece, record.seal) is not None:
                 self.pieces.setdefault(record.number, []).append(piece)
                 recorded.add(piece.name + SUFFIX)
@@ -77,7 +77,7 @@ class EarlierRun:
             if stop():
                 return
             if path.name not in recorded and not self._adopt_piece(path):
-                path.unlink(missing_ok=True)  # a damaged file is set aside before
+                path.unlink(missing_ok=True)  # a damaged file already has another name
         for pieces in self.pieces.values():
             pieces.sort()
 
@@ -102,14 +102,14 @@ class EarlierRun:
         data = self._intact(chunk)
         if data is None:
             return False
-        disk.sync_folder(path_of(self.folder, chunk).parent)  # a kill may have followed the renaming
+        disk.sync_folder(path_of(self.folder, chunk).parent)  # for a run killed after renaming
         record = LedgerEntry(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
         (self.ledger.record_piece if chunk.parent else self.ledger.record)(record)
         self.adopted += 1
         return True
 
     def _intact(self, chunk: Chunk, sealed: str | None = None) -> bytes | None:
-        """Return a valid shard; a damaged one is set aside, removed from the ledger and noted."""
+        """Return a valid shard, or None. A damaged shard is renamed, removed from the ledger and noted."""
         path = path_of(self.folder, chunk)
         try:
             data = path.read_bytes()
@@ -126,7 +126,7 @@ class EarlierRun:
 
 
 def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:
-    """Set a damaged ledger aside; a new one adopts the shards, since each contains its own seal."""
+    """Rename a damaged ledger. A new ledger adopts the shards, because each shard contains its own seal."""
     try:
         with disk.guarded(folder), Ledger(folder, writable=True) as ledger:
             ledger.check(plan)
@@ -143,15 +143,15 @@ def now() -> str:
 
 
 _LEAST, _FIRST, _MOST = 0.2, 0.25, 1.2
-"""Smallest time of a piece, its time before all segments are measured, and its largest time [s]."""
+"""Time of a piece: smallest, before all segments have a measured cost, and largest [s]."""
 
-_LONG = 20.0  # longer campaigns begin with small pieces in all segments [s]
+_LONG = 20.0  # a campaign longer than this time begins with small pieces in all segments [s]
 
 
 class Remaining(Iterator[Chunk]):
-    """Chunks and pieces that remain; each is returned once, unless its rest is put back.
+    """Remaining chunks and pieces. Each is returned once, unless its remaining histories are put back.
 
-    They come from all segments of the campaign in turn, so the measured cost represents the remaining cost.
+    They come from all segments of the campaign in turn, so that the measured cost represents the remaining cost.
     """
 
     def __init__(
@@ -170,7 +170,7 @@ class Remaining(Iterator[Chunk]):
         order = np.random.default_rng(seed).permutation if seed is not None else np.asarray
         self._rank = order(np.arange(len(self._free)))
         ends = zip(costs.edges[:-1], costs.edges[1:], strict=True)
-        # the next chunk is the last of the list
+        # the last chunk of the list is returned first
         self._chunks = [
             order(numbers[(numbers * plan.size < high) & ((numbers + 1) * plan.size > low)])[::-1].tolist()
             for low, high in ends
@@ -187,12 +187,12 @@ class Remaining(Iterator[Chunk]):
         return piece
 
     def back(self, done: Chunk, seconds: float) -> None:
-        """Record the computed histories and their time [s], and put the rest of their piece back."""
+        """Record the computed histories and their time [s], and put back the remaining histories of their piece."""
         self._rate = (done.last - done.first) / max(seconds, 1e-9)
         piece = self._out.pop(done.first, done)
         if piece.last == done.last:
             return
-        gaps: list[Chunk] = []  # sorted; adjacent ones are joined
+        gaps: list[Chunk] = []  # sorted gaps; adjacent gaps are joined
         for gap in sorted([piece.piece(done.last, piece.last), *self._gaps.get(done.number, [])]):
             if gaps and gaps[-1].last == gap.first:
                 gaps[-1] = gap.piece(gaps[-1].first, gap.last)
@@ -221,7 +221,7 @@ class Remaining(Iterator[Chunk]):
             self._chunks[segment].pop()
 
     def _share(self) -> int:
-        """Return the number of histories of the next piece; several workers finish at similar times."""
+        """Return the number of histories of the next piece, so that several workers finish at similar times."""
         left, sharers = int(self._free.sum()), self._sharers()
         small = self._costs.unseen().size and left > self._worth(_LONG)
         most = self._worth(_FIRST if small else _MOST) if self._rate else left
@@ -232,15 +232,15 @@ class Remaining(Iterator[Chunk]):
         return max(1, int(seconds * self._rate)) if self._rate else self._least
 
     def _cut(self, number: int, position: int, first: int, count: int) -> Chunk:
-        """Remove some histories from a gap; its rest on both sides remains."""
+        """Remove histories from a gap, and keep the remaining gaps on both sides."""
         gaps = self._gaps[number]
         gap = gaps.pop(position)
         last = min(first + count, gap.last)
         between = last - last % self._together
-        if between <= first and self._together <= self._worth(PIECE):  # a short motion stays in one piece
+        if between <= first and self._together <= self._worth(PIECE):  # keep a short motion in one piece
             between += self._together
         last = min(between, gap.last) if between > first else last
-        last = gap.last if gap.last - last < (last - first) // 2 else last  # no small rest
+        last = gap.last if gap.last - last < (last - first) // 2 else last  # avoid a small remaining gap
         sides = ((gap.first, first), (last, gap.last))
         gaps[position:position] = [gap.piece(*side) for side in sides if side[0] < side[1]]
         return gap.piece(first, last)
@@ -287,7 +287,7 @@ def run(
             run.compute(executor, remaining, interruption.requested)
         if interruption.requested():
             raise CampaignInterrupted(f"stopped: {meter.sentence()} in {folder}; run the campaign again to go on")
-        with suppress(OSError):  # damaged pieces remain
+        with suppress(OSError):  # a folder with damaged pieces remains
             (folder / PIECES).rmdir()
     return Summary(
         meter.chunks - before,

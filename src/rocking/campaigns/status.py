@@ -12,7 +12,7 @@ from rocking.campaigns import disk
 from rocking.campaigns.chunks import Chunk, Plan
 
 PARTS = 16
-"""Number of equal segments with their own cost: costs change from the first to the last history."""
+"""Number of equal segments with their own cost, because the cost changes from the first to the last history."""
 
 _SETTLED = 4.0
 NOISE = 0.1  # usual variation of the speed of a machine [-]
@@ -133,10 +133,10 @@ class CampaignStatus:
     running: str | None  # process of the present run
     seconds: float  # time of all workers for finished chunks [s]
     retries: int  # attempts of finished chunks beyond the first
-    damaged: tuple[str, ...]  # damaged or missing shards that were computed again; a rebuilt ledger
+    damaged: tuple[str, ...]  # damaged or missing shards that were computed again, and a rebuilt ledger
     software: str  # version of this package
     work: Estimate | None = None  # remaining time of one worker; None while a segment has no measurement
-    broken: tuple[str, ...] = ()  # damaged or missing shards at present; a run computes them again
+    broken: tuple[str, ...] = ()  # shards that are damaged or missing at present; a run computes them again
 
     @property
     def complete(self) -> bool:
@@ -164,7 +164,7 @@ class Progress:
     chunks_done, chunks : int
         Recorded chunks, and their total.
     rate : float
-        Histories a second in this run [1/s]; 0 at its start.
+        Histories per second in this run [1/s]; 0 at its start.
     left : Estimate or None
         Remaining time; None during its measurement.
     seconds : float
@@ -190,7 +190,7 @@ class Summary:
     computed: int  # computed chunks
     resumed: int  # chunks of earlier runs
     adopted: int  # unrecorded chunks of an earlier run
-    set_aside: tuple[str, ...]  # damaged or missing shards that were computed again; a rebuilt ledger
+    set_aside: tuple[str, ...]  # damaged or missing shards that were computed again, and a rebuilt ledger
     retries: tuple[str, ...]  # repeated chunks, with reasons
     seconds: float  # duration [s]
 
@@ -222,9 +222,9 @@ class Meter:
         self._say()
 
     def add(self, done: Chunk, seconds: float, *, is_chunk: bool) -> None:
-        """Record one more chunk, or a piece of one, and its time [s]."""
+        """Record one more chunk, or a piece of a chunk, and its time [s]."""
         if not self._work:
-            self._begun = time.perf_counter() - seconds  # without the start-up
+            self._begun = time.perf_counter() - seconds  # the start-up is not included
         self.costs.add(done.first, done.last, seconds)
         self._work += seconds
         self._pace = self._speed.look(self._work, time.perf_counter())

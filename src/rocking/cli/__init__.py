@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rocking.errors import RockingError
 
-_FEW_COLLECTIONS = 100_000  # objects between two collections of garbage: imported objects remain
+_FEW_COLLECTIONS = 100_000  # objects between two garbage collections; imported objects remain anyway
 
 
 def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None:
     """Run the command line and exit: 0 done, 2 invalid input, 130 interrupted.
 
-    Errors do not name `unnamed_file`, a file that the caller has written.
+    `unnamed_file` is a file that the caller has written; errors do not name this file.
     """
     gc.set_threshold(_FEW_COLLECTIONS)
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # their search reads every installed distribution
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # a search for plug-ins is slow
     from typer import BadParameter
 
     from rocking.cli.application import SUBCOMMANDS, application
@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
             warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Notes()
             _register_own_models()
-            # without a command the help is the answer
+            # without a command, show the help
             full_arguments = arguments + ["--help"] * (arguments in ([], *([name] for name in SUBCOMMANDS)))
             code = application(arguments)(args=full_arguments, prog_name="rocking", standalone_mode=False, obj=main)
     except RockingError as error:
@@ -65,7 +65,7 @@ def main(arguments: Sequence[str] | None = None, unnamed_file: str = "") -> None
 
 
 def _of_own_model(error: Exception) -> "RockingError":
-    """Return the refusal of an error in a user's own model; raise any other error again."""
+    """Return the message for an error in a user's own model; raise any other error again."""
     from rocking.errors import RockingError
     from rocking.restitution.from_file import in_own_model
 
@@ -82,8 +82,8 @@ def _register_own_models() -> None:
 
 
 def _refusal(error: Any) -> "RockingError":
-    """Return the refusal of an invalid option; its hint names the input-file key of an unknown option."""
-    from pydantic import ValidationError  # and numpy below, which help does not need
+    """Return the error of an invalid option; its hint names the input-file key of an unknown option."""
+    from pydantic import ValidationError  # imported here, because help does not need pydantic and numpy
 
     from rocking.bodies.formats.words import from_pydantic
     from rocking.cli.options import FRICTION_RANGE, key_of

@@ -66,8 +66,8 @@ RECORD = {
 SUBCOMMANDS = ("record", "measurements", "campaign")
 PLUGINS = "rocking.commands"
 """Entry-point group of commands from other distributions: a name and its function."""
-ABSENT = {"serve": "rocking-workbench"}  # distributions of commands, for the error without them
-_GENERIC = {"histories", "bifurcation", "orbits", "lyapunov", "basins"}  # from the table of the study
+ABSENT = {"serve": "rocking-workbench"}  # distribution of a command, for the error if it is absent
+_GENERIC = {"histories", "bifurcation", "orbits", "lyapunov", "basins"}  # options follow from the table of the study
 _MODULES = {"assess": "predict", "models": "catalogues", "record formats": "catalogues"}
 
 
@@ -79,7 +79,7 @@ def commands() -> dict[str, str]:
 def plugins() -> dict[str, str]:
     """Return the commands of other installed distributions, each as "module:function".
 
-    `importlib.metadata` gives the same in 0.1 s of CPU time, a third of that of `rocking --help`.
+    `importlib.metadata` gives the same result, but needs 0.1 s of CPU time: a third of the time of `rocking --help`.
     """
     added: dict[str, str] = {}
     for folder in sys.path:
@@ -98,10 +98,10 @@ def _load(value: str) -> Callable[..., None]:
 
 
 def added_studies() -> dict[str, str]:
-    """Return the summaries of studies without a command module, by kind: files of `rocking.spec.questions`."""
+    """Return the summaries of studies without a command module, by kind, from the files of `rocking.spec.questions`."""
     files = {module.name for module in iter_modules([f"{folder}/questions" for folder in spec.__path__])}
     tables_of_commands = {*commands(), "minimum", "long_run"}  # tables of overturning-pga and of four commands
-    if files <= tables_of_commands:  # the import of the questions is slow
+    if files <= tables_of_commands:  # avoids the slow import of the questions
         return {}
     from rocking.spec.questions import questions
 
@@ -127,7 +127,7 @@ class CommandList(TyperGroup):
 
 
 def application(arguments: Sequence[str] | None = None) -> typer.Typer:
-    """Return the application with all commands; for the arguments of a call, only with the command of that call."""
+    """Return the application with all commands, or only with the command in the given arguments."""
     command_name, subcommand_name, *_ = *(arguments or words_on_the_line()), "", ""
     app = typer.Typer(
         name="rocking",
@@ -153,7 +153,7 @@ def application(arguments: Sequence[str] | None = None) -> typer.Typer:
 
 
 def _added(command_name: str) -> dict[str, dict[str, str]]:
-    """Return the groups with plug-ins and added studies; refuse a command whose distribution is absent."""
+    """Return the groups with plug-ins and added studies; raise an error for a command of an absent distribution."""
     functions = {name: _load(value) for name, value in plugins().items()}
     if command_name in ABSENT and command_name not in functions:
         distribution = ABSENT[command_name]
@@ -164,7 +164,7 @@ def _added(command_name: str) -> dict[str, dict[str, str]]:
 
 
 def _add(app: typer.Typer, name: str, summary: str, panel: str, second: str | None) -> None:
-    """Add a command; second: the subcommand of the call, None for all subcommands."""
+    """Add a command; `second` is the subcommand of the call, or None for all subcommands."""
     if name == "record":
         group = typer.Typer(name=name, no_args_is_help=True, pretty_exceptions_enable=False, add_completion=False)
         for subcommand, summary_of_subcommand in RECORD.items():

@@ -65,7 +65,7 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
     {'settings': {'gravity': 9.81, 'friction': 0.5}, 'body': {'up': 'y'}}
     """
     tables: Tables = {}
-    present = dict(renamed_keys())  # options accept the present keys only
+    present = dict(renamed_keys())  # options accept only the present keys
     for text in texts or ():
         path, equals, value = text.partition("=")
         table, dot, key = path.strip().partition(".")
@@ -97,7 +97,7 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
 
 def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
     """Return the tables of a file with the keys of ``--set``; lists: a list of one table counts as a table."""
-    tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options have the present keys
+    tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options use the present keys
     changed = dict(tables)
     for table, keys in sets.items():
         name = "motions" if lists and table == "motion" else table
@@ -155,8 +155,8 @@ class Arguments:
         keys: Collection[str] | None = None,
     ) -> Tables:
         """Return a table with the values of options and of `--set`; `--set` replaces defaults only."""
-        # spelt: the typed text by key, of options with another name than their key; empty if not typed
-        # keys: the keys of `--set` to include, by default all
+        # spelt: typed text by key, for options with another name than their key; empty if not typed
+        # keys: included keys of `--set`, by default all
         sets = {key: value for key, value in self.sets.get(name, {}).items() if keys is None or key in keys}
         for key in sets:
             option = (spelt or {}).get(key, self.spelt(key))
@@ -204,13 +204,13 @@ class Arguments:
         return motions if several and not any(word[:2] in {"x=", "y=", "z="} for word in motions) else []
 
     def hinted(self) -> AbstractContextManager[None]:
-        """Add a hint to a refusal of the body file or the first motion."""
+        """Add a hint to an error of the body file or of the first motion."""
         body, motions = self.body_and_motions()
         axis, _, source = motions[0].partition("=") if motions else ("", "", "")
         return hinted(body, source if axis in {"x", "y", "z"} else next(iter(motions), None))
 
     def restitution(self, usual: Tables | None = None) -> Tables:
-        """Return the table [restitution] of `--set`, else the default, else that of the option; may be empty."""
+        """Return the table [restitution]: that of `--set`, or the default, or that of the option, or an empty table."""
         keys: Tables = self.sets.get("restitution", {})
         if keys and (option := self.spelt("restitution")):
             raise UsageError(
@@ -272,7 +272,7 @@ class Arguments:
 
     def components(self, motions: Sequence[str]) -> Tables:
         """Return the tables of the motions of a 3D body by axis."""
-        # `--set` of format, unit and time step applies to every file, other keys to the motion along x, or the first
+        # --set of format, unit and time step applies to every file, other keys apply to the motion along x or the first
         along = _along(motions)
         if not along:
             raise UsageError(NO_MOTION + ", along y and z with --motion y=FILE and --motion z=FILE")
@@ -335,7 +335,7 @@ def _along(motions: Sequence[str]) -> dict[str, str]:
 
 @contextmanager
 def hinted(body: str | None, word: str | None, vertical_component: str = "") -> Iterator[None]:
-    """Add a hint to the refusal of a body file or a record; vertical_component: its name in the record."""
+    """Add a hint to the error of a body file or a record; `vertical_component` is a name in the record."""
     try:
         yield
     except BodyFileError as error:

@@ -18,7 +18,7 @@ from rocking.cli.spelling import UsageError
 from rocking.errors import RockingError, extra
 from rocking.tables import target_of
 
-REPORT, PICTURE = "report", "picture"  # the ranked table of an inventory with its lights; the picture of a study
+REPORT, PICTURE = "report", "picture"  # ranked table of an inventory with its ratings; figure of a study
 _SAFE = "the campaign is unchanged"
 
 
@@ -139,7 +139,7 @@ def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:
             to.mkdir(parents=True, exist_ok=True)
             write_provenance(folder.job.provenance, to / STEM)
             return write_inventory(result, to)
-        # before the report: every report has its provenance
+        # the provenance comes first, so that every report has its provenance
         provenance = write_provenance(folder.job.provenance, to)
         try:
             return [write_inventory_file(result, to)], []
@@ -151,7 +151,7 @@ def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:
 
 @contextmanager
 def _stored(to: Path) -> Iterator[None]:
-    """Turn an error of the disk into a refusal that confirms the campaign unchanged."""
+    """Convert an error of the disk into an error with a note that the campaign is unchanged."""
     with disk.guarded(to, lambda: _SAFE):
         try:
             yield
@@ -165,7 +165,7 @@ def _stored(to: Path) -> Iterator[None]:
 
 def _facts(folder: JobFolder, path: Path, content: str) -> dict[str, Any]:
     rounds = finished_rounds(folder.path)
-    # tables of an adaptive study contain all rounds, its histories only the first round
+    # tables of an adaptive study contain all rounds; its histories contain only the first round
     of_all = rounds is not None and content != "histories"
     with path.open("rb") as file:
         return {

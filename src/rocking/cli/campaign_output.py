@@ -39,7 +39,7 @@ _CODES: dict[type[BaseException], int] = {
 
 @contextmanager
 def codes(folder: Path | None = None) -> Iterator[None]:
-    """Turn the interruption of a campaign into a message and its exit code; other errors pass."""
+    """Convert the interruption of a campaign into a message and an exit code; raise other errors unchanged."""
     try:
         yield
     except tuple(_CODES) as error:
@@ -202,7 +202,7 @@ def _sentence(job_status: JobStatus) -> str:
 
 @contextmanager
 def bar(title: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show the progress, rate and remaining time: a bar on a terminal, else a line every few seconds."""
+    """Show the progress, rate and remaining time: a bar on a terminal, otherwise a line every few seconds."""
     if quiet:
         yield lambda progress: None
         return

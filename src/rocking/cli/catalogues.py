@@ -77,7 +77,7 @@ class _Formats:
         from rich.text import Text
 
         console = Console(highlight=False)
-        if not console.is_terminal:  # a file or a pipe: fixed width
+        if not console.is_terminal:  # fixed width for a file or a pipe
             console = Console(highlight=False, width=100)
         table = Table(box=None, pad_edge=False, header_style="bold")
         for head in ("name", "files", "unit", "step"):

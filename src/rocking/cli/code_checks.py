@@ -161,7 +161,7 @@ class CodesAnswer:
     """Code methods compared with time histories."""
 
     result: "CodeComparison"
-    others: dict[str, Any]  # of the compared models
+    others: dict[str, Any]  # results of the compared models
     details: bool = False
 
     def answer(self) -> Answer:
@@ -175,7 +175,7 @@ class CodesAnswer:
         from rocking.cli.study import source_lines
 
         result = self.result
-        outcomes, count = result.overturned[result.overturned == result.overturned], len(result.motions)  # not NaN
+        outcomes, count = result.overturned[result.overturned == result.overturned], len(result.motions)  # without NaN
         motions = result.motions[0] if count == 1 else f"{count}"
         page.facts([
             ("bodies", "; ".join(result.bodies)), ("motions", f"{motions}, {'; '.join(result.levels)}"),
@@ -210,7 +210,7 @@ class CodesAnswer:
 
 
 def _overturned(result: "CodeComparison") -> dict[str, Any]:
-    is_computed = result.overturned == result.overturned  # NaN: no result
+    is_computed = result.overturned == result.overturned  # NaN means no result
     return overturned(np.where(is_computed, result.overturned - 1.0, -3.0))
 
 

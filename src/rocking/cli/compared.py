@@ -45,7 +45,7 @@ def model_facts(label: str, others: Mapping[str, Any], facts: Facts, body: Any =
 
 
 def show_models(page: Page, answer: Answer, display: Display, label: str, own: dict[str, Any]) -> None:
-    """Write a table of all models, and the sentence on the model of the result; own: values of that model."""
+    """Write a table of all models, and the sentence on the model of the result; `own` contains its values."""
     page.line()
     other_models = answer["other_models"]
     if other_models:

@@ -36,7 +36,7 @@ def examples(incomplete: str) -> list[str]:
 
 
 def pulses(incomplete: str) -> list[str]:
-    """Return the pulses whose names begin with the text; empty for an empty text, for which the shell offers files."""
+    """Return the pulses whose names begin with the text. For an empty text, the shell offers files."""
     from rocking.motions.pulses import catalogue
 
     return [f"{name}:" for name in catalogue() if incomplete and name.startswith(incomplete)]

@@ -23,8 +23,8 @@ from rocking.cli.spelling import UsageError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-DIRECTIONS = 12  # azimuths of printed barriers, from x towards y
-_POSES = 8  # printed poses without --details
+DIRECTIONS = 12  # number of printed azimuths, from x towards y
+_POSES = 8  # number of printed poses without --details
 
 EXPORTS = {
     "picture": DRAWN,
@@ -167,7 +167,7 @@ class EquilibriaAnswer:
     def _weakest(self, display: Display) -> list[tuple[str, str]]:
         """Return labels and texts of the smallest uplift acceleration, the lowest barrier and the saddles."""
         lines = []
-        for base in self.bases[:1]:  # without a tolerance
+        for base in self.bases[:1]:  # the first base has no tolerance
             uplift = f"from {display.text('uplift_acceleration', base.uplift_acceleration)}"
             if not isinstance(self.solid.base, RoundBase):
                 uplift += f", azimuth {display.text('azimuth', base.azimuth)} (from x towards y)"

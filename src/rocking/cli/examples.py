@@ -38,7 +38,7 @@ def examples(
 
 @dataclass(frozen=True)
 class _Listed:
-    """Examples; is_complete: all examples, as a table."""
+    """List of examples. `is_complete` is True for all examples, which are printed as a table."""
 
     chosen: Mapping[str, Example]
     is_complete: bool

@@ -16,13 +16,13 @@ class Export:
     """A kind of output file of a result."""
 
     endings: tuple[str, ...]
-    write: Callable[[Any, Path], Any]  # arguments: answer, path
-    needs: str = ""  # required module
+    write: Callable[[Any, Path], Any]  # function of the answer and the path
+    needs: str = ""  # name of a required module
 
 
 @dataclass(frozen=True)
 class Exports:
-    """Requested output files by kind."""
+    """Requested output files by kind of file."""
 
     kinds: dict[str, Export]
     files: tuple[tuple[str, Path], ...]
@@ -149,7 +149,7 @@ def write_dataset(dataset: Any, path: Path) -> None:
     if path.suffix.lower() == ".nc":
         to_netcdf(dataset, path)
         return
-    dataset = dataset.drop_dims("point", errors="ignore")  # points of a refined map are not in the CSV file
+    dataset = dataset.drop_dims("point", errors="ignore")  # the CSV file does not contain the points of a refined map
     over = dataset["mode"]
     names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
 
 ANALYSES = ("stripes", "cloud", "incremental")
-COUNT, SEED = 100, 1  # default synthetic motions
-MOST_MOTIONS = 5000  # all motions are kept in memory
-MOST_IN_PICTURE = 6  # restitution models distinguishable in a picture
+COUNT, SEED = 100, 1  # default number and seed of synthetic motions
+MOST_MOTIONS = 5000  # limit, because all motions are in memory
+MOST_IN_PICTURE = 6  # largest number of restitution models in a figure
 
 
 def _csv(answer: "FragilityAnswer", path: Path) -> None:
@@ -204,7 +204,7 @@ def _problem(arguments: "Arguments", own: dict[str, Any]) -> "StudyProblem":
         raise UsageError(
             parameter="--count", allowed=Range(1, MOST_MOTIONS), value=count, hint="use rocking campaign for more"
         )
-    if kind != "cloud" and "levels" not in own:  # defaults depend on the uplift acceleration
+    if kind != "cloud" and "levels" not in own:  # default levels depend on the uplift acceleration
         bare = {key: own[key] for key in ("im", "limit_states")}
         own = {**own, "levels": _usual_levels(of_body(arguments, "cloud", bare, restitution, motions))}
     return of_body(arguments, kind, own, restitution, motions)

@@ -31,11 +31,11 @@ class FragilityAnswer:
     """The analyses of one body, by restitution."""
 
     problem: "StudyProblem"
-    results: dict[str, Any]  # by label; files of curves contain the first
+    results: dict[str, Any]  # analyses by label of the restitution; files of curves contain only the first
     compared: Any  # comparison of several restitution models
     written: str  # unit of the given levels and of printed medians, empty if none
     length: str  # unit of lengths
-    name: str | None = None  # of the body, in files
+    name: str | None = None  # name of the body in files
     crossing_curves: Any = "keep-uplift"  # treatment of curves that cross
     others: dict[str, Any] = field(default_factory=dict)  # analyses of the compared models
     details: bool = False

@@ -21,14 +21,14 @@ _RARE = {
     "help_all", "start_height", "start_velocity", "normal_restitution", "check_identities", "address", "executor",
     "damping", "min_barrier", "bisections", "samples",
 }  # fmt: skip
-"""Options that --help-all shows and --help does not."""
+"""Options that only --help-all shows."""
 _METAVARS = {
     "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motions": "MOTION", "motion": "MOTION",
     "units": "UNITS",
     "synthetic": "FAMILY", "periods": "LIST", "data": "FOLDER", "host": "ADDRESS", "inputs": "FOLDER",
     **dict.fromkeys(("count", "seed", "threads", "workers", "port", "samples", "bisections"), "N"),
 }  # fmt: skip
-_WIDTH = 20  # of the column of names
+_WIDTH = 20  # width of the column of names [characters]
 
 
 class Output:
@@ -36,7 +36,7 @@ class Output:
 
     quiet: ContextVar[bool] = ContextVar("no progress and no notes", default=False)
     verbose: ContextVar[bool] = ContextVar("version, time, and the traceback of an error", default=False)
-    began: ClassVar[float] = 0.0  # [s]
+    began: ClassVar[float] = 0.0  # start time of the command [s]
 
     @classmethod
     def reset(cls) -> None:
@@ -92,7 +92,7 @@ COMMON = {
 def with_common(command: Callable[..., None]) -> Callable[..., None]:
     """Return the command with the common options."""
     own = signature(command).parameters.values()
-    if COMMON.keys() <= signature(command).parameters.keys():  # a group is used again
+    if COMMON.keys() <= signature(command).parameters.keys():  # the command already has the common options
         return command
 
     @wraps(command)

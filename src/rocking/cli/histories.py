@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     from rocking.spec.study import StudyProblem
 
-COUNT, SEED = 20, 1  # synthetic motions by default
-_OF_FILES = {"body", "motion_provenance"}  # coordinates of files only
+COUNT, SEED = 20, 1  # default number and seed of synthetic motions
+_OF_FILES = {"body", "motion_provenance"}  # coordinates that occur only in files
 _PLURALS = {"body": "bodies", "branch": "branches"}
 _BODY: options.Options = {"body": (options.BodyFile, None)}
 _MOTIONS: options.Options = {
@@ -162,7 +162,7 @@ def _overturned(dataset: "xr.Dataset") -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class _Finished:
-    """Histories in the form that the picture of a study needs."""
+    """Histories in the form for the figure of a study."""
 
     problem: "StudyProblem"
     histories: "xr.Dataset"

@@ -137,7 +137,7 @@ class IdentifiedAnswer:
     """Result of a measurement."""
 
     result: "Identification"
-    name: str = ""  # of the body
+    name: str = ""  # name of the body
     details: bool = False
 
     def answer(self) -> Answer:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rocking.decision.inventory.assessment import Assessment
     from rocking.spec.study import StudyProblem
 
-_MOST_PLANNED, _MOST_OBJECTS = 3, 8  # printed without --details
+_MOST_PLANNED, _MOST_OBJECTS = 3, 8  # printed measures and objects without --details
 _MOST_REASONS = 5
 NOTHING_ASSESSED = 1
 """Exit code if no object of the list could be assessed."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rocking.studies._overturning_map import MapArrays
     from rocking.studies.axis import Axis
 
-_LINE = 1e-4  # tolerance of the boundary in a picture, finer than a pixel
+_LINE = 1e-4  # tolerance of the boundary in a figure, smaller than a pixel
 _RESTITUTIONS = {
     "first": Quantity("first", "", "restitution model", label="restitution"),
     "second": Quantity("second", "", "compared restitution model", label="compared with"),
@@ -37,7 +37,7 @@ _CHANGES = {
     "only_first": Quantity("only_first", "1", "cells", label="overturning only with first"),
 }
 _FLIPS = ("first", "second", "count", "fraction", "only_second", "only_first")
-_LAST = 3  # overturning after more impacts is one row; JSON has one entry per number
+_LAST = 3  # largest number of impacts with its own row; JSON has all numbers
 
 _AXIS = ": NAME=FIRST:LAST:COUNT or NAME=A,B,C, such as pga=0.1g:1g:50"
 
@@ -142,7 +142,7 @@ class MapAnswer:
     """A map with the first restitution model, its safe islands, and its change with the model."""
 
     problem: "StudyProblem"
-    arrays: "MapArrays"  # with the first restitution model
+    arrays: "MapArrays"  # map with the first restitution model
     compared: Any  # maps with several restitution models, else None
     written: dict[str, str]  # given units by name of the axis
     length: str  # unit of lengths

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SIDE = ("slenderness_angle", "semi_diagonal", "frequency_parameter")
 """Quantities of a body in its description."""
 
-MOST_VALUES = 100_000  # of a row
+MOST_VALUES = 100_000  # largest number of values in a row
 
 
 def values_table(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[dict[str, Any], str]:
@@ -85,7 +85,7 @@ def _quantities(name: str, texts: list[str], unit: str) -> tuple[list[float], st
         )  # fmt: skip
     pairs = [checks.quantity(name, text, unit) for text in texts]
     written = [suffix for _, suffix in pairs]
-    if "" in written and any(written):  # 0.1:1g could mean either
+    if "" in written and any(written):  # the unit of 0.1 in 0.1:1g would be ambiguous
         hint = checks.number_hint(",".join(texts))
         raise UsageError(
             "{parameter} must have a unit at every number or no unit, got {value}", parameter=name,

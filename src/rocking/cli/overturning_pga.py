@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from rocking.spec.study import StudyProblem
     from rocking.studies.minimum_acceleration import Transitions
 
-_SPOKEN = 4  # intervals of overturning in a sentence
-_MOST = 8  # printed crossings
+_SPOKEN = 4  # largest number of overturning intervals in a sentence
+_MOST = 8  # largest number of printed crossings
 _SHOWN = ("peak_ground_acceleration", "uplift_ratio", "mode_below", "mode_above")
 _CLOSELY = closely(peak_ground_acceleration=".6f", uplift_acceleration=".6g")
 
@@ -94,7 +94,7 @@ class MinimumAnswer:
     transitions: "Transitions"
     length: str  # units of lengths and of accelerations
     acceleration: str
-    others: dict[str, Any]  # of the compared models
+    others: dict[str, Any]  # results of the compared models
     details: bool = False
 
     def draw(self) -> Any:
@@ -178,7 +178,7 @@ _SCANNED_FINER = (
 
 
 def stretches(transitions: "Transitions") -> str:
-    """Return the intervals of overturning as text; of many intervals the first and the last."""
+    """Return the overturning intervals as text; for many intervals, only the first and the last."""
     intervals = transitions.overturning_intervals
     facts = {
         "low": _g(transitions.min_pga), "high": _g(transitions.max_pga), "resolution": percent(transitions.resolution),

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from rocking.reports.document import ReportTable
 
 Facts = Iterable[tuple[str, str]]
-_MIN_WIDTH = 24  # of folded columns of text
-MOST_ROWS = 12  # printed rows of a table
-MOST_MODELS = 8  # rows of a table of models; more models are grouped by outcome
+_MIN_WIDTH = 24  # smallest width of a column with line breaks [characters]
+MOST_ROWS = 12  # largest number of printed rows of a table
+MOST_MODELS = 8  # largest number of rows of a table of models; more models are grouped by outcome
 
 
 class CommandAnswer(Protocol):

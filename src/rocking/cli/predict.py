@@ -35,7 +35,7 @@ COUNT, SEED = 20, 1
 
 EXPORTS = {**REPORTED, "csv": CSV, "netcdf": NETCDF}
 _R = Display(own=closely(coefficient=".3f"))
-_NAMED = ("calibrated", "housner", "ked")  # cases with a row
+_NAMED = ("calibrated", "housner", "ked")  # restitution cases with their own row
 
 
 @options.takes(options.SIZES)
@@ -113,7 +113,7 @@ class PredictionAnswer:
     """Prediction of a body."""
 
     result: "Prediction"
-    name: str = ""  # of the body
+    name: str = ""  # name of the body
     details: bool = False
 
     def answer(self) -> Answer:
@@ -215,7 +215,7 @@ class AssessmentAnswer:
 
     result: "BodyAssessment"
     table: "AssessTable"
-    name: str = ""  # of the body
+    name: str = ""  # name of the body
     details: bool = False
 
     @property

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rocking.motions.flatfiles import Flatfile
     from rocking.motions.selection import Selection
 
-_MOST_PROCESSES = 8  # by default
+_MOST_PROCESSES = 8  # default limit
 _SHOWN = ("pga", "pgv", "arias", "d5_95")
 
 

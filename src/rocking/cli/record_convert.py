@@ -129,7 +129,7 @@ class Conversion:
     """A record before and after its steps."""
 
     pairs: dict[str, "tuple[GroundMotion, GroundMotion]"]  # components by axis; empty axis for a single component
-    units: str  # of formats that state no unit
+    units: str  # unit of files in formats that state no unit
     files: tuple[str, ...]
 
     @property

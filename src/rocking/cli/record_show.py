@@ -121,7 +121,7 @@ class MotionPage:
     motion: "Motion"
     samples: "GroundMotion"  # the motion, or a fine sampling of the pulse
     measures: "dict[str, Measure]"  # intensity measures by short name
-    spectrum: "ResponseSpectrum"  # at the requested periods
+    spectrum: "ResponseSpectrum"  # spectrum at the requested periods
     acceleration: str  # unit of printed accelerations
 
     def draw(self) -> Any:

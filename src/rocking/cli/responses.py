@@ -85,8 +85,8 @@ class ResponseAnswer:
     problem: ResponseProblem
     response: Any
     display: Display
-    others: dict[str, Any] = field(default_factory=dict)  # by model: the response, or the reason for none
-    details: bool = False  # show every impact and model
+    others: dict[str, Any] = field(default_factory=dict)  # response of each model, or the reason for its absence
+    details: bool = False  # True to show every impact and model
 
     @property
     def _friction(self) -> dict[str, float]:

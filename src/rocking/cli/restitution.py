@@ -120,9 +120,9 @@ def _model(text: str) -> Any:
 
 
 def named_body(arguments: Arguments, *, quiet: bool, in_space: bool = False) -> tuple[Any, float]:
-    """Return the body and the gravity [m/s2], also from a file of a response; notes do not mix with JSON.
+    """Return the body and the gravity [m/s2], also from the input file of a response.
 
-    in_space: return a 2D body with depth as a 3D body.
+    With `quiet`, notes are printed on standard error. With `in_space`, a 2D body with depth becomes a 3D body.
     """
     word, sets = arguments.options["body"], arguments.sets
     allowed_options = ("foot", "restitution", "check_identities", "min_barrier")

@@ -53,7 +53,7 @@ def _animate(answer: Any, path: Path) -> None:
     from rich.progress import Progress
 
     hidden = not sys.stderr.isatty()
-    # quiet too: older versions of rich end a bar that is not shown with an empty line
+    # `quiet` is necessary, because older versions of rich print an empty line after a hidden bar
     with Progress(console=Console(stderr=True, quiet=hidden), transient=True, disable=hidden) as progress:
         task = progress.add_task("frames")
         animate_gif(
@@ -225,7 +225,7 @@ class SeveralAnswer:
     motions: list[Any]
     responses: list[Any]
     display: Display
-    label: str  # of the restitution
+    label: str  # label of the restitution
     others: dict[str, Any]  # responses with the compared models
 
     def answer(self) -> Answer:
@@ -278,7 +278,7 @@ def _peak(response: Any) -> dict[str, float]:
 
 
 def _check_share(alpha: float, initial_rotation: float, option: str) -> None:
-    """Refuse an initial rotation above 90 degrees, and warn above 1: probably an angle in degrees; alpha [rad]."""
+    """Refuse an initial rotation above 90 degrees; warn above 1, which can be an angle in degrees; alpha [rad]."""
     fraction = math.radians(initial_rotation) / alpha
     if abs(initial_rotation) * alpha >= 0.5 * math.pi:
         raise UsageError(

@@ -16,9 +16,9 @@ from rocking.cli.page import Page
 from rocking.quantities import closely
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
-PARALLEL = 1e-3  # edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]
-MOST_EDGES = 16  # computed edges, those of smallest slenderness angle
-DIRECTIONS = 4  # directions of rocking of a round base, from x towards y
+PARALLEL = 1e-3  # tolerance of parallel edges [rad], because coordinates in files are rounded
+MOST_EDGES = 16  # largest number of computed edges: those of smallest slenderness angle
+DIRECTIONS = 4  # number of rocking directions of a round base, from x towards y
 
 ROUND_BASE = (
     "these values are valid only if the body is guided in one vertical plane; a free body rolls on its rim without "
@@ -26,7 +26,7 @@ ROUND_BASE = (
 )
 """Limit of a 2D coefficient of a round base."""
 
-_MOST = 12  # printed corners of a base
+_MOST = 12  # largest number of printed corners of a base
 
 _PLACES = ("edge_start", "edge_end", "base_vertices", "base_centre", "centre")
 _GEOMETRY = (
@@ -132,7 +132,7 @@ class SolidAnswer:
 
 
 def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[dict[str, Any]]:
-    """Return every edge with the impact that follows rocking about it, as plain values."""
+    """Return every edge with the impact after rocking about this edge, as plain values."""
     base = solid.base
     if not isinstance(base, SupportPolygon):
         azimuths = [k * 2.0 * math.pi / DIRECTIONS for k in range(DIRECTIONS)]
@@ -156,7 +156,7 @@ def _edge(
     gravity: float,
     end: list[float] | None = None,
 ) -> dict[str, Any]:
-    """Return an edge with its impact; end: its second corner (x, y) [m], None for a round base."""
+    """Return an edge with its impact; `end` is the second corner (x, y) [m], None for a round base."""
     alpha, semi_diagonal = _arm(solid, edge)
     inertia = float(edge.direction @ solid.inertia @ edge.direction) + solid.mass * semi_diagonal**2
     start = edge.point[:2].tolist()
@@ -189,7 +189,7 @@ def _arm(solid: Solid, edge: Edge) -> tuple[float, float]:
 
 
 def _landing(base: SupportPolygon, which: int) -> tuple[str, Edge | Corner]:
-    """Return the landing edge, parallel on the opposite side, or else the corner farthest from the edge."""
+    """Return the landing edge: the parallel edge on the opposite side, or otherwise the farthest corner."""
     edge, edges = base.edge(which), base.edges
     for number, other in enumerate(edges):
         if float(edge.direction @ other.direction) < -math.cos(PARALLEL):

@@ -100,7 +100,7 @@ def _periods(text: str) -> dict[str, Any]:
     return values_table("--periods", text, "s", "log")[0]
 
 
-_MOST = 8  # printed curves
+_MOST = 8  # largest number of printed curves
 _SHOWN = (
     "slenderness_ratio", "slenderness_angle", "not_lifted", "rocked", "overturned", "largest_peak_ratio",
     "largest_overturned_period",

@@ -13,7 +13,7 @@ class UsageError(InvalidValueError):
 
 
 _RUNNING: ContextVar[typer.Context | None] = ContextVar("the command that runs", default=None)
-_KEYS = {"restitution.model": "restitution"}  # options with another name than the key
+_KEYS = {"restitution.model": "restitution"}  # keys of options with another name
 
 
 def run_in(context: typer.Context) -> None:

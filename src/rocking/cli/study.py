@@ -29,11 +29,11 @@ TABLES = ("body", "motion", "restitution", "settings")
 """Tables with keys that `--set` can change, in addition to the own table of a study."""
 MOST_HISTORIES = 10_000_000
 """Larger studies need `rocking campaign`."""
-_OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys of a motion of one record file
+_OF_ONE_FILE = {"component", "vertical", "vertical_file"}  # keys that apply to a motion of one record file
 
 
 def problem_in(context: "typer.Context", word: str | None, command: str, *allowed: str) -> StudyProblem | None:
-    """Return the study of an input file with the keys of `--set`; None if the argument is no input file."""
+    """Return the study of an input file with the keys of `--set`, or None if the argument is no input file."""
     if (file := document_file(context, word, ("campaign", command), allowed)) is None:
         return None
     kinds = [kind for kind, question in questions().items() if question.own_table() == command]
@@ -50,7 +50,7 @@ def problem_in(context: "typer.Context", word: str | None, command: str, *allowe
 
 
 def problem_of(kind: str, arguments: Arguments, motions: list[dict[str, Any]], **tables: Any) -> StudyProblem:
-    """Return the study of the options; tables: tables of the document other than motions and settings."""
+    """Return the study of the options; `tables` are the tables of the document except motions and settings."""
     settings = {"settings": arguments.table("settings", {"friction": arguments.options.get("friction")})}
     if stated := arguments.restitution(tables.pop("restitution", {})):
         tables["restitution"] = stated
@@ -82,7 +82,7 @@ def _in_memory(document: StudyQuestion, files: InputFiles) -> StudyProblem:
 
 
 def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
-    """Return the number of histories with all files of folders; for an adaptive study that of the first round.
+    """Return the number of histories with all files of folders; for an adaptive study, that of the first round.
 
     compared: include the histories of the models compared with the default.
     """
@@ -152,7 +152,7 @@ def _differ_in_files(table: dict[str, Any], other: dict[str, Any]) -> bool:
 
 
 def family(arguments: Arguments, usual: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the table of synthetic motions, None with given motions; usual: defaults."""
+    """Return the table of synthetic motions, or None if motions are given; `usual` contains the defaults."""
     options = {name: arguments.options[name] for name in ("synthetic", "count", "seed")}
     if arguments.body_and_motions()[1]:
         if odd := [f"--{name}" for name, value in options.items() if value is not None]:
@@ -185,7 +185,7 @@ def source_lines(motions: Sequence[MotionSummary]) -> list[tuple[str, str]]:
 
 
 def contact_lines(settings: Settings, *, varied: bool = False) -> list[tuple[str, str]]:
-    """Return the printed line of a contact with sliding; varied: friction is an axis of the study."""
+    """Return the printed line of a contact with sliding; `varied` is True if friction is an axis of the study."""
     stated = settings.stated
     if "friction" not in stated:
         return []

@@ -1,4 +1,4 @@
-"""Languages of reports and of the page: gettext catalogues of the English messages, and how numbers are written."""
+"""Languages of reports and of the application: gettext catalogues of the English messages, and number formats."""
 
 import gettext
 import string
@@ -24,7 +24,7 @@ class Language(string.Formatter):
         self.mark, self.catalogue = LANGUAGES[self.code], _catalogue(self.code)
 
     def __call__(self, text: str | Message, many: str = "", /, **facts: Any) -> str:
-        """Return a message with its facts; many: the text where the fact `count` is not 1."""
+        """Return a message with its facts; `many` is the text for a fact `count` other than 1."""
         message = text if isinstance(text, Message) else Message(text, facts, many)
         if message.many:
             translated = self.ngettext(message.text, message.many, message.facts["count"])
@@ -74,10 +74,10 @@ def language(code: str) -> Language:
 
 @lru_cache(maxsize=8)
 def page_words(code: str) -> dict[str, str | list[str]]:
-    """Return the messages of a language by their English texts, forms by a count as a list; none of English."""
+    """Return the translations by English text, and a list of forms for a text with a count; empty for English."""
     messages: dict[str, str | list[str]] = {}
     for key, text in vars(_catalogue(code)).get("_catalog", {}).items():
-        if isinstance(key, tuple):  # the English text, and the number of the form
+        if isinstance(key, tuple):  # the key contains the English text and the number of the form
             forms = messages.setdefault(key[0], [])
             assert isinstance(forms, list)
             forms.append(text)

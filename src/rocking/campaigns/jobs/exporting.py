@@ -49,8 +49,8 @@ from rocking.tables import (
 )
 from rocking.tables.table import written_whole
 
-MOST_REPETITIONS = 100_000  # most repetitions of a bootstrap
-MOST_CELLS = 100_000  # largest map with a count of safe islands
+MOST_REPETITIONS = 100_000  # largest number of repetitions of a bootstrap
+MOST_CELLS = 100_000  # largest number of cells for a count of safe islands
 MAP = ("mode", "still_rocking")  # results for safe islands
 COMPARED = ("flips", "differences")  # tables of a comparison
 
@@ -170,7 +170,7 @@ def export(
             _write_tables([compared], unfinished, attributes_of(folder, provenance))
         else:
             _write_study(folder, unfinished, table, attributes_of(folder, provenance), progress)
-        if target.suffix.lower() in {".csv", ".xml"}:  # no attributes in these formats
+        if target.suffix.lower() in {".csv", ".xml"}:  # these formats have no attributes
             write_provenance(provenance, target)
     return target
 
@@ -256,7 +256,7 @@ def _write_study(
         def pieces() -> Iterator[tuple[int, int, Arrays]]:
             return pieces_of(study, folder.campaign.pieces(), progress)
 
-        if suffix != ".csv":  # no attributes
+        if suffix != ".csv":  # CSV files have no attributes
             attributes = {**attributes, "contact": _contact_words(folder)}
         FORMATS[suffix](Grid("histories", study.dims, study.coordinates, study.types, pieces, attributes), path)
         if suffix != ".nc" or "refined" not in study.exports:
@@ -319,7 +319,7 @@ def _write_fragility(
 
 
 def measures_table(ranking: MeasureComparison) -> Table:
-    """Return a ranking of measures as a table, the most efficient first; ``p(name)`` per metadata column."""
+    """Return a ranking of measures as a table, the most efficient first, with ``p(name)`` of each metadata column."""
     rows = [row | {"unit": "1" if row["unit"] == "-" else row["unit"]} for row in ranking.rows()]
     tested = {name: f"p-value of the residuals over {name[2:-1]}" for row in rows for name in row if name[:2] == "p("}
     return _of_rows("rank", rows, _RANKED | tested)
@@ -330,7 +330,7 @@ def comparison_table(compared: Sensitivity, table: str) -> Table:
     if table == "flips":
         rows = compared.summary()
         return _of_rows("choice", rows, {name: "" for row in rows for name in row})
-    # analyses have another name of the peak rotation over alpha
+    # fragility analyses have another name for the peak rotation / slenderness angle
     peak_name = "peak_ratio" if "peak_ratio" in compared.datasets[compared.baseline] else "rotation"
     verdict, peak = compared.differences("verdict"), compared.differences(peak_name)
     columns = {}

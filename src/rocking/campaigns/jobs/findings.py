@@ -58,12 +58,12 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     Returns
     -------
     dict
-        By label of the restitution: the result of `fragility_analysis`.
+        Result of `fragility_analysis` by label of the restitution.
 
     Raises
     ------
     InvalidValueError
-        If the kind of the campaign has none.
+        If campaigns of this kind have no fragility analysis.
     """
     study = folder.job.study
     if study.finish is None:
@@ -89,7 +89,7 @@ def answer(folder: JobFolder) -> AdaptiveResult:
     InvalidValueError
         If the kind of the campaign has no rounds.
     CampaignIncompleteError
-        If it is not finished.
+        If the campaign is not finished.
     """
     search = folder.job.study.search
     if search is None:
@@ -148,7 +148,7 @@ def comparison(folder: JobFolder, names: Collection[str] = ("outcome", "peak_rat
     Raises
     ------
     InvalidValueError
-        If there is only one restitution, or the kind of the campaign has none to compare.
+        If there is only one restitution, or campaigns of this kind cannot be compared.
     CampaignIncompleteError
         If the campaign is not finished.
     """
@@ -174,7 +174,7 @@ def pieces_of(
 
 
 def datasets(folder: JobFolder, names: Collection[str] = ()) -> "dict[str, xr.Dataset]":
-    """Return results of all histories by label of the restitution, as from the functions of the studies."""
+    """Return results of all histories by label of the restitution, in the form of the functions of the studies."""
     study, labels = folder.job.study, list(folder.job.problem.restitutions)
     flat = {name: np.empty(study.histories.count, study.types[name]) for name in names or study.types}
     for first, last, results in pieces_of(study, folder.campaign.pieces()):
@@ -231,7 +231,7 @@ def measure_comparison(
     total, count, motions = len(folder.job.problem.motions) * len(names), folder.campaign.plan.count, 0
 
     def measured(more: int) -> None:
-        """Report measured motions as a number of histories; each motion counts once per measure."""
+        """Report the progress as a number of histories; `more` counts each motion once per measure."""
         nonlocal motions
         before, motions = count * motions // total, motions + more
         if progress is not None:
@@ -244,7 +244,7 @@ def measure_comparison(
 
 
 def label_of(table: str, restitution: str | None, labels: list[str]) -> str:
-    """Return the selected restitution; required if several have their own table."""
+    """Return the label of the selected restitution, which is required if there are several."""
     if restitution is None and len(labels) > 1:
         own = table if table == MEASURES else f"a {table}"
         raise InvalidValueError(
@@ -256,7 +256,7 @@ def label_of(table: str, restitution: str | None, labels: list[str]) -> str:
 
 @dataclass(frozen=True)
 class FinishedStudy:
-    """Results of a finished campaign for the picture of its question; default: the first restitution."""
+    """Results of a finished campaign for the figure of its study; the default is the first restitution."""
 
     folder: JobFolder
 

@@ -43,7 +43,7 @@ from rocking.spec.schema import SCHEMA
 if TYPE_CHECKING:
     from rocking.spec.question import StudyQuestion
 
-JOB, INPUTS = "job.toml", "inputs.json"  # files of the folder
+JOB, INPUTS = "job.toml", "inputs.json"  # names of the files in the folder
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class JobFolder:
             ).at(str(path))
         with located(str(path), "file"):
             files = InputFiles(base)
-            for item in content["files"]:  # before reading: a changed file may be unreadable
+            for item in content["files"]:  # the check comes before reading, because a changed file may be unreadable
                 files.file(item["path"])
             refuse_changes(content["files"], files.facts())
         job = Job.of_text(text, content["job_file"], base)
@@ -138,7 +138,7 @@ class JobFolder:
 
     @cached_property
     def campaign(self) -> Campaign:
-        """The campaign, or the first round of an adaptive study; created if a killed process did not."""
+        """The campaign, or the first round of an adaptive study. A killed process may not have created it."""
         chunk = self.job.document.campaign.chunk
         if self.job.study.search is None:
             return opened(self.path / HISTORIES, self.job.study.histories, chunk)
@@ -188,10 +188,10 @@ class JobStatus:
     path: Path
     name: str
     kind: str
-    # None if it was killed before its start; for an adaptive study, of all rounds so far
+    # status of the campaign, or of all rounds so far of an adaptive study; None before the start of the campaign
     status: CampaignStatus | None
     complete: bool  # True if all histories are computed
-    # number of rounds of an adaptive study so far; their total is unknown before the end. None for other studies
+    # number of rounds so far of an adaptive study, whose total is unknown before the end; None for other studies
     rounds: int | None = None
 
 
@@ -203,12 +203,12 @@ def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStat
     folder : path
         The folder.
     verify : bool
-        Read all results, and exclude damaged ones. Otherwise the ledger is used without a check.
+        Read all results, and exclude damaged results. Otherwise the ledger is used without a check.
 
     Returns
     -------
     JobStatus
-        The recorded progress at this instant.
+        Recorded progress at the time of the call.
     """
     path = Path(folder)
     return job_status(path, _document(path), verify)
@@ -242,7 +242,7 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     Returns
     -------
     Verification
-        The result; for an adaptive study, of all rounds together.
+        Result of the check; for an adaptive study, of all rounds together.
     """
     path = Path(folder)
     adaptive = _document(path).is_adaptive
@@ -276,7 +276,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         content = json.loads(noted)
         files = [(item["path"], item["sha256"], item["bytes"]) for item in content["files"]]
         assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
-        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # absent in older folders
+        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders contain no hash of the job
             raise CampaignDamagedError(
                 "{file} has changed since the campaign began", file=path / JOB,
                 hint="restore it, or begin a new campaign in another folder",
@@ -291,7 +291,7 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def _of_schema(number: int, text: str) -> str:
-    """Return a stored job with its restitution: the default of schema 1 was ked."""
+    """Return a stored job with a stated restitution, because the default of schema 1 was ked."""
     tables = tomllib.loads(text) if number < 2 else {"restitution": {}}
     is_stated = "restitution" in tables or tables.get("campaign", {}).get("kind") == "inventory"
     return text if is_stated else f'{text}\n[restitution]\nmodel = "ked"\n'

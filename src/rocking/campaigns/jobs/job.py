@@ -124,7 +124,7 @@ class Job:
 
     @property
     def inputs(self) -> list[dict[str, Any]]:
-        """Input files: path, sha256 and bytes of each."""
+        """Path, SHA-256 and size in bytes of each input file."""
         return self.problem.inputs.facts()
 
     @cached_property

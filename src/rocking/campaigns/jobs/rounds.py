@@ -1,4 +1,4 @@
-"""Rounds of an adaptive study on disk: each is a separate campaign and is computed once."""
+"""Rounds of an adaptive study on disk: each round is a separate campaign and is computed once."""
 
 import json
 import shlex
@@ -30,12 +30,12 @@ from rocking.studies.study_plan import AdaptiveResult, Search, first_round
 _T = TypeVar("_T")
 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
-"""Results that studies need; a round keeps only these in memory."""
+"""Results that studies need; a round keeps only these results in memory."""
 
 HISTORIES = "histories"  # the only round of a study that is not adaptive
 
 FINISHED = "finished.json"
-"""Written after the last round: number of rounds and of histories."""
+"""File with the number of rounds and the number of histories, written after the last round."""
 
 
 def round_folder(folder: Path, number: int) -> Path:
@@ -54,14 +54,14 @@ def resume_hint(folder: Path) -> str:
 
 @contextmanager
 def way_out(folder: Path, number: int) -> Iterator[None]:
-    """Add the remedy of the user to the error of a damaged round."""
+    """Add a remedy for the user to the error of a damaged round."""
     try:
         yield
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
         if not any(
             PurePath(location.name).name == NAME for location in error.places
-        ):  # a shard or the ledger is rebuilt
+        ):  # a resumed run rebuilds shards and ledger
             error.hint = resume_hint(folder)
             raise
         raise CampaignDamagedError(
@@ -71,7 +71,7 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
 
 
 def of_rounds(folder: Path, adaptive: bool, report_on: Callable[[Path], _T]) -> list[_T]:
-    """Return a report on each round; a non-adaptive study has one round."""
+    """Return a report on each round. A study that is not adaptive has one round."""
     if not adaptive:
         return [report_on(folder / HISTORIES)] if (folder / HISTORIES / NAME).exists() else []
     reports: list[_T] = []
@@ -103,7 +103,7 @@ def finished_rounds(folder: Path) -> dict[str, int] | None:
 
 
 class Rounds:
-    """The rounds of a study in order: computed with an executor, read without.
+    """The rounds of a study in order. With an executor they are computed, otherwise read from disk.
 
     Ctrl-C and SIGTERM between two rounds are recorded.
     """
@@ -129,7 +129,7 @@ class Rounds:
                 raise CampaignIncompleteError("{folder} is missing", folder=path, hint=resume_hint(self.folder))
             campaign = opened(path, histories, self.chunk)
             if self.who is not None:
-                with suppress(CampaignDamagedError):  # damaged results are set aside, reported, and computed again
+                with suppress(CampaignDamagedError):  # damaged results are renamed, reported, and computed again
                     results = campaign.results(*NEEDED) if campaign.status(verify=False).complete else None
                 if results is None:
                     self.advance(campaign)
@@ -140,7 +140,7 @@ class Rounds:
 
     def advance(self, campaign: Campaign) -> None:
         """Compute the missing results of a round."""
-        # a round of one chunk needs one worker only
+        # a round of one chunk needs only one worker
         alone = {"executor": "serial", "workers": 1, "start_method": None} if campaign.plan.chunks == 1 else {}
         self.between.__exit__()  # the campaign handles Ctrl-C and SIGTERM within a round
         if self.between.requested():
@@ -159,7 +159,7 @@ class Rounds:
 
     @contextmanager
     def _stopping(self) -> Iterator[None]:
-        """Convert the error of a round into one of the job with its folder."""
+        """Convert the error of a round into an error of the campaign with its folder."""
         folder = self.folder
         try:
             with way_out(folder, self.number):
@@ -177,7 +177,7 @@ class Rounds:
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
-    """Return a campaign, created if it is absent."""
+    """Return a campaign; an absent campaign is created."""
     if (path / NAME).exists():
         return Campaign.open(path, histories)
     return Campaign.create(path, histories, chunk)
@@ -205,7 +205,7 @@ def run_rounds(
 ) -> Summary:  # fmt: skip
     """Compute the missing results of all rounds, and return the summary."""
     who = chosen(executor, workers, options.get("start_method"))
-    if isinstance(executor, Executor):  # an unusable executor is refused, even without remaining rounds
+    if isinstance(executor, Executor):  # an unusable executor is refused, even if no rounds remain
         histories = first_round(search)
         plan = Identity.of(histories).plan
         task = WorkerTask(histories, plan.engine, plan.software, Path(SHARDS))
