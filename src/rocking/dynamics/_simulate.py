@@ -55,7 +55,7 @@ class MovedOptions(HistoryOptions, total=False):
 
 
 def _shown(function: Called) -> Called:
-    """Show the options by name and default in the signature, for help, documentation and completion."""
+    """Add the options with their defaults to the signature, for help, documentation and completion."""
     defaults: dict[str, Any] = {name: values[0] for name, values in UNCHANGED.items()}
     defaults |= {"gravity": Settings.gravity, "most_events": Settings.most_events}
     signature = inspect.signature(function)
@@ -92,68 +92,73 @@ def simulate(
 ) -> Any:
     """Return the response of a body to a ground motion.
 
-    A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
-    edges and vertices of its base, or rolls on its rim, without slip; a loss of contact stops the history with an error
-    status. With `friction` it is in contact at all vertices of its convex hull: it rocks, slides, hops, flies and falls
-    into another pose. A round base under two components rolls without impacts, so that the restitution has no
-    influence. After a nearly flat position of the base, small changes have large effects.
+    A plane body rocks about its feet. With `friction`, a plane body may also slide, hop and fly. A 3D body turns about
+    the edges and vertices of its base, or rolls on its rim, without slip. A loss of contact stops this history with an
+    error status. With `friction`, a 3D body touches the ground at the vertices of its convex hull: it rocks, slides,
+    hops, flies and falls into other poses. A round base under two horizontal components rolls without impacts, so that
+    the restitution has no influence. When such a base becomes nearly flat on the ground, small changes have large
+    effects afterwards.
 
     Parameters
     ----------
     body : Body, Solid or SpatialBody
-        A plane body (Block, Section, MassPoints), or a body in space with mass, centre, inertia and base.
+        A plane body (Block, Section, MassPoints), or a 3D body with mass, centre, inertia and base.
     motion : GroundMotion, Pulse, mapping or tuple
-        The motion along x; or ``{"x": .., "y": .., "z": ..}``, z upwards, or up to three in that order, with a common
-        start. A record is linear between its samples, a pulse is exact. A plane body uses x and z.
+        The motion along x, or ``{"x": .., "y": .., "z": ..}`` with z upwards, or up to three motions in this order. All
+        components start at the same time. A record is linear between its samples; a pulse is exact. A plane body uses x
+        and z.
     restitution : str, RestitutionModel, float, mapping or ImpactLaw
-        Model or its name, coefficient, ``{"left": r, "right": r}``, or a law (`SpeedRestitution`,
-        `RandomRestitution`). With friction the coefficient applies to rocking impacts without slip and gives the
-        impulse position; if the friction demand exceeds the friction, the foot slides during the impact. Landings from
-        flight, and all impacts for None, follow from complementarity. In space: a model of `rocking.restitution.space`,
-        with or without "-3d" ("ked" needs a distribution of mass, as in a Solid, a box or a cylinder); a coefficient
-        from 0 to 1, the ratio of angular velocities with the direction of the plastic impact; or an object with
-        `velocity_after` and `label`. In space with friction: "housner-3d", "ked-3d", "calibrated-3d", or the
-        coefficient of a landing of the full base.
+        Model or its name, coefficient, ``{"left": r, "right": r}``, or a law (`SpeedRestitution`, `RandomRestitution`).
+
+        With friction, the coefficient applies to rocking impacts without slip and gives the impulse position. If the
+        friction demand exceeds the friction, the foot slides during the impact. The complementarity problem gives
+        landings from flight, and all impacts if the restitution is None.
+
+        For a 3D body: a model of `rocking.restitution.space`, with or without "-3d" ("ked" needs a distribution of
+        mass, as in a Solid, a box or a cylinder); a coefficient from 0 to 1, the ratio of angular velocities in the
+        direction of the plastic impact; or an object with `velocity_after` and `label`. For a 3D body with friction:
+        "housner-3d", "ked-3d", "calibrated-3d", or the coefficient of a landing of the full base.
     friction : float, optional
-        Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. Without
-        friction the body only rocks; a `PureRockingWarning` reports a tensile contact force, with the response of a
-        body that may fly.
+        Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If None,
+        the body only rocks. A `PureRockingWarning` then reports a tensile contact force, together with the response of
+        a body that may fly.
     normal_restitution : float
         Coefficient of normal restitution of a plane body, in [0, 1), with friction [-].
     normal_restitution_law : {"newton", "poisson", "stronge"}
-        Definition of `normal_restitution`: ratio of normal velocities (Newton), of normal impulses (Poisson), or,
-        squared, of the work of the normal impulses (Stronge). They differ if sliding stops or reverses during an
-        impact. Stronge's law replaces another law that would create energy or has no solution.
+        Definition of `normal_restitution`: ratio of normal velocities (Newton), ratio of normal impulses (Poisson), or
+        square root of the ratio of the work of the normal impulses (Stronge). The definitions differ if sliding stops
+        or reverses during an impact. Stronge's law replaces a law that would create energy or has no solution.
     gravity : float
         Acceleration of gravity [m/s2].
     engine : {"auto", "fast", "reference"}
-        Engine; `Response.engine` is the one that ran. The fast engine applies to plane bodies without friction, and to
-        bodies in space with friction.
+        Engine. `Response.engine` names the engine that was used. The fast engine applies to plane bodies without
+        friction and to 3D bodies with friction.
     linear, rest_speed, most_events, longest_step, order, tolerance
         Settings of the integration: see `PlaneSettings`, `ContactSettings`, `SpaceSettings` and `HullSettings` for
         defaults and limits.
     angular_velocity : float, or array_like of shape (3,) in space
-        Initial angular velocity theta'; in space three numbers in axes of the ground [rad/s].
+        Initial angular velocity theta'; for a 3D body three components in axes of the ground [rad/s].
     start : Start or SpatialStart, optional
-        Initial position and velocity, in place of rotation and angular_velocity; with friction also height and other
-        velocities.
+        Initial position and velocity, instead of rotation and angular_velocity. With friction, the start also has a
+        height and other velocities.
     duration : float, optional
-        Duration [s]; by default the motion and 15 / p (with friction 15 sqrt(R / g)) after it, extended while the body
-        rocks, up to 300 / p (300 sqrt(R / g)) after the motion. A body without energy loss at impacts has 15 / p only.
-        The summary includes a motion that continues at the end. With friction, a rotation beyond the slenderness angle
-        extends the response on ground at rest until the outcome is known; in space with friction until rest.
+        Duration [s]. By default, the response ends 15 / p (with friction 15 sqrt(R / g)) after the ground motion. If
+        the body still rocks, the response is extended, up to 300 / p (300 sqrt(R / g)) after the ground motion, except
+        for a body without energy loss at impacts. The summary includes a motion that continues at the end. With
+        friction, a rotation beyond the slenderness angle extends the response until the outcome is known. The response
+        of a 3D body with friction is extended until the body rests.
     stream : int
         Number of the history, for random coefficients.
     scale : float
         Factor on all components of the motion [-].
     rotation : float
-        Initial rotation theta; for a body in space the tilt towards x [rad].
+        Initial rotation theta; for a 3D body the tilt towards x [rad].
 
     Returns
     -------
     Response, ContactResponse, SpatialResponse or HullResponse
-        Response of a plane body, of a plane body with friction, of a body in space, or of a body in space with
-        friction: motion, impacts, outcome and other results.
+        Response of a plane body, a plane body with friction, a 3D body, or a 3D body with friction: motion, impacts,
+        outcome and other results.
 
     Raises
     ------
@@ -217,14 +222,14 @@ def free_rocking(
     body : Body, Solid or SpatialBody
         As for `simulate`.
     rotation : float
-        Initial rotation theta of a plane body, positive to the right; tilt of a body in space towards x [rad].
+        Initial rotation theta of a plane body, positive to the right, or tilt of a 3D body towards x [rad].
     restitution : str, RestitutionModel, float, mapping or ImpactLaw
         As for `simulate`.
     friction : float, optional
         As for `simulate` [-].
     **options
-        Other options of `simulate`, without scale. The default duration is until the body rests or lies, at most
-        300 / p; with friction 60 sqrt(R / g).
+        Other options of `simulate`, without scale. By default, the response ends when the body rests or has overturned,
+        and after 300 / p at most (with friction after 60 sqrt(R / g)).
 
     Returns
     -------

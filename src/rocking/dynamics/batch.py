@@ -1,4 +1,4 @@
-"""Many histories as rows, by the mechanics of their settings."""
+"""Many histories as rows. The settings determine the mechanics."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -17,9 +17,9 @@ from rocking.dynamics.settings import Settings, thread_count
 class Batch:
     """Motions, law of impact and settings of many histories."""
 
-    motions: Sequence[Any]  # `Segments`, all of records or all of pulses; in space `Components` too [m/s2]
+    motions: Sequence[Any]  # `Segments`, either all of records or all of pulses; for 3D bodies also `Components` [m/s2]
     law: ImpactLaw = field(default_factory=ConstantRestitution)  # law of the coefficient of restitution
-    settings: Settings = field(default_factory=PlaneSettings)  # of the integration
+    settings: Settings = field(default_factory=PlaneSettings)  # settings of the integration
     threads: int | None = None  # threads of the fast engine; default: number of processors
     engine: str = "auto"  # "auto", "fast" or "reference"
 
@@ -34,7 +34,7 @@ class Batch:
         progress: Callable[[int], None] | None = None,
         threads: int | None = None,
     ) -> tuple[Arrays, dict[str, int]]:
-        """Return arrays by the keys of `fast_engine.RESULTS`, and counts of steps (empty for the reference engine)."""
+        """Return arrays by the keys of `fast_engine.RESULTS`, and numbers of steps (empty for the reference engine)."""
         worker_count = thread_count(self.threads if threads is None else threads)
         return run_rows(self._runner, self.law, count, rows, worker_count, progress)
 

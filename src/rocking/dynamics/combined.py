@@ -29,7 +29,10 @@ _START_UNITS = {
 def plane_inputs(
     cases: Combinations, kinds: tuple[type, ...] = (Body,)
 ) -> tuple[list[Any], list[Motion], FloatArray, list[Start] | None]:
-    """Return plane bodies of these classes, motions, scales, and starts (None if not stated); refuse other inputs."""
+    """Return bodies of the classes `kinds`, motions, scales and starts (None if not stated).
+
+    Raise an error for other inputs.
+    """
     bodies = _several("bodies", cases.bodies, kinds)
     motions = [in_plane(motion) for motion in _several("motions", cases.motions, (GroundMotion, Pulse, Mapping))]
     scales = row_of("scale", cases.scales)
@@ -47,7 +50,7 @@ def dataset_of(
     settings: Settings,
     attributes: dict[str, Any],
 ) -> "xr.Dataset":
-    """Return a dataset of flat results over body, motion and the axes, with units and provenance."""
+    """Return a dataset over body, motion and the axes from flat arrays of results, with units and provenance."""
     xarray = extra("xarray", "simulate_many")
     axes = {name: row for name, row in axes.items() if row is not None}
     starts = axes.get("start", [])

@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError
 
 
 def hash_of(values: np.ndarray) -> str:
-    """Return the SHA-256 of an array of numbers; 64 hexadecimal digits, the same on every machine."""
+    """Return the SHA-256 of an array of numbers, as 64 hexadecimal digits. All machines give the same hash."""
     ordered = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
     digest = hashlib.sha256(str((ordered.dtype.str, ordered.shape)).encode())
     digest.update(ordered.view(np.uint8).data)
@@ -19,14 +19,14 @@ def hash_of(values: np.ndarray) -> str:
 
 
 def full_name(kind: type) -> str:
-    """Return the name of a class; with its module if the class is not part of rocking."""
+    """Return the name of a class. The name includes the module if the class is not part of rocking."""
     module = "rocking" if kind.__module__.startswith("rocking.") else kind.__module__
     return f"{module}.{kind.__qualname__}"
 
 
 def fields_of(instance: object) -> dict[str, Any]:
-    """Return the fields of a dataclass as plain values by name, arrays as their SHA-256."""
-    # a model in `times` is left out: the coefficients contain it already
+    """Return the fields of a dataclass as plain values by name. Arrays are replaced by their SHA-256."""
+    # a model in `times` is omitted, because the coefficients already contain its influence
     cls = type(instance)
     if "__dataclass_fields__" not in vars(cls) or _has_closure(cls):
         raise InvalidValueError(

@@ -13,24 +13,24 @@ from rocking.errors import InvalidValueError
 
 _MASK = (1 << 64) - 1
 _MOST_POINTS = 100_000
-# limit of a coefficient by side: the bound of one side may exceed 1, and larger values are truncated
+# limit of coefficients by side; the energy bound of one side may exceed 1, and values above the bound are truncated
 _MOST_BY_SIDE = 10.0
 
 
 class ImpactLaw:
-    """Base class of the laws: a factor on the coefficient of restitution of the side of landing.
+    """Base class of the laws. A law gives a factor on the coefficient of restitution of the side of landing.
 
-    A law of your own overrides `factor`, and `largest` if the factor can exceed one; it runs on the reference engine.
-    For studies it must be a dataclass of numbers, texts and arrays, or define `content`.
+    A user-defined law overrides `factor`, and `largest` if the factor can exceed 1. It runs on the reference engine.
+    For studies, a user-defined law must be a dataclass of numbers, texts and arrays, or define `content`.
 
     Attributes
     ----------
     kind : int
-        0 constant, 1 a table over the speed, 2 a random number; -1 a law defined by `factor` only.
+        0: constant; 1: table over the speed; 2: random number; -1: law defined by `factor` only.
     per_history : bool
-        True if all impacts of a history have the same draw; the law then defines `draws` for many histories.
+        True if all impacts of a history use the same random number. The law then defines `draws` for many histories.
     at, factors : ndarray
-        The table of laws with a table.
+        The table, for laws with a table.
     seed : int
         Seed of the random numbers.
     """
@@ -50,7 +50,7 @@ class ImpactLaw:
 
     @property
     def tabulated(self) -> bool:
-        """True if the fast engine supports the law; laws of your own run on the reference engine."""
+        """True if the fast engine supports the law. User-defined laws run on the reference engine."""
         return type(self).__module__ == __name__
 
     @property
@@ -69,7 +69,7 @@ class ImpactLaw:
         stream : int
             Number of the history.
         impact : int
-            Impacts that the history has had before.
+            Number of earlier impacts of the history.
 
         Returns
         -------
@@ -79,12 +79,12 @@ class ImpactLaw:
         raise NotImplementedError
 
     def content(self) -> dict[str, Any]:
-        """Return the values that define the law, in addition to its class.
+        """Return the values that, together with the class, define the law.
 
         Returns
         -------
         dict
-            Plain values: the seed and the hashes of the tables; of a dataclass of your own, its fields.
+            Plain values: the seed and the hashes of the tables. For a user-defined dataclass, its fields.
         """
         return self._tables() if self.tabulated else fields_of(self)
 
@@ -93,7 +93,7 @@ class ImpactLaw:
         return {"seed": int(getattr(self, "seed", 0)), **tables}
 
     def draws(self, numbers: Any) -> FloatArray:
-        """Return the factors of many histories, for a law with one draw per history.
+        """Return the factors of many histories, for a law with one random number per history.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class ConstantRestitution(ImpactLaw):
     Parameters
     ----------
     at, factors : ndarray, optional
-        Zero and one: the factor does not depend on speed.
+        [0] and [1]: the factor does not depend on speed.
     seed : int, optional
         Not used.
     """
@@ -132,16 +132,16 @@ class ConstantRestitution(ImpactLaw):
 
 @dataclass(frozen=True, eq=False)
 class SpeedRestitution(ImpactLaw):
-    """Coefficient that depends on impact speed: linear interpolation between points, constant outside.
+    """Coefficient that depends on impact speed: linear between the given points, constant outside.
 
     Parameters
     ----------
     at : array_like
-        Angular velocities before the impact, without sign, increasing [rad/s].
+        Absolute values of the angular velocity before the impact, increasing [rad/s].
     factors : array_like
-        Coefficients at these velocities; factors on `times` if it is given [-].
+        Coefficients at these velocities [-]. If `times` is given, factors on `times`.
     times : optional
-        Base of the factors: a coefficient, a model or its name; default 1.
+        Coefficient, model or name of a model, which the factors multiply; default 1.
     seed : int, optional
         Not used.
 
@@ -184,15 +184,15 @@ class SpeedRestitution(ImpactLaw):
 
 @dataclass(frozen=True, eq=False)
 class DrawnRestitution(ImpactLaw):
-    """Base class of random coefficients, with a distribution given by quantiles.
+    """Base class of random coefficients. Quantiles define the distribution.
 
-    Draws that would create energy are excluded: the distribution is truncated at the energy bound of each side. Both
-    sides use the same random number, so that a large draw on one side is large on the other. For the parameters see
-    `RandomRestitution`.
+    Values that would create energy are excluded: the distribution is truncated at the energy bound of each side. Both
+    sides use the same random number, so that a coefficient is large on both sides or small on both sides. For the
+    parameters see `RandomRestitution`.
     """
 
     kind: ClassVar[int] = 2
-    factors: Any  # an array after the checks: one row, or one row for the right and one for the left side
+    factors: Any  # an array after the checks: one row for both sides, or two rows, right side first
     seed: int
     times: Any = 1.0
     cut: tuple[float, float] = (0.0, 0.0)
@@ -221,9 +221,9 @@ class DrawnRestitution(ImpactLaw):
         mean, deviation : float
             Mean and standard deviation of the distribution before truncation [-].
         seed : int
-            Seed of the draws.
+            Seed of the random numbers.
         times : optional
-            Base of the draws: a coefficient, a model or its name.
+            Coefficient, model or name of a model, which the random values multiply.
         points : int
             Number of quantiles, from 2 to 100,000.
 
@@ -244,7 +244,7 @@ class DrawnRestitution(ImpactLaw):
         deviation = checks.within("deviation", deviation, 0.0, 1.0, open_low=True)
         low, high = ndtr((0.0 - mean) / deviation), ndtr((1.0 - mean) / deviation)
         levels = low + (high - low) * np.linspace(0.0, 1.0, points)
-        # the ends of the normal distribution are infinite: the outermost levels are moved inside by a quarter of a step
+        # the ends of a normal distribution are infinite; therefore, the outermost levels are moved inwards by 1/4 step
         inside = np.clip(levels, low + 0.25 * (high - low) / points, high - 0.25 * (high - low) / points)
         return cls(np.clip(mean + deviation * ndtri(inside), 0.0, 1.0), seed, times)
 
@@ -257,9 +257,9 @@ class DrawnRestitution(ImpactLaw):
         values : array_like, or mapping of foot to array_like
             Values of the coefficient or factor, for both sides or by foot [-].
         seed : int
-            Seed of the draws.
+            Seed of the random numbers.
         times : optional
-            Base of the draws: a coefficient, a model or its name.
+            Coefficient, model or name of a model, which the random values multiply.
 
         Returns
         -------
@@ -272,11 +272,14 @@ class DrawnRestitution(ImpactLaw):
 
     @property
     def truncates(self) -> bool:
-        """True if the law truncates at the energy bound; other classes are refused where they exceed the bound."""
+        """True if the law truncates at the energy bound.
+
+        Laws of other classes raise an error if they exceed the bound.
+        """
         return type(self).__module__.partition(".")[0] == "rocking"
 
     def table(self, foot: Foot | None = None) -> FloatArray:
-        """Return the quantiles for landing on a foot, at equally spaced probabilities from 0 to 1 [-]."""
+        """Return the quantiles for landings on a foot, at equally spaced probabilities from 0 to 1 [-]."""
         if self.factors.ndim == 1:
             return np.asarray(self.factors)
         if foot is None:
@@ -288,7 +291,7 @@ class DrawnRestitution(ImpactLaw):
         return interpolated(self.at, self.table(foot), probability)
 
     def share_within(self, most: float, foot: Foot) -> float:
-        """Return the probability of draws up to a bound [-]."""
+        """Return the probability of values up to a bound [-]."""
         table = self.table(foot)
         k = int(np.searchsorted(table, most, side="right"))
         if k in {0, table.size}:
@@ -297,18 +300,18 @@ class DrawnRestitution(ImpactLaw):
         return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * fraction)  # Eq. 42
 
     def factor(self, speed: float, stream: int, impact: int) -> float:
-        """Return the draw for an impact, for a law with the same table on both sides [-]."""
+        """Return the random value for an impact, for a law with the same table on both sides [-]."""
         return self.draw(stream, impact)
 
     def draw(self, stream: int, impact: int, foot: Foot | None = None, share: float = 1.0) -> float:
-        """Return the draw for an impact on a foot, from the lower fraction `share` of the distribution [-]."""
+        """Return the random value for an impact on a foot, from the lower fraction `share` of the distribution [-]."""
         return self.quantile(share * uniform(self.seed, stream, 0 if self.per_history else impact), foot)  # Eq. 41
 
 
 class RandomRestitution(DrawnRestitution):
-    """Random coefficient for every impact; the same seed, history and impact give the same coefficient.
+    """Random coefficient for every impact. Equal seed, history and impact give an equal coefficient.
 
-    Coefficients that would increase the energy are excluded, with one bound per side: see `DrawnRestitution`.
+    Coefficients that would increase the energy are excluded. Each side has its own bound, see `DrawnRestitution`.
 
     Parameters
     ----------
@@ -316,17 +319,17 @@ class RandomRestitution(DrawnRestitution):
         Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
         ``{"left": .., "right": ..}`` [-].
     seed : int
-        Seed of the draws.
+        Seed of the random numbers.
     times : optional
-        Base of the draws: a coefficient, a model or its name; default 1.
+        Coefficient, model or name of a model, which the random values multiply; default 1.
     cut : (float, float)
-        Truncated probability of the quantiles for the left and the right foot [-].
+        Probability that was truncated from the quantiles, for the left and the right foot [-].
 
     Raises
     ------
     InvalidValueError
-        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
-        2^64 - 1.
+        If the quantiles decrease or are outside [0, 1] (by side: outside [0, 10]), or if the seed is not a whole number
+        from 0 to 2^64 - 1.
 
     Examples
     --------
@@ -337,7 +340,7 @@ class RandomRestitution(DrawnRestitution):
 
 
 def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
-    """Return the linear interpolation between points, constant outside them."""
+    """Return the linear interpolation between points; the values are constant outside the points."""
     if not x > at[0]:
         return float(values[0])
     if x >= at[-1]:
@@ -371,7 +374,10 @@ def _factors(values: Any, most: float = 1.0) -> FloatArray:
 
 
 def _by_side(values: Any) -> FloatArray:
-    """Return quantiles as one row, or as two if the sides differ, right side first; one of two may exceed 1."""
+    """Return quantiles as one row, or as two rows if the sides differ, right side first.
+
+    One of two rows may exceed 1.
+    """
     if isinstance(values, Mapping):
         if set(values) != set(FEET):
             raise InvalidValueError(

@@ -36,46 +36,49 @@ def simulate_many(  # noqa: PLR0913 - independent options
     Parameters
     ----------
     bodies : Body, Solid or SpatialBody, or a sequence of them
-        All plane bodies, or all in space; an invalid body in space gives its histories an error status.
+        Either plane bodies only or 3D bodies only. The histories of an invalid 3D body get an error status.
     motions : GroundMotion, Pulse or mapping as for `simulate`, or a sequence of them
-        All records or all pulses for plane bodies; in space None for ground at rest.
-    restitution : as for `simulate`, or a list of such
+        For plane bodies, either records only or pulses only. For 3D bodies, None means ground at rest.
+    restitution : as for `simulate`, or a list of these
         A law that varies from impact to impact must be the only restitution.
     friction : float or array_like, optional
         Coulomb's coefficients between bodies and ground [-]: bodies may slide, hop and fly, as in `simulate`.
     scale : float or array_like
         Factors on the motions [-].
     rotation, angular_velocity : float or array_like
-        Initial theta [rad] and theta' [rad/s] of plane bodies, as for `simulate`. Rows of equal length give one start
-        per entry, for example for a basin of attraction; a single number applies to all starts.
+        Initial theta [rad] and theta' [rad/s] of plane bodies, as for `simulate`. Arrays of equal length give one start
+        per entry, for example for a basin of attraction. A single number applies to all starts.
     start : Start or SpatialStart, or a sequence of them, optional
-        Starts in place of rotation and angular_velocity; in space with the lowest vertex at rest on the ground. The
-        default is upright at rest.
+        Starts, instead of rotation and angular_velocity. The lowest vertex of a 3D body must be at rest on the ground.
+        By default, the body is upright and at rest.
     duration : float, optional
-        Duration for bodies in space [s]; by default to the end of the motion, on ground at rest 300 / p, extended until
-        the energy determines the outcome. With friction as for `simulate`, in space until rest in a stable pose.
+        Duration for 3D bodies [s]. By default, a history ends with the motion, or after 300 / p on ground at rest, and
+        is extended until the energy determines the outcome. With friction, the default is that of `simulate`; a 3D body
+        is followed until it rests in a stable pose.
     threads : int, optional
-        Threads of the fast engine; the results do not depend on them.
+        Number of threads of the fast engine. The results do not depend on this number.
     twin : bool
-        Compute every history a second time with half steps, for the change of its peak and outcome (`twin_change`,
-        `twin_flips`), a measure of the integration error. The computation takes three times as long.
+        If True, compute every history a second time with half steps. The changes of peak and outcome (`twin_change`,
+        `twin_flips`) measure the integration error. The computation takes three times as long.
     progress : callable, optional
         Function called with the number of histories finished since the last call.
     **options
         normal_restitution, normal_restitution_law, gravity, engine, linear, rest_speed, most_events, longest_step,
-        order and tolerance, as for `simulate`; in space without friction the last five are those of
+        order and tolerance, as for `simulate`. For 3D bodies without friction, the last five are those of
         `SpaceBatchSettings`.
 
     Returns
     -------
     xarray.Dataset
-        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and others, with units. In space also
-        over ``start``, with peak_tilt and the direction of overturning. With friction also over ``friction``, with the
-        sliding distance, and in space the final stable pose. Plane bodies with starts have ``start`` as the last
-        dimension, with the coordinates initial_rotation [rad] and initial_angular_velocity [rad/s]. Without friction a
-        history ends with its motion. Energy then determines the outcome and the peak of later half cycles, without
-        their impacts; ``still_rocking`` is the state at the end of the motion. The attributes contain the engine, and
-        the reasons for refused bodies in space.
+        Dataset over ``body, motion, scale, restitution``: outcome, status, peak_rotation and other quantities, with
+        units. 3D bodies have the additional dimension ``start``, the peak_tilt and the direction of overturning. With
+        friction, the dataset has the additional dimension ``friction`` and the sliding distance, and for 3D bodies the
+        final stable pose. Plane bodies with starts have ``start`` as the last dimension, with the coordinates
+        initial_rotation [rad] and initial_angular_velocity [rad/s].
+
+        Without friction, a history of a plane body ends with its motion. The energy then determines the outcome and
+        the peak of later half cycles; later impacts are not counted. ``still_rocking`` is the state at the end of the
+        motion. The attributes contain the engine, and the reasons for invalid 3D bodies.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """All mechanics, and the choice among them for a history, a batch or a study.
 
-A new mechanics is a folder with a `mechanics.py`, and an entry in `MECHANICS`.
+A new mechanics needs a folder with a `mechanics.py`, and an entry in `MECHANICS`.
 """
 
 from collections.abc import Mapping
@@ -23,19 +23,19 @@ MECHANICS: tuple[Mechanics, ...] = (
 
 
 def mechanics_for(body: Any, friction: Any, *, study: bool = False) -> Mechanics:
-    """Return the mechanics of a body; friction: a coefficient or None; study: True in a study."""
+    """Return the mechanics of a body. `friction` is a coefficient or None; `study` is True in a study."""
     return next(mechanics for mechanics in MECHANICS if mechanics.takes(body, friction, study=study))
 
 
 def mechanics_for_all(bodies: Any, friction: Any) -> Mechanics:
-    """Return the mechanics of one or several bodies; in space only if all bodies are in space."""
+    """Return the mechanics of one or several bodies. The mechanics is 3D only if all bodies are 3D."""
     several = bodies if isinstance(bodies, (list, tuple)) else [bodies]
     plane = [body for body in several if isinstance(body, PLANE_BODIES)]
     return mechanics_for(next(iter(plane or filter(in_space, several)), None), friction)
 
 
 def restitution_label(name: str, body: Any) -> str:
-    """Return the label of a restitution model in the result of a body: with -3d for a 3D body."""
+    """Return the label of a restitution model in results. Labels for 3D bodies end with -3d."""
     return label_of(name, in_space=in_space(body))
 
 
@@ -47,6 +47,6 @@ def mechanics_of(settings: Settings) -> Mechanics:
 
 
 def study_settings(body: Any, options: Mapping[str, Any], gravity: float = conventions.g) -> Settings:
-    """Return the settings of a study of a body, in space or not; options: fields of the settings, by name."""
+    """Return the settings of a study of a plane or 3D body. `options` contains fields of the settings by name."""
     mechanics = mechanics_for(body, options.get("friction"), study=True)
     return mechanics.split({**options, "gravity": gravity}, mechanics.settings, frozenset())[0]

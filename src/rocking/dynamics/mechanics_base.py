@@ -1,4 +1,4 @@
-"""Interface of a mechanics: bodies, settings, one history, many histories, rows of a study."""
+"""Interface of a mechanics: its bodies and settings, and functions for one history, many histories and studies."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.rows import RowRunner
 
 Sample = tuple[list[Any], ImpactLaw, Settings]
-"""Prepared motions, law and settings of histories that identify the last digits of an engine."""
+"""Motions, law and settings of test histories. Their results identify the rounding of an engine."""
 
 UNCHANGED: dict[str, tuple[Any, ...]] = {
     "friction": (None,), "normal_restitution": (0.0,), "normal_restitution_law": ("newton",),
@@ -33,21 +33,21 @@ UNCHANGED: dict[str, tuple[Any, ...]] = {
     "start": (None,), "scale": (1.0,), "rotation": (0.0,), "angular_velocity": (0.0,), "duration": (None,),
     "threads": (None,), "twin": (False,), "progress": (None,),
 }  # fmt: skip
-"""Neutral values of options, default first; a mechanics accepts them for options that it lacks."""
+"""Neutral values of options, default first. A mechanics accepts these values even for options that it does not have."""
 
 
 def in_space(body: Any) -> bool:
-    """Return True for a body in space, which has a base instead of two feet."""
+    """Return True for a 3D body, which has a base instead of two feet."""
     return not isinstance(body, (Body, np.ndarray)) and hasattr(body, "base")
 
 
 def listed(value: Any) -> list[Any]:
-    """Return a sequence as a list, another value as a list with one item."""
+    """Return a sequence as a list, and any other value as a list with one item."""
     return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
 
 
 def row_of(name: str, values: Any) -> FloatArray:
-    """Return numbers as a row, finite and within 1e6."""
+    """Return numbers as a one-dimensional array. The numbers must be finite and within 1e6."""
     row = np.atleast_1d(checks.real_array(name, values))
     if row.ndim != 1 or not row.size:
         raise InvalidValueError(
@@ -64,7 +64,7 @@ def row_of(name: str, values: Any) -> FloatArray:
 
 
 def frictions_of(friction: Any) -> FloatArray:
-    """Return coefficients of friction as a row; empty for None."""
+    """Return coefficients of friction as a one-dimensional array; empty for None."""
     return np.empty(0) if friction is None else row_of("friction", friction)
 
 
@@ -75,8 +75,8 @@ class Combinations:
     bodies: Any
     motions: Any
     restitutions: list[Any]
-    scales: Any  # [-]
-    frictions: FloatArray  # empty without friction [-]
+    scales: Any  # scale factors [-]
+    frictions: FloatArray  # coefficients of friction [-]; empty without friction
     start: Any = None
     rotation: Any = 0.0
     angular_velocity: Any = 0.0
@@ -88,19 +88,19 @@ class Combinations:
 
 
 class Mechanics(ABC):
-    """A mechanics: equations of motion with the bodies and settings for which they hold."""
+    """A mechanics: equations of motion, and the bodies and settings to which the equations apply."""
 
     name: ClassVar[str]  # identifier
     in_plane: ClassVar[bool] = True  # True if the ground motion has one horizontal component only
     slides: ClassVar[bool] = False  # True if bodies slide, hop and fly; the restitution may then be None
     is_compared: ClassVar[bool] = False  # True if studies compare restitutions, linear equations and engines
-    title: ClassVar[str]  # as a noun
+    title: ClassVar[str]  # title of the mechanics, a noun
     subject: ClassVar[str]  # description of its bodies in messages
     settings: ClassVar[type[Settings]]
-    options: ClassVar[frozenset[str]] = frozenset()  # of `follow`, in addition to settings, start and duration
-    # of `follow_many`, in addition to settings
+    options: ClassVar[frozenset[str]] = frozenset()  # options of `follow` besides settings, start and duration
+    # options of `follow_many` besides settings
     batch_options: ClassVar[frozenset[str]] = frozenset({"start", "duration", "engine", "threads", "progress"})
-    at_rest: ClassVar[Any] = None  # ground at rest as a motion of `follow`
+    at_rest: ClassVar[Any] = None  # argument of `follow` for ground at rest
 
     @property
     def batch_settings(self) -> type[Settings]:
@@ -109,11 +109,14 @@ class Mechanics(ABC):
 
     @abstractmethod
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        """Return True if the mechanics applies to a body; friction: a coefficient or None; study: True in a study."""
+        """Return True if the mechanics applies to a body.
+
+        `friction` is a coefficient or None; `study` is True in a study.
+        """
 
     @abstractmethod
     def motion(self, motion: Any) -> Any:
-        """Return a motion of the user in the form for `follow`; an error if it does not apply."""
+        """Return a motion of the user in the form for `follow`. Raise an error if the motion is not allowed."""
 
     @abstractmethod
     def start_class(self) -> type:
@@ -127,7 +130,7 @@ class Mechanics(ABC):
     def follow(
         self, body: Any, motion: Any, restitution: Any, settings: Any, *, start: Any, **options: Any
     ) -> "ResponseBase":
-        """Return the response of one body; options: scale, duration, and those of the mechanics."""
+        """Return the response of one body. `options` contains scale, duration, and options of the mechanics."""
 
     @property
     @abstractmethod
@@ -139,7 +142,7 @@ class Mechanics(ABC):
         """Return the results of every combination."""
 
     def rows(self, motions: Sequence[Any], law: Any, settings: Any, engine: str) -> "RowRunner":
-        """Return the runner of the rows of a study."""
+        """Return the object that computes the rows of a study."""
         raise InvalidValueError("studies do not take {subject}", subject=self.subject)
 
     def parameters(self, body: Any, restitution: Any, settings: Settings) -> RockingParameters:
@@ -147,24 +150,24 @@ class Mechanics(ABC):
         return RockingParameters.of_body(body, restitution, settings.gravity, may_be_none=self.slides)
 
     def check_motions(self, motions: Sequence[Any]) -> None:
-        """Refuse motions of a study to which the mechanics does not apply."""
+        """Raise an error if the mechanics does not apply to a motion of a study."""
         if any(isinstance(motion, Components) for motion in motions):
             raise InvalidValueError("a plane body needs a motion with one horizontal component, got several")
 
     def engine_of_study(self, *, fast: bool) -> str:
-        """Return the name of the engine of a study; fast: True if the compiled engine ran."""
+        """Return the name of the engine of a study. `fast` is True if the compiled engine was used."""
         return "fast" if fast else "reference"
 
     def samples(self, pulses: list[Any], flat: list[Any], upright: list[Any]) -> list[Sample]:
-        """Return histories that identify the last digits of the engine, for pulses and records without and with z."""
+        """Return test histories that identify the rounding of the engine: pulses, and records without and with z."""
         return []
 
     def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:
-        """Return the rows of these histories, limited to values that the mechanics accepts."""
+        """Return the rows of the test histories, limited to values that the mechanics accepts."""
         return values
 
     def instruction_set(self) -> str:
-        """Return the instruction set on which the last digits of the engine depend; empty if there is only one."""
+        """Return the instruction set on which the rounding of the engine depends; empty if there is no dependence."""
         return ""
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
@@ -181,7 +184,7 @@ class Mechanics(ABC):
     def split(
         self, options: Mapping[str, Any], kind: type[Settings], own: frozenset[str]
     ) -> tuple[Settings, dict[str, Any]]:
-        """Return the settings and the other options of the mechanics; refuse unknown options."""
+        """Return the settings and the other options of the mechanics. Raise an error for unknown options."""
         names = kind.names()
         self.refuse_others(options, {*names, *own})
         stated = {name: value for name, value in options.items() if value is not None or None not in _neutral(name)}
@@ -189,7 +192,7 @@ class Mechanics(ABC):
         return settings, {name: stated[name] for name in own if name in stated}
 
     def refuse_others(self, options: Mapping[str, Any], allowed: set[str]) -> None:
-        """Refuse options that the mechanics lacks, unless their values are neutral."""
+        """Raise an error for options that the mechanics does not have, unless their values are neutral."""
         for name, value in options.items():
             if name not in allowed and not _is_neutral(name, value):
                 raise InvalidValueError(
@@ -199,21 +202,21 @@ class Mechanics(ABC):
 
 
 class PlaneMechanics(Mechanics):
-    """Mechanics of plane bodies; their starts are of class `Start`."""
+    """Mechanics of plane bodies, with starts of class `Start`."""
 
     def motion(self, motion: Any) -> Any:
-        """Return the motion along x, with z as its vertical component."""
+        """Return the motion along x, with the motion along z as vertical component."""
         return in_plane(motion)
 
     def start_class(self) -> type:
-        """Return the class of starts in a plane."""
+        """Return the class of starts of plane bodies."""
         from rocking.dynamics.plane_frictional.base import Start
 
         return Start
 
 
 class SpatialMechanics(Mechanics):
-    """Mechanics of bodies in space; their starts are of class `SpatialStart`."""
+    """Mechanics of 3D bodies, with starts of class `SpatialStart`."""
 
     in_plane, at_rest = False, (None, None, None)
 
@@ -229,14 +232,14 @@ class SpatialMechanics(Mechanics):
         return self.start_class()(rotation, angular_velocity=spin)
 
     def start_class(self) -> type:
-        """Return the class of starts in space."""
+        """Return the class of starts of 3D bodies."""
         from rocking.dynamics.rolling.attitude import SpatialStart
 
         return SpatialStart
 
 
 def _is_neutral(name: str, value: Any) -> bool:
-    values = _neutral(name)  # 0 is not False
+    values = _neutral(name)  # distinguish 0 from False
     return any(value is option for option in values) or (not np.ndim(value) and name != "linear" and value in values)
 
 

@@ -1,4 +1,4 @@
-"""Parameters of the equations of motion of a body: angle, frequency parameter and coefficient of each side."""
+"""Parameters of the equations of motion: slenderness angle, frequency parameter and coefficient of each side."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from rocking.restitution.registry import BOUND_ROUNDING, energy_refusal
 from rocking.restitution.registry import coefficients_of as _coefficients_of
 
 COMPLEMENTARITY = "complementarity alone"  # label of restitution=None with friction
-UNIMPOSED = -1.0  # no coefficient: impacts are plastic by complementarity, or follow `normal_restitution` [-]
+UNIMPOSED = -1.0  # no coefficient: complementarity with plastic impacts, or `normal_restitution` [-]
 
 _NEGLIGIBLE = 1e-4
 
@@ -35,7 +35,7 @@ class RockingSide:
     Parameters
     ----------
     slenderness_angle : float
-        Angle alpha [rad].
+        Slenderness angle alpha [rad].
     frequency_parameter : float
         p [rad/s].
     semi_diagonal : float
@@ -45,7 +45,7 @@ class RockingSide:
     inertia_ratio : float
         m R^2 / I_o, with the moment of inertia I_o about the foot; 3/4 for a rectangle [-].
     share : float
-        Lower fraction of the distribution that is sampled; below 1 where larger values would create energy [-].
+        Lower fraction of the distribution that is sampled [-]. It is below 1 if larger values would create energy.
     """
 
     slenderness_angle: float
@@ -63,7 +63,7 @@ class RockingParameters:
     Parameters
     ----------
     right, left : RockingSide
-        The sides; at a positive rotation the body turns about the right foot.
+        The sides. At a positive rotation, the body turns about the right foot.
     law : ImpactLaw
         Factor on the coefficients.
     label : str
@@ -76,7 +76,7 @@ class RockingParameters:
     label: str
 
     def side(self, sign: float) -> RockingSide:
-        """Return the side about which the body turns at a rotation of this sign.
+        """Return the side of the foot about which the body turns at a rotation of this sign.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class RockingParameters:
         stream : int
             Number of the history.
         impact : int
-            Impacts that the history has had before.
+            Number of earlier impacts of the history.
 
         Returns
         -------
@@ -147,7 +147,7 @@ class RockingParameters:
 
     @classmethod
     def of_body(cls, body: Any, restitution: Any, gravity: float, *, may_be_none: bool = False) -> "RockingParameters":
-        """Return the parameters of a body with its coefficients of restitution.
+        """Return the parameters of a body, including the coefficients of restitution.
 
         Parameters
         ----------
@@ -159,18 +159,18 @@ class RockingParameters:
         gravity : float
             Acceleration of gravity [m/s2].
         may_be_none : bool
-            True if the restitution may be None, for a body with friction: impacts are then plastic by complementarity,
-            or follow `normal_restitution`.
+            True if the restitution may be None, for a body with friction. Complementarity then gives plastic impacts,
+            or impacts with `normal_restitution`.
 
         Returns
         -------
         RockingParameters
-            The parameters; coefficients are `UNIMPOSED` where none is imposed.
+            The parameters. Coefficients that are not imposed have the value `UNIMPOSED`.
 
         Raises
         ------
         InvalidValueError
-            If the body has another type, or a coefficient is negative, not finite, or would create energy.
+            If the body has another type, or if a coefficient is negative, not finite, or would create energy.
         """
         checks.of_kind("body", body, Body, "a Block, Section or MassPoints")
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
@@ -198,12 +198,12 @@ class RockingParameters:
 
 
 def is_none(restitution: Any) -> bool:
-    """Return True if no coefficient is imposed: None, or its name in files and options."""
+    """Return True if no coefficient is imposed: None, or the text for None in files and options."""
     return restitution is None or (isinstance(restitution, str) and restitution == COMPLEMENTARITY.split(maxsplit=1)[0])
 
 
 def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
-    """Return alpha [rad], p [rad/s], r, q, share [-] of both sides of many bodies; NaN for None."""
+    """Return alpha [rad], p [rad/s], r, q and share [-] of both sides of many bodies; NaN if a body is None."""
     return {
         f"{short}_{foot}": np.array([np.nan if body is None else getattr(getattr(body, foot), name) for body in bodies])
         for short, name in _SHORT.items()
@@ -212,13 +212,13 @@ def sides_of(bodies: Sequence[RockingParameters | None]) -> dict[str, FloatArray
 
 
 def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
-    """Return the truncated probability of a law's distribution by foot; larger values would create energy [-]."""
+    """Return the probability of the values of a law that would create energy and are truncated, by foot [-]."""
     coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
     return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
 
 
 def cut_words(cut: Mapping[Foot, float]) -> str:
-    """Return the truncated probability as text for the end of a label; empty below 0.0001."""
+    """Return a text on the truncated probability for the end of a label; empty below 0.0001."""
     texts = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _NEGLIGIBLE]
     if texts and cut["left"] == cut["right"]:
         texts = [percent(cut["left"])]
@@ -234,14 +234,17 @@ def _truncated(law: ImpactLaw) -> DrawnRestitution | None:
 
 
 def _share(law: ImpactLaw, foot: Foot, r: float, bound: float) -> float:
-    """Return the fraction of a distribution below the energy bound of a side; refuse other laws that exceed it."""
+    """Return the fraction of a distribution below the energy bound of a side.
+
+    Raise an error if other laws exceed the bound.
+    """
     distribution = _truncated(law)
     largest = r * (distribution.quantile(1.0, foot) if distribution else law.largest)
     if largest <= bound * (1.0 + BOUND_ROUNDING):
         return 1.0
     if distribution:
         share = distribution.share_within(bound / r, foot)
-        plausibility.of_truncation(1.0 - share, foot, bound)  # refuses an almost empty distribution
+        plausibility.of_truncation(1.0 - share, foot, bound)  # raises an error for an almost empty distribution
         return share
     raise energy_refusal(foot, bound, largest)
 
@@ -252,7 +255,7 @@ def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:
 
 
 def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
-    """Return the label of a restitution, with the truncated probability of its distribution."""
+    """Return the label of a restitution, with the truncated probability of the distribution."""
     if law.kind <= 0:
         return f"{type(law).__name__} times {base}" if law.kind < 0 else base
     if not isinstance(law, DrawnRestitution):
@@ -263,7 +266,7 @@ def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
 
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[Foot, float], str]:
-    """Return the coefficients for landing left and right, and their label [-]; None leaves them to complementarity."""
+    """Return the coefficients for landing left and right [-], and their label. None selects complementarity."""
     if is_none(restitution):
         raise InvalidValueError(
             "{parameter}={value} needs friction; give friction= or a restitution model",

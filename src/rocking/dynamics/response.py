@@ -40,7 +40,7 @@ _ROUNDING = 1e-9
 IMPACT = np.dtype(
     [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("foot", "U5")]
 )
-"""Fields of `Response.impacts`: [s], [rad/s], [rad/s], [-], foot."""
+"""Fields of `Response.impacts`: time [s], velocities before and after [rad/s], coefficient [-], foot."""
 
 _OVERTURNED = {
     "left": (
@@ -66,14 +66,16 @@ _FLIGHT = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response(ResponseBase):
-    """Response of a plane body without friction; costly quantities are computed at first access.
+    """Response of a plane body without friction.
+
+    Quantities that take long to compute are computed at first access.
 
     Parameters
     ----------
     body : Body
         The body.
     motion : GroundMotion or Pulse, optional
-        The motion; None for free rocking.
+        The ground motion; None for free rocking.
     parameters : RockingParameters
         Parameters of the equations, with the coefficients of restitution.
     settings : PlaneSettings
@@ -104,7 +106,7 @@ class Response(ResponseBase):
 
     @cached_property
     def time(self) -> FloatArray:
-        """Times of the samples, up to the end or until the body lies [s]."""
+        """Times of the samples, up to the end or until the body has fallen [s]."""
         return np.asarray(np.arange(self._finite) * self.segments.step, dtype=np.float64)
 
     @property
@@ -134,7 +136,7 @@ class Response(ResponseBase):
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation, also between the samples; a quarter turn after overturning [rad]."""
+        """Largest rotation, including times between the samples; a quarter turn after overturning [rad]."""
         return abs(self.trajectory.peak_rotation)
 
     @property
@@ -144,7 +146,7 @@ class Response(ResponseBase):
 
     @property
     def peak_ratio(self) -> float:
-        """Peak rotation over the slenderness angle of its side; a value above 1 need not mean overturning [-]."""
+        """Peak rotation over the slenderness angle of its side [-]. A body with a value above 1 need not overturn."""
         return self.peak_rotation / self.parameters.side(self.trajectory.peak_rotation).slenderness_angle
 
     @property
@@ -156,15 +158,15 @@ class Response(ResponseBase):
     def least_force(self) -> float:
         """Smallest normal contact force during rocking over the weight; NaN without rocking [-].
 
-        A negative force is tensile. The force is evaluated at the samples, uplifts and impacts; for a body that
-        overturns, up to the overturning time. Inside a step the force may be smaller: for 2 of 24 random records at
-        0.005 s, by 1e-4 of the weight. `simulate_many` gives the same number.
+        A negative force is tensile. The force is evaluated at the samples, uplifts and impacts, up to the overturning
+        time. Inside a step, the force may be smaller: for 2 of 24 random records with a step of 0.005 s, it was smaller
+        by 1e-4 of the weight. `simulate_many` gives the same number.
         """
         return self.trajectory.least_force
 
     @property
     def lost_contact(self) -> bool | None:
-        """True if the contact force becomes tensile, so that the outcome assumes contact; None without a result."""
+        """True if the contact force becomes tensile; the outcome then assumes contact. None without a result."""
         return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
 
     def with_contact(self, friction: float = math.inf) -> "ContactResponse":
@@ -173,8 +175,8 @@ class Response(ResponseBase):
         Parameters
         ----------
         friction : float
-            Coefficient of friction [-]; if infinite, the largest of 10, 3 and 1 with a response, so that feet in
-            contact do not slide.
+            Coefficient of friction [-]. If infinite, the first of 10, 3 and 1 for which there is a response, so that
+            feet in contact do not slide.
 
         Returns
         -------
@@ -198,7 +200,7 @@ class Response(ResponseBase):
             )  # fmt: skip
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
         for mu in (10.0, 3.0, 1.0) if friction == math.inf else (friction,):
-            with warnings.catch_warnings():  # this response has warned already
+            with warnings.catch_warnings():  # this response has already issued the warnings
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 response = response_with_contact(
                     self.body, self.motion, {f: getattr(parameters, f).coefficient for f in FEET},
@@ -210,19 +212,19 @@ class Response(ResponseBase):
         return response
 
     def doubts(self, friction: float = math.inf) -> list[str]:
-        """Return the reasons against pure rocking; where contact is lost, with the response with flight.
+        """Return the reasons against pure rocking. If contact is lost, they describe the response with flight.
 
         Parameters
         ----------
         friction : float
-            Coefficient of friction between body and ground [-]; if infinite, only loss of contact is checked.
+            Coefficient of friction between body and ground [-]. If infinite, only loss of contact is checked.
 
         Returns
         -------
         list of str
             Sentences; empty if pure rocking is credible.
         """
-        # an assumed friction is not used for flight: the feet do not slide
+        # an assumed friction is not used for the response with flight; its feet do not slide
         stated = math.inf if isinstance(friction, Assumed) else friction
         if self.lost_contact and stated not in self._flights:
             self._flights[stated] = self._flight_text(stated)
@@ -231,7 +233,7 @@ class Response(ResponseBase):
 
     @cached_property
     def _flights(self) -> dict[float, str]:
-        """Descriptions of the response with flight by coefficient of friction, each computed once."""
+        """Descriptions of the response with flight, by coefficient of friction. They are computed once."""
         return {}
 
     def _flight_text(self, friction: float) -> str:
@@ -248,7 +250,7 @@ class Response(ResponseBase):
 
     @property
     def _ending(self) -> str:
-        """The outcome in one sentence, with the end of a motion that was cut."""
+        """The outcome in one sentence. If the motion was cut, the sentence contains the end of the motion."""
         if not self._is_cut:
             return self._verdict
         return Message(
@@ -287,12 +289,12 @@ class Response(ResponseBase):
     @property
     def _is_cut(self) -> bool:
         end = self.segments.count * self.segments.step
-        over = self._finite < self.trajectory.rotation.size  # the body lies before the end, or there is no result
+        over = self._finite < self.trajectory.rotation.size  # the body fell early, or there is no result
         return not over and self.motion is not None and end < self.motion.duration * (1.0 - _ROUNDING)
 
     @cached_property
     def _covered(self) -> FloatArray:
-        """Times of the samples, and of the fall if it comes after the last of them [s]."""
+        """Times of the samples, and the overturning time if it is after the last sample [s]."""
         fall, last = self.overturning_time, float(self.time[-1])
         return np.append(self.time, fall) if fall > last + _ROUNDING * self.segments.step else self.time
 
@@ -305,7 +307,7 @@ class Response(ResponseBase):
 
     @cached_property
     def energy(self) -> "ResponseEnergy":
-        """Kinetic and potential energy, work of the ground and losses at the samples, and at a later fall [J]."""
+        """Kinetic and potential energy, work of the ground and losses at the samples and a later fall [J]."""
         from rocking.dynamics.plane.energy_balance import energy_of
 
         return energy_of(self.dense_output, self._covered, self.body.mass, self.settings)
@@ -319,7 +321,7 @@ class Response(ResponseBase):
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
-        """Horizontal acceleration of the ground at the samples; the last value of the motion at its end [m/s2]."""
+        """Horizontal acceleration of the ground at the samples [m/s2]. At the end, the last value of the motion."""
         return self._at_samples(self.segments.horizontal)
 
     @cached_property
@@ -339,7 +341,7 @@ class Response(ResponseBase):
     def error_estimate(self) -> float:
         """Largest change of theta in a second run with half steps: the integration error [rad].
 
-        The error grows with the duration, since rocking amplifies small differences. If the smaller step changes the
+        The error increases with the duration, because rocking amplifies small differences. If the half steps change the
         outcome, the estimate is infinite.
         """
         name, settings, first = "reference", self.settings, self.trajectory
@@ -397,8 +399,8 @@ class Response(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or outside the response by more than rounding; the response ends with the last
-            sample, or when the body lies.
+            If a time is not finite, or is outside the response by more than rounding. The response ends with the last
+            sample, or when the body has fallen.
         """
         output = self.dense_output
         t = self._times_within(time, float(output.end[-1]))
@@ -413,7 +415,7 @@ class Response(ResponseBase):
         Parameters
         ----------
         friction : float
-            Available coefficient of friction between body and ground, for comparison with the demand [-].
+            Coefficient of friction between body and ground, for comparison with the friction demand [-].
 
         Returns
         -------
@@ -469,7 +471,7 @@ class Response(ResponseBase):
             "kinetic_energy": energy.kinetic, "potential_energy": energy.potential, "work_of_ground": energy.work,
             "energy_lost": energy.lost, "horizontal_force": contact.horizontal, "vertical_force": contact.vertical,
         }  # fmt: skip
-        # overturning may come after the last sample
+        # overturning may occur after the last sample
         return {name: series[: self._finite] for name, series in values.items()}
 
     def _plot(self, **options: Any) -> "Figure":
@@ -531,7 +533,7 @@ class Response(ResponseBase):
         return report(self, path, **options)
 
 
-# p times the step between samples under a pulse, the time after the motion, and the time on ground at rest
+# products of p and a time: step between samples under a pulse, time after the motion, time on ground at rest
 _FINE, _AFTER, _FREE = 0.05, 15.0, 300.0
 
 
@@ -547,10 +549,10 @@ def response_of_rocking(  # noqa: PLR0913 - the arguments of `simulate`
     engine: str = "auto",
     stream: int = 0,
 ) -> Response:
-    """Return the response of a plane body that neither slides nor flies; on ground at rest if motion is None."""
-    # start: theta [rad] and theta' [rad/s]; duration [s]: by default the motion and 15 / p after it; while the body
-    # still rocks, until it rests, at most 300 / p after the motion; on ground at rest until the body rests or lies, at
-    # most 300 / p
+    """Return the response of a plane body without friction. If `motion` is None, the ground is at rest."""
+    # start: theta [rad] and theta' [rad/s]
+    # duration [s]: by default to 15 / p after the motion; if the body still rocks, until it rests, at most to 300 / p
+    # after the motion; on ground at rest until the body rests or has fallen, at most to 300 / p
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body, restitution, settings.gravity)
@@ -582,7 +584,7 @@ def response_of_rocking(  # noqa: PLR0913 - the arguments of `simulate`
 
 
 def start_within(parameters: RockingParameters, rotation: Any, angular_velocity: Any) -> tuple[float, float]:
-    """Return theta [rad] and theta' [rad/s] at the start, within a quarter turn and 100 p."""
+    """Return theta [rad] and theta' [rad/s] at the start. Raise an error above a quarter turn or 100 p."""
     half_pi = 0.5 * math.pi
     max_velocity = 100.0 * max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     return (
@@ -608,12 +610,15 @@ def start_within(parameters: RockingParameters, rotation: Any, angular_velocity:
 
 
 def is_lossless(parameters: RockingParameters) -> bool:
-    """Return True if no impact loses energy, so that the body never comes to rest."""
+    """Return True if impacts lose no energy, so that the body never comes to rest."""
     return parameters.left.coefficient * parameters.right.coefficient >= 1.0
 
 
 def _extended(computed: Any, length: float, trajectory: Any, segments: Segments) -> tuple[Any, Segments]:
-    """Return the response until the body rests, up to a length [s]; the former one if the longer one fails."""
+    """Return the response until the body rests, up to a length [s].
+
+    If the longer run fails, return the former response.
+    """
     length = min(length, max_duration(segments.step))
     if length <= segments.duration:
         return trajectory, segments
@@ -624,7 +629,7 @@ def _extended(computed: Any, length: float, trajectory: Any, segments: Segments)
 
 
 def _until_rest(trajectory: Any, segments: Segments, min_stretches: int) -> tuple[Any, Segments]:
-    """Return a response without the samples at rest at its end; a number of stretches is kept."""
+    """Return a response without the samples at rest at its end. At least `min_stretches` stretches are kept."""
     moving = (trajectory.rotation != 0.0) | (trajectory.angular_velocity != 0.0)
     last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, min_stretches)
     if last >= trajectory.rotation.size:

@@ -1,4 +1,4 @@
-"""Base class of the responses of all mechanics: outcome, texts, files; duration of motions."""
+"""Base class of the responses of all mechanics (outcome, texts, files), and functions for the duration of motions."""
 
 import math
 from abc import abstractmethod
@@ -37,13 +37,13 @@ _ROUNDING = 1e-9
 
 
 def interval_rows(intervals: Sequence[tuple[Any, ...]], *names: str) -> AnswerRows:
-    """Return a table of intervals of one contact; names: of the columns after start and end."""
+    """Return a table of intervals with constant contact. `names` are the columns after start and end."""
     columns = zip(*intervals, strict=True) if intervals else [()] * (2 + len(names))
     return AnswerRows(dict(zip(("start", "end", *names), columns, strict=True)))
 
 
 class ResponseBase(Exported):
-    """Response of one body: outcome, text, picture and export."""
+    """Response of one body, with outcome, text, picture and export."""
 
     _blank = False
 
@@ -73,17 +73,17 @@ class ResponseBase(Exported):
 
     @property
     def overturning_time(self) -> float:
-        """Time of the last passage of the centre of mass over the contact; NaN without overturning [s]."""
+        """Time of the last passage of the centre of mass over the contact [s]; NaN without overturning."""
         return float(self.trajectory.overturning_time)
 
     @property
     def still_rocking(self) -> bool:
-        """True if the body has not overturned and still moves at the end; `impacts` excludes later impacts."""
+        """True if the body has not overturned and still moves at the end. `impacts` excludes later impacts."""
         return bool(self.trajectory.still_rocking)
 
     @property
     def unfinished(self) -> str:
-        """Sentence about a motion that continues at the end of the response; empty for a body at rest."""
+        """Sentence about a motion that continues at the end of the response; empty if the body is at rest."""
         if not self.still_rocking:
             return ""
         doing, end, state = self._last_motion
@@ -96,7 +96,7 @@ class ResponseBase(Exported):
 
     @property
     def _end_reason(self) -> str:
-        """Reason for the motion at the end of the response; empty if the duration is the reason."""
+        """Reason why the body still moves at the end of the response; empty if the reason is the duration."""
         return "no impact loses energy, so that the body never comes to rest" if self._never_rests else ""
 
     @property
@@ -106,7 +106,7 @@ class ResponseBase(Exported):
 
     @property
     def summary(self) -> str:
-        """The outcome in one sentence, with a motion that continues at the end."""
+        """The outcome in one sentence. The sentence includes a motion that continues at the end."""
         if self.outcome is Outcome.FAILED:
             return Message("{outcome}: {reason}", {"outcome": self.outcome.value, "reason": self.status.value})
         return Message.followed(self._ending, self.unfinished)
@@ -119,22 +119,22 @@ class ResponseBase(Exported):
     @property
     @abstractmethod
     def _last_motion(self) -> tuple[str, float, str]:
-        """Activity at the end of the response, time of the end [s], and state."""
+        """Description of the motion at the end of the response, time of the end [s], and state."""
 
     @property
     @abstractmethod
     def _samples(self) -> dict[str, FloatArray]:
-        """Values over `time` by name in `rocking.quantities`."""
+        """Histories over `time`, by name in `rocking.quantities`."""
 
     @property
     @abstractmethod
     def _tables(self) -> dict[str, AnswerRows]:
-        """Tables of impacts and of intervals of one contact."""
+        """Tables of impacts, and of intervals with constant contact."""
 
     @property
     @abstractmethod
     def _facts(self) -> dict[str, Any]:
-        """Inputs and provenance as plain values; without software, engine, outcome and settings."""
+        """Inputs and provenance as plain values, without software, engine, outcome and settings."""
 
     def answer(self) -> Answer:
         """Return the results of the response.
@@ -157,7 +157,7 @@ class ResponseBase(Exported):
     @property
     @abstractmethod
     def _values(self) -> dict[str, Any]:
-        """Results of this mechanics alone."""
+        """Results that exist only in this mechanics."""
 
     @property
     @abstractmethod
@@ -231,7 +231,7 @@ class ResponseBase(Exported):
         InvalidValueError
             If the path has another extension, or the mechanics has no animation.
         MissingExtraError
-            If matplotlib, which films need, is not installed.
+            If matplotlib is not installed (films need it).
         """
         from rocking.plots import animate_gif, animate_html
 
@@ -248,7 +248,7 @@ class ResponseBase(Exported):
         return animate_html(response, path) if suffix == ".html" else animate_gif(response, path, **options)
 
     def _times_within(self, time: Any, end: float) -> FloatArray:
-        """Return times between 0 and an end, to rounding; refuse times outside [s]."""
+        """Return times between 0 and an end [s]. Raise an error if a time is outside by more than rounding."""
         times = checks.real_array("time", time, "s")
         bad = times[~((times >= -_ROUNDING * end) & (times <= (1.0 + _ROUNDING) * end))]
         if bad.size:
@@ -262,7 +262,7 @@ _MAX_SAMPLES = 2_000_000
 
 
 def max_duration(step: float) -> float:
-    """Return the longest duration of a response with this step [s]."""
+    """Return the longest duration of a response with a step [s]."""
     return _MAX_SAMPLES * step
 
 
@@ -273,7 +273,7 @@ def ground_at_rest(step: float, length: float) -> Segments:
 
 
 def followed(segments: Segments, length: float, parts: int, motion: Motion) -> Segments:
-    """Return a motion cut or extended by rest to a length [s]; parts: subdivision of the stretches of a pulse."""
+    """Return a motion, cut or extended by rest to a length [s]. `parts` subdivides the stretches of a pulse."""
     if isinstance(motion, Pulse):
         segments = segments.refined(parts)
     check_samples(length / segments.step)
@@ -283,7 +283,7 @@ def followed(segments: Segments, length: float, parts: int, motion: Motion) -> S
 
 
 def check_samples(count: float) -> None:
-    """Refuse more than two million samples."""
+    """Raise an error for more than two million samples."""
     if not count <= _MAX_SAMPLES:
         raise InvalidValueError(
             "the response would have {samples:.3g} samples, more than {limit:g}", samples=count, limit=_MAX_SAMPLES,

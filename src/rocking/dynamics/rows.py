@@ -1,4 +1,4 @@
-"""Rows of a study: arrays of bodies, motions, scales and coefficients, and the pieces in which they are computed."""
+"""Rows of a study: arrays of bodies, motions, scales and coefficients, computed in pieces."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,16 +13,16 @@ from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError
 
 PIECE = 1 << 16
-"""Histories per call of the engine, so that only the memory for results grows with their number."""
+"""Histories per call of the engine. With pieces, only the memory for results increases with the number of histories."""
 
 ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
     "share_right", "share_left", "scale", "rotation", "velocity", "friction", "azimuth",
 )  # fmt: skip
-"""Columns that define a history, with the index of its motion and its stream."""
+"""Columns that, together with motion and stream, define a history."""
 
 SIDE_DEFAULTS = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
-"""Values of columns of a side that are not stated: unknown ground forces, full distribution."""
+"""Default values of columns of a side: unknown ground forces, full distribution."""
 
 _DEFAULTS = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan, "azimuth": np.nan}
 
@@ -31,16 +31,16 @@ _DEFAULTS = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "friction": np.nan,
 class Rows:
     """Histories to compute, one entry per history."""
 
-    # columns of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -]; q is m R^2 / I_o of a side; share is the fraction of
-    # the distribution that is sampled; a NaN friction means that of the settings; the azimuth [rad] turns the motion
-    # of a body in space, NaN means no turn
+    # columns of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s, -, rad]; q is m R^2 / I_o of a side; share is the fraction
+    # of the distribution that is sampled; friction is that of the settings if NaN; the azimuth turns the motion of a 3D
+    # body (no turn if NaN)
     values: dict[str, FloatArray]
     motion: np.ndarray  # index of the motion
     stream: np.ndarray  # number of the history, for random coefficients
 
     @classmethod
     def of(cls, count: int, motion: Any = 0, stream: Any = None, **values: Any) -> "Rows":
-        """Return rows from numbers and arrays, which are repeated to the count."""
+        """Return rows from numbers and arrays. Single values are repeated."""
         columns = _DEFAULTS | SIDE_DEFAULTS | values
         if set(columns) != set(ROWS):
             unexpected = sorted(set(columns) ^ set(ROWS))
@@ -65,10 +65,10 @@ class Rows:
 
 
 class RowRunner(Protocol):
-    """Motions in the form of an engine; runs histories given as rows."""
+    """Motions in the form of an engine. `run` computes histories given as rows."""
 
     def run(self, piece: Rows, threads: int) -> tuple[Arrays, dict[str, int]]:
-        """Return columns, with those of `fast_engine.RESULTS` that the mechanics fills, and counts of steps."""
+        """Return columns of results (those of `fast_engine.RESULTS` that the mechanics has), and numbers of steps."""
 
 
 def run_rows(
@@ -79,7 +79,7 @@ def run_rows(
     threads: int,
     progress: Callable[[int], None] | None = None,
 ) -> tuple[Arrays, dict[str, int]]:
-    """Return the results of rows, computed in pieces, and counts of steps; law: source of random coefficients."""
+    """Return the results of rows, computed in pieces, and numbers of steps. `law` gives random coefficients."""
     check_progress(progress)
     results, total = empty_results(count), dict[str, int]()
     for first in range(0, count, PIECE):
@@ -94,12 +94,12 @@ def run_rows(
 
 
 def law_of_rows(law: ImpactLaw) -> ImpactLaw:
-    """Return the law for the engine; constant if the coefficients of the rows contain the draws."""
+    """Return the law for the engine. The law is constant if the rows already contain the random coefficients."""
     return ConstantRestitution() if law.per_history else law
 
 
 def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
-    """Return rows with coefficients multiplied by the draws of a law that draws once per history."""
+    """Return rows with coefficients multiplied by the random factors of a law with one factor per history."""
     draws: Any = law.draws
     coefficients, cut = {}, isinstance(law, DrawnRestitution) and law.truncates
     for foot in FEET:

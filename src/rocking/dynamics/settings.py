@@ -1,4 +1,4 @@
-"""Settings of the integration common to all mechanics; choice of the engine and of the number of threads."""
+"""Settings of the integration for all mechanics, and choice of engine and number of threads."""
 
 import math
 import os
@@ -16,9 +16,9 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 BOUNCE_LAWS = ("newton", "poisson", "stronge")
-"""Definitions of the coefficient of normal restitution: ratio of velocities, impulses or, squared, energies."""
+"""Definitions of normal restitution: ratio of velocities, ratio of impulses, or square root of the energy ratio."""
 
-# friction of a body in space in a study without friction: it may hop, fly and fall into another pose [-]
+# coefficient of friction of 3D bodies in a study without friction [-]; the bodies may hop, fly and fall to other poses
 NEVER_SLIDES = 1e6
 
 SHORTEST_STEP = 1e-6  # smallest `longest_step` of settings [-]
@@ -29,12 +29,15 @@ _FIRST_IN_FILES = ("gravity", "linear", "rest_speed", "most_events")
 
 
 def checked(default: Any, check: Callable[[str, Any], Any]) -> Any:
-    """Return a field of settings with its default and the function of name and value that checks it."""
+    """Return a field of settings with a default and a function that checks a value.
+
+    It is called with name and value.
+    """
     return field(default=default, metadata={"check": check})
 
 
 def ranged(default: float, low: float, high: float, **options: Any) -> Any:
-    """Return a numeric field of settings with limits; options: those of `checks.within`."""
+    """Return a numeric field of settings with limits. The options are those of `checks.within`."""
     return checked(default, partial(checks.within, low=low, high=high, **options))
 
 
@@ -44,7 +47,7 @@ def counted(default: int, low: int, high: int) -> Any:
 
 
 def checked_friction(name: str, value: Any) -> float:
-    """Return a coefficient of friction within its limits; an assumed value stays marked as assumed."""
+    """Return a valid coefficient of friction. An assumed value stays marked as assumed."""
     number = checks.within(name, value, 0.0, 1e6, hint="1e6 for feet that never slide")
     plausibility.warn(plausibility.of_friction(number))
     return value if isinstance(value, conventions.Assumed) else number
@@ -58,14 +61,14 @@ def _checked_gravity(name: str, value: Any) -> float:
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the integration common to all mechanics; each mechanics has its own subclass.
+    """Settings of the integration for all mechanics. Every mechanics has its own subclass.
 
     Parameters
     ----------
     gravity : float
         Acceleration of gravity [m/s2].
     most_events : int
-        Largest number of impacts and changes of contact; a longer history is stopped with an error status.
+        Largest number of impacts and changes of contact. A history with more is stopped with an error status.
 
     Raises
     ------
@@ -83,7 +86,7 @@ class Settings:
     most_events: int = counted(100_000, 1, 2**63 - 1)
 
     def __post_init__(self) -> None:
-        for entry in fields(self):  # checks convert types: 9 and 9.0 are the same settings
+        for entry in fields(self):  # checks convert types, so that settings with 9 and 9.0 are equal
             object.__setattr__(self, entry.name, entry.metadata["check"](entry.name, getattr(self, entry.name)))
 
     @classmethod
@@ -93,19 +96,19 @@ class Settings:
 
     @property
     def identity(self) -> dict[str, Any]:
-        """Values by the names that identify histories on disk: renaming a setting leaves campaigns what they are."""
+        """Values by the names that identify histories on disk. Renaming a setting thus does not change campaigns."""
         return {_IDENTITY.get(name, name): value for name, value in self.stated.items()}
 
     @property
     def stated(self) -> dict[str, Any]:
-        """Values by name, in the order of files."""
+        """Values by name, in the order of input files."""
         order = {name: position for position, name in enumerate(_FIRST_IN_FILES)}
         names = sorted(self.names(), key=lambda name: order.get(name, len(order)))
         return {name: getattr(self, name) for name in names}
 
     @property
     def integration(self) -> dict[str, Any]:
-        """Values by name, without those of the ground."""
+        """Values by name, without the values of the ground."""
         return self.stated
 
     @property
@@ -115,7 +118,7 @@ class Settings:
 
     @property
     def friction(self) -> float:
-        """Coefficient of friction between body and ground; infinite where the body does not slide [-]."""
+        """Coefficient of friction between body and ground [-]; infinite if the body does not slide."""
         return math.inf
 
 
@@ -126,11 +129,11 @@ ENGINES = ("auto", "fast", "reference")
 class CompiledEngine:
     """An optional engine in C++."""
 
-    name: str  # of its module
+    name: str  # name of its module
     not_built: str  # message if it was not built
     fallback: str = "the reference engine runs instead"
-    floats: tuple[str, ...] = ()  # columns of its results, NaN without a result
-    integers: tuple[str, ...] = ()  # columns of integers
+    floats: tuple[str, ...] = ()  # names of columns of results; NaN without a result
+    integers: tuple[str, ...] = ()  # names of columns of integer results
 
     def built(self) -> ModuleType | None:
         try:
@@ -139,18 +142,18 @@ class CompiledEngine:
             return None
 
     def available(self) -> bool:
-        """Return True if the engine was built with this installation; otherwise the reference engine runs."""
+        """Return True if the engine was built with this installation. Otherwise the reference engine is used."""
         return self.built() is not None
 
     def module(self) -> ModuleType:
-        """Return the compiled module; an error if it was not built."""
+        """Return the compiled module. Raise an error if it was not built."""
         compiled = self.built()
         if compiled is None:
             raise MissingExtraError(self.not_built, hint='engine="reference" gives the same results, slowly')
         return compiled
 
     def chosen(self, requested: str) -> str:
-        """Return the name of the engine that runs; warn if "auto" leads to the slow one."""
+        """Return the name of the engine to use. Issue a warning if "auto" selects the slow engine."""
         requested = checks.one_of("engine", requested, ENGINES)
         if requested == "auto" and not self.available():
             errors.warn(f"{self.not_built}; {self.fallback}", SlowEngineWarning)
@@ -160,11 +163,11 @@ class CompiledEngine:
         return "reference" if requested == "reference" else "fast"
 
     def instruction_sets(self) -> list[str]:
-        """Return the instruction sets that the engine can use on this processor, fastest first."""
+        """Return the instruction sets that the engine supports on this processor, fastest first."""
         return list(self.module().instruction_sets())
 
     def instruction_set(self) -> str:
-        """Return the instruction set in use: that of the environment variable ROCKING_ISA, or the fastest."""
+        """Return the instruction set in use: the environment variable ROCKING_ISA, or by default the fastest."""
         supported, requested = self.instruction_sets(), os.environ.get("ROCKING_ISA", "")
         if requested and requested not in supported:
             raise InvalidValueError(parameter="ROCKING_ISA", allowed=f"one of {', '.join(supported)}", value=requested)
@@ -176,11 +179,11 @@ class CompiledEngine:
         return (*self.integers, *self.floats)
 
     def empty_tables(self, count: int) -> tuple[FloatArray, IntArray]:
-        """Return tables for the results of rows: `floats` and `integers`."""
+        """Return empty tables for the results of rows: `floats` and `integers`."""
         return np.full((count, len(self.floats)), np.nan), np.zeros((count, len(self.integers)), np.int64)
 
     def columns_by_name(self, results: FloatArray, counts: IntArray) -> dict[str, np.ndarray]:
-        """Return the columns of these tables by name."""
+        """Return the columns of the tables of results and counts by name."""
         integers = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(self.integers)}
         return integers | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(self.floats)}
 
@@ -189,12 +192,12 @@ MOST_THREADS = 4096
 
 
 def thread_count(threads: object) -> int:
-    """Return the number of threads; that of the processors for None."""
+    """Return the number of threads; None means the number of processors."""
     return processors() if threads is None else checks.whole("threads", threads, 1, MOST_THREADS)
 
 
 def check_progress(progress: object) -> None:
-    """Refuse a `progress` that is not a function."""
+    """Raise an error if `progress` is not a function."""
     if progress is not None and not callable(progress):
         raise InvalidValueError(
             parameter="progress", allowed="a function of the histories done, or None", value=progress

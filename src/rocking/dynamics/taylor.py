@@ -1,4 +1,4 @@
-"""Taylor series of the equation of motion, by recursion, and the zeros of polynomials that locate events."""
+"""Taylor series of the equation of motion by recursion, and zeros of polynomials for the location of events."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ def series(
     u: float, rate: float, kappa: float, push: Sequence[float], weight: Sequence[float], order: int, *, linear: bool
 ) -> list[float]:
     """Return coefficients of ``u'' = kappa { weight * S + push * C }``, S = sin u, C = cos u."""
-    # the series ends where terms are below rounding
+    # the series ends when the terms are below rounding
     coefficients, rates = [u, rate], [rate]
     if linear:
         sines, cosines = coefficients, [1.0]
@@ -40,7 +40,7 @@ def series(
 
 
 def shifted(polynomial: Sequence[float], to: float, width: float) -> list[float]:
-    """Return a polynomial of x as one of y, with x = to + width * y."""
+    """Return a polynomial of x as a polynomial of y, with x = to + width * y."""
     c = list(polynomial)
     n = len(c)
     for k in range(n - 1):
@@ -66,24 +66,27 @@ def slope(polynomial: Sequence[float], x: float) -> float:
 
 
 def first_fall(polynomial: Sequence[float]) -> float | None:
-    """Return the first x in (0, 1] where a polynomial, above zero at 0, becomes negative, to rounding; else None."""
-    # a double zero does not count
+    """Return the first x in (0, 1] at which a polynomial that is positive at 0 becomes negative, or None."""
+    # a double zero is not counted
     if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
     return next((x for x in _zeros(polynomial) if 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0), None)
 
 
 def last_fall(polynomial: Sequence[float]) -> float | None:
-    """Return the last x in [0, 1) where a polynomial, negative at 1, becomes negative; None if negative throughout."""
+    """Return the last x in [0, 1) at which a polynomial becomes negative that is negative at 1.
+
+    None if the polynomial is negative everywhere.
+    """
     if polynomial[0] + sum(max(c, 0.0) for c in polynomial[1:]) < 0.0:
         return None
-    # reversed in x and in sign, this is the first fall
+    # after reversing x and the sign, this is the first fall
     back = first_fall([-c for c in shifted(polynomial, 1.0, -1.0)])
     return None if back is None else 1.0 - back
 
 
 def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
-    """Return zeros of the slope on (0, until], in order; a double zero may be missing."""
+    """Return the zeros of the slope on (0, until], in order. A double zero may be missing."""
     return [min(x, until) for x in _zeros(_slopes(polynomial)) if 0.0 < x <= until + _NEAR]
 
 
@@ -92,9 +95,9 @@ def _slopes(polynomial: Sequence[float]) -> list[float]:
 
 
 def _zeros(polynomial: Sequence[float]) -> list[float]:
-    """Return changes of sign on [0, 1 + 1e-9]; at most one lies between two zeros of the slope (Rolle)."""
+    """Return the changes of sign on [0, 1 + 1e-9]. At most one is between two zeros of the slope (Rolle)."""
     start, tail = polynomial[0], polynomial[1:]
-    if start == 0.0 and tail:  # a zero at 0 itself is no change of sign after it
+    if start == 0.0 and tail:  # a zero at 0 itself is not a change of sign
         return _zeros(tail)
     if not tail or start + sum(min(c, 0.0) for c in tail) > 0.0 or start + sum(max(c, 0.0) for c in tail) < 0.0:
         return []

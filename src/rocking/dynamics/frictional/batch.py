@@ -27,7 +27,7 @@ from rocking.motions.segments import Segments
 from rocking.outcome import UNCOUNTED, Outcome
 
 RENAMED = {"held": "contacts_held", "replaced": "landings_replaced"}
-"""Results of the engine with another meaning of their name in `rocking.quantities`."""
+"""New names of results whose name in the engine has another meaning in `rocking.quantities`."""
 
 
 def many_on_hulls(cases: Combinations, settings: HullSettings) -> SpatialBatch:
@@ -69,7 +69,7 @@ def many_on_hulls(cases: Combinations, settings: HullSettings) -> SpatialBatch:
 
 
 class RowsOnHull:
-    """Motions of a study of solids; runs histories of one body given as rows."""
+    """Motions of a study of solids. `run` computes the histories of one body, given as rows."""
 
     def __init__(
         self, motions: Sequence[Segments | Components], law: RestitutionOnHull, settings: HullSettings, engine: str
@@ -83,8 +83,8 @@ class RowsOnHull:
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
         """Return the results of a piece by their names in studies, and counts of steps.
 
-        A body of c times the size moves like the given body under gravity and ground accelerations over c, in the same
-        time; p determines c.
+        A body that is c times larger moves like the given body under gravity / c and ground accelerations / c, in the
+        same time. The frequency parameter p of a row determines c.
         """
         law, values, motion, count = self.law, piece.values, piece.motion, len(piece)
         if values["rotation"].any() or values["velocity"].any():

@@ -27,11 +27,11 @@ class HullBody:
     (8, 6, True)
     """
 
-    vertices: FloatArray  # points of the body, those inside the hull or a facet are ignored [m]; shape (k, 3)
+    vertices: FloatArray  # points of the body [m]; shape (k, 3); points inside the hull or inside a facet are ignored
     mass: float  # [kg]
     centre: FloatArray  # centre of mass, in the axes of the vertices [m]; shape (3,)
-    inertia: FloatArray  # about the centre of mass [kg m2]; shape (3, 3)
-    solid: Solid | None = None  # distribution of mass, for laws that need it, in the axes of the vertices
+    inertia: FloatArray  # inertia tensor about the centre of mass [kg m2]; shape (3, 3)
+    solid: Solid | None = None  # distribution of mass in the axes of the vertices, for laws that need a distribution
     footprint: Base | None = None  # base of the upright body, in the axes of the vertices
     hull: Polytope = field(init=False, repr=False)
 
@@ -62,7 +62,7 @@ class HullBody:
         return cls(points, moments.mass, moments.centre, moments.inertia, mass_distribution, solid.local_base)
 
     def moved(self, shift: FloatArray) -> "HullBody":
-        """Return the body with its centre of mass moved, and the same vertices and inertia about the centre [m]."""
+        """Return the body with its centre of mass moved [m]. Vertices and inertia about the centre do not change."""
         hull = self.hull.moved(shift)
         _check_inside(self.centre + shift, hull)
         body: HullBody = object.__new__(HullBody)
@@ -73,7 +73,7 @@ class HullBody:
         return body
 
     def with_poses_near(self, facet: int, cosine: float) -> "HullBody":
-        """Return the body with two poses: 0 for facets whose normals are near that of a facet, 1 for all others."""
+        """Return the body with two poses: 0 for facets with normals near that of `facet`, 1 for other facets."""
         body = copy(self)
         near = (self.hull.normals * self.hull.normals[facet]).sum(axis=1) >= cosine
         body.__dict__["poses"] = np.where(near, 0, 1).tolist()
@@ -106,7 +106,7 @@ class HullBody:
 
     @cached_property
     def poses(self) -> list[int]:
-        """Index of the stable pose to which each facet leads; the pose with the lowest centre is 0."""
+        """Index of the stable pose to which the body rolls from each facet; pose 0 has the lowest centre."""
         hull = self.hull
         order = np.lexsort((np.arange(len(hull.heights)), hull.heights))
         number = {int(facet): k for k, facet in enumerate(order[hull.stable[order]])}

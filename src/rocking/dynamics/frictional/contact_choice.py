@@ -30,13 +30,13 @@ from rocking.outcome import Status
 STRIKES = 5e-10  # speed over sqrt(g size) above which a history starts with an impact
 LADDER = (1e-11, 1e-9, 1e-7, 1e-5)
 PILED, _STUCK = 30, 200
-_CROWD, _CROWDED = 12, 1e-2  # largest number of changes of contact within a time over sqrt(size / g)
-# limits of such vertices: gaps over the size, and opening speeds over sqrt(g size)
+_CROWD, _CROWDED = 12, 1e-2  # largest number of changes of contact within a duration, given over sqrt(size / g)
+# limits of converging vertices in an accumulation: gap over the size, and opening speed over sqrt(g size)
 _GATHERED, _GATHERING = 1e-7, 1e-4
 
 
 class ContactChoice(HullState):
-    """State of a history that chooses its contacts."""
+    """State of a history, with the choice of the contact."""
 
     def _choose(
         self,
@@ -48,8 +48,8 @@ class ContactChoice(HullState):
     ) -> None:
         """Choose the contact: the first candidate with forces that satisfy all laws.
 
-        exclude: the contact that has just ended; closed: vertices stopped by an impact; leaves: True if one of its
-        vertices leaves, so that neither sticking nor sliding keeps all of them.
+        `exclude` is the contact that has just ended. `leaves` is True if one of the vertices of this contact leaves, so
+        that neither sticking nor sliding keeps all of its vertices. `closed` contains vertices stopped by an impact.
         """
         if self.ended is not None or self._guarded():
             return
@@ -70,7 +70,7 @@ class ContactChoice(HullState):
             if self._slip(i) > 3.0 * self.stop:
                 x, y, _ = point_velocity(body, state, i)
                 moving[i] = back(problem.axes, unit((x, y, 0.0)))
-        # a slowly leaving vertex may stay in addition to vertices at rest, not instead of them
+        # a slowly leaving vertex may stay in contact only together with vertices at rest
         at_rest = {i for i in closing if i in closed or point_velocity(body, state, i)[2] <= STRIKES * self.speed}
         options = self._candidates(problem, touching, closing, moving)
         candidates = [
@@ -93,7 +93,7 @@ class ContactChoice(HullState):
         self.mode = replace(self.mode, pulled=True)
 
     def _lawful(self, problem: Problem, candidates: list[Solution], near: tuple[int, ...]) -> Solution | None:
-        """Return the first candidate that satisfies all laws; contacts that ended at this time come last."""
+        """Return the first candidate that satisfies all laws. Contacts that ended at this time are tried last."""
 
         def ended(contact: HullContact, level: int) -> bool:
             return any(
@@ -112,14 +112,14 @@ class ContactChoice(HullState):
         return None
 
     def _crowded(self) -> bool:
-        """Return True if changes of contact accumulate."""
+        """Return True if changes of contact accumulate at one time."""
         if self.time - self.since > _CROWDED / self.pace:
             self.changes, self.since = 0, self.time
         self.changes += not self.mode.pulled
         return self.changes > _CROWD or self.at_once > PILED
 
     def _gather(self) -> None:
-        """End an accumulation of events at one time: the converging vertices are put in contact at rest."""
+        """End an accumulation of events at one time: bring the converging vertices into contact at rest."""
         is_repeated = self.time <= self.gathered + _CROWDED / self.pace
         self.gathered, self.changes, self.at_once = self.time, 0, 0
         before = sum(energies(self.body, self.state, self.ground.weight))
@@ -135,7 +135,7 @@ class ContactChoice(HullState):
     def _candidates(
         self, problem: Problem, touching: tuple[int, ...], near: tuple[int, ...], moving: dict[int, Vector]
     ) -> Iterator[Solution]:
-        """Yield candidates: sticking before sliding, larger faces before smaller ones, flight last."""
+        """Yield candidates in this order: sticking before sliding, larger before smaller faces, flight last."""
         states = []
         for members in contacts.faces(problem, touching, near):
             sticking = tuple(i for i in members if i not in moving)
@@ -177,7 +177,10 @@ class ContactChoice(HullState):
             self.state = self.state._replace(velocity=ZERO, spin=ZERO)
 
     def _settle_on(self, contact: HullContact, still: tuple[int, ...] = ()) -> None:
-        """Correct drift and rounding of attitude, position and velocities; still: vertices without slip."""
+        """Correct drift and rounding errors of attitude, position and velocities.
+
+        `still` contains vertices without slip.
+        """
         if not contact.members:
             return
         body, members = self.body, contact.members
@@ -199,7 +202,7 @@ class ContactChoice(HullState):
         self.state = state
 
     def _pile(self, touching: tuple[int, ...]) -> None:
-        """Stop the largest face by a plastic impact, also with tensile impulses."""
+        """Stop the largest face by a plastic impact, even if impulses are tensile."""
         axes = frame(self.state.attitude)
         problem = Problem(self.body, axes, back(axes, self.state.velocity), self.state.spin, 0.0)
         members = next(contacts.faces(problem, touching), ())
@@ -208,7 +211,7 @@ class ContactChoice(HullState):
             self.state = self.state._replace(velocity=applied(axes, solution.linear), spin=solution.angular)
 
     def _shocked(self, touching: tuple[int, ...]) -> None:
-        """Stop sliding vertices at once where no contact force is possible (Painleve)."""
+        """Stop sliding vertices by an impact if no contact force is possible (Painleve paradox)."""
         before = energies(self.body, self.state, ZERO)[0]
         self._pile(touching)
         self.history.lost += before - energies(self.body, self.state, ZERO)[0]

@@ -1,7 +1,7 @@
-"""Forces or impulses on a set of touching vertices: one problem for accelerations and for velocities.
+"""Forces or impulses on a set of touching vertices. The same problem applies to accelerations and to velocities.
 
-A candidate contact is a face of the hull or a subset of its border, with vertices that stick or slide; each candidate
-is a linear system of at most six unknowns (docs/theory/hull.md).
+A candidate contact is a face of the hull or a subset of its border. Its vertices stick or slide. A candidate is a
+linear system of at most six unknowns (docs/theory/hull.md).
 """
 
 import math
@@ -26,15 +26,15 @@ from rocking.dynamics.frictional.ground import (
 )
 
 SINGULAR = 1e-12
-CORNERS = 8  # largest number of corners of a facet with single sticking corners
-_TURNS = 20  # largest number of iterations for the corners under pressure
+CORNERS = 8  # largest number of corners of a facet for which single sticking corners are tried
+_TURNS = 20  # largest number of iterations for the set of corners under pressure
 
 Wrench = tuple[Vector, Vector]
 
 
 @dataclass(frozen=True)
 class HullContact:
-    """Vertices in contact, and those of them that stick."""
+    """Vertices in contact, and the sticking vertices among them."""
 
     members: tuple[int, ...]
     stuck: tuple[int, ...] = ()
@@ -53,7 +53,7 @@ class Problem:
     angular: Vector
     friction: float
     bias: dict[int, Vector] = field(default_factory=dict)  # w x (w x r) of each vertex; empty in impacts
-    force_points: dict[int, Vector] = field(default_factory=dict)  # points of action of impulses away from the vertex
+    force_points: dict[int, Vector] = field(default_factory=dict)  # points of action of impulses, if not at the vertex
 
     def rate(self, i: int, linear: Vector, angular: Vector) -> Vector:
         """Return the acceleration or velocity of a vertex."""
@@ -73,13 +73,13 @@ class Solution:
     linear: Vector
     angular: Vector
     normals: dict[int, float]
-    directions: dict[int, Vector]  # of the vertices that slide
-    pulls: dict[int, Vector]  # forces along the ground at the vertices that stick
+    directions: dict[int, Vector]  # directions of sliding, of the sliding vertices
+    pulls: dict[int, Vector]  # forces along the ground, at the sticking vertices
     shape: tuple[float, ...] = ()  # linear distribution of more than three normal forces
 
 
 def solve(problem: Problem, contact: HullContact, directions: dict[int, Vector]) -> Solution | None:
-    """Return accelerations and forces of a candidate with given directions of sliding; None without a solution."""
+    """Return accelerations and forces of a candidate with given directions of sliding; None if there is no solution."""
     if not contact.members:
         return Solution(contact, problem.linear, problem.angular, {}, {}, {})
     loaded = list(contact.members)
@@ -113,7 +113,7 @@ def solve(problem: Problem, contact: HullContact, directions: dict[int, Vector])
 
 
 def linear(problem: Problem, contact: HullContact, loaded: list[int], directions: dict[int, Vector]) -> Solution | None:
-    """Return the solution with forces at the loaded vertices, also tensile ones, that keeps the contact closed."""
+    """Return the solution that keeps the contact closed by forces at the loaded vertices. The forces may be tensile."""
     weights = _weights(problem, loaded)
     rows = [_normal_row(problem, shape) for shape in weights]
     columns = [_normal_column(problem, shape, directions) for shape in weights]
@@ -137,7 +137,7 @@ def linear(problem: Problem, contact: HullContact, loaded: list[int], directions
 
 
 def _weights(problem: Problem, loaded: list[int]) -> list[dict[int, float]]:
-    """Return the distributions of the normal forces: one per vertex, or linear in position for more than three."""
+    """Return the distributions of the normal forces: one per vertex, or linear in position above three vertices."""
     if len(loaded) <= 3:
         return [{i: 1.0} for i in loaded]
     level = [{i: dot(axis, problem.force_point(i)) for i in loaded} for axis in problem.axes[:2]]
@@ -162,9 +162,9 @@ def _normal_row(problem: Problem, weights: dict[int, float]) -> tuple[Wrench, fl
 
 
 def _stick(problem: Problem, stuck: tuple[int, ...], columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> None:
-    """Add the tangential forces that make vertices stick: two components, and a couple against rotation."""
+    """Add the tangential forces of sticking vertices: two components, and a couple that prevents rotation."""
     points, up, weight = problem.body.points, problem.axes[2], 1.0 / len(stuck)
-    force_point = motion_point = bias = ZERO  # means: the matrix is symmetric with forces at the vertices
+    force_point = motion_point = bias = ZERO  # mean values; if all forces act at the vertices, the matrix is symmetric
     for i in stuck:
         force_point, motion_point = (
             added(force_point, weight, problem.force_point(i)),
@@ -183,7 +183,7 @@ def _stick(problem: Problem, stuck: tuple[int, ...], columns: list[Wrench], rows
 
 
 def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench, float]]) -> list[float] | None:
-    """Return the multipliers by Gauss elimination; None for a pivot that is not positive."""
+    """Return the multipliers by Gauss elimination; None if a pivot is not positive."""
     n, mass = len(columns), problem.body.mass
     soft = [(scaled(1.0 / mass, f), applied(problem.body.compliance, m)) for f, m in columns]
     table = []
@@ -213,7 +213,10 @@ def _eliminated(problem: Problem, columns: list[Wrench], rows: list[tuple[Wrench
 def _pulls(
     problem: Problem, stuck: tuple[int, ...], normals: dict[int, float], multipliers: list[float]
 ) -> dict[int, Vector]:
-    """Return the tangential forces of sticking vertices, in proportion to normal forces and resistance to rotation."""
+    """Return the tangential forces of sticking vertices.
+
+    They are divided in proportion to normal forces and resistance to rotation.
+    """
     if not stuck:
         return {}
     x, y, up = problem.axes
@@ -237,7 +240,7 @@ def _pulls(
     forces = {i: scaled(weights[i], plus(scaled(1.0 / weight, total), scaled(rate, tangents[i]))) for i in stuck}
     if len(stuck) > 2:
         return forces
-    # along an edge only the sum is determined: it is divided in proportion to the remaining friction of each end
+    # along an edge, only the sum of the two forces is determined; it is divided by the remaining friction of the ends
     along = unit(minus(arms[stuck[1]], arms[stuck[0]]))
     across = {i: added(pull, -dot(pull, along), along) for i, pull in forces.items()}
     squares = {i: (problem.friction * weights[i]) ** 2 - dot(across[i], across[i]) for i in stuck}
@@ -251,9 +254,9 @@ def _pulls(
 def faces(
     problem: Problem, touching: tuple[int, ...], staying: tuple[int, ...] | None = None
 ) -> Iterator[tuple[int, ...]]:
-    """Yield possible contacts of touching vertices: all, the edges of their border, single ones.
+    """Yield possible contacts of touching vertices: all vertices, the edges of their border, single vertices.
 
-    staying: vertices that do not leave, by default all; a chord with vertices beyond it is not an edge.
+    `staying` contains the vertices that do not leave, by default all. A chord with vertices beyond it is not an edge.
     """
     border, staying_set = outline(problem, touching), set(touching if staying is None else staying)
     if len(border) > 2 and staying_set.issuperset(border):
@@ -291,11 +294,11 @@ def outline(problem: Problem, touching: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def friction_states(members: tuple[int, ...], resting: tuple[int, ...]) -> Iterator[HullContact]:
-    """Yield contacts with different sets of sticking vertices: all, all but one, one, none."""
+    """Yield contacts with different sets of sticking vertices: all, all but one, a single one, none."""
     if len(resting) == len(members) or len(resting) < 2:
         yield HullContact(members, resting)
     if len(resting) > 1 and len(members) <= CORNERS:
-        # two sticking vertices of a facet make it rest
+        # a facet with two sticking vertices cannot move along the ground
         sizes = (1,) if len(members) > 2 else range(len(resting) - 1, 0, -1)
         for n in sizes:
             yield from (HullContact(members, subset) for subset in combinations(resting, n))
@@ -304,7 +307,7 @@ def friction_states(members: tuple[int, ...], resting: tuple[int, ...]) -> Itera
 
 
 def valid(problem: Problem, solution: Solution, touching: tuple[int, ...], slack: float) -> bool:
-    """Return True without tensile force, without excess of friction, and without a closing gap."""
+    """Return True if no force is tensile, no force exceeds the friction, and no gap closes."""
     mass, mu = problem.body.mass, problem.friction
     if any(n < -slack * mass for n in solution.normals.values()):
         return False
@@ -322,7 +325,7 @@ def clear(problem: Problem, solution: Solution, touching: tuple[int, ...], slack
 def min_tension(
     problem: Problem, candidates: list[Solution], touching: tuple[int, ...], slack: float
 ) -> Solution | None:
-    """Return the replacement if no candidate satisfies all laws: no gap closes, and the tension is smallest."""
+    """Return the candidate without a closing gap and with the smallest tension. None of them satisfies all laws."""
     clear_ones = [c for c in candidates if c.contact.members and clear(problem, c, touching, slack)]
     compressive = (c for c in clear_ones if min(c.normals.values()) >= -slack * problem.body.mass)
     return next(compressive, None) or max(clear_ones, key=lambda c: min(c.normals.values()), default=None)

@@ -1,4 +1,4 @@
-"""Reference engine of a body on the vertices of its hull: steps, and events located to rounding."""
+"""Reference engine of a body on the vertices of its hull: steps, and event times exact to rounding."""
 
 import math
 from dataclasses import replace
@@ -41,9 +41,12 @@ class HullEngine(HullImpacts):
     """
 
     def run(self, state: State, horizon: float = 0.0, initial_facet: int | None = None) -> HullHistory:
-        """Return the history from a state; it ends at rest after the motion and the horizon, or at a time limit.
+        """Return the history from a state.
 
-        initial_facet: facet on which the body stood before the tilt; by default that under its centre of mass.
+        The history ends when the body rests after the motion and the horizon, or at a time limit.
+
+        `initial_facet` is the facet on which the body stood before the tilt, by default the facet under its centre of
+        mass.
         """
         self._start(state, horizon, initial_facet)
         if any(point_velocity(self.body, state, i)[2] < -STRIKES * self.speed for i in self._touching()):
@@ -70,7 +73,10 @@ class HullEngine(HullImpacts):
         return self.history.still_rocking
 
     def _slide(self, result: StepResult, span: float) -> None:
-        """Add the path of the vertex with the largest slip: exact for cubics at the four stored stages."""
+        """Add the path of the vertex with the largest slip.
+
+        The rule over the four stored stages is exact for cubics.
+        """
         sliding_vertices = [i for i in self.mode.contact.members if i not in self.mode.contact.stuck]
         paths = [
             sum(w * slip_speed(self.body, s, i) for w, (_, s, _) in zip(_PATH, result.samples, strict=True))
@@ -79,7 +85,7 @@ class HullEngine(HullImpacts):
         self.history.sliding_distance += span * max(paths, default=0.0)
 
     def _rest(self) -> None:
-        """Rest to the end of the stretch, or until the ground motion moves the body."""
+        """Keep the body at rest to the end of the stretch, or until the ground motion moves the body."""
         if self.stretch >= self.ground.motion.count:
             self._hold(self.until)
             return
@@ -114,7 +120,7 @@ class HullEngine(HullImpacts):
         self._keep()
 
     def _stands(self, pull: Vector) -> float:
-        """Return the smallest margin of rest: moment of the pressure about the border, or friction."""
+        """Return the smallest margin of rest, against tipping over the border or against sliding."""
         axes, points = frame(self.state.attitude), self.body.points
         members = self.mode.contact.members
         margin = min(-pull[2], self._slips(pull))
@@ -179,18 +185,21 @@ class HullEngine(HullImpacts):
         self._end(kind)
 
     def _shorten(self, span: float) -> None:
-        """Retry with a tenth of a step whose stages overflow, which forces of a large friction may cause."""
+        """Retry with a tenth of the step, because a stage has overflowed.
+
+        Forces of a large friction may cause an overflow.
+        """
         self.length = 0.1 * span
         if span * self.pace <= 1e-10:
             self.ended = Status.NOT_FINITE
 
     def _pace_on(self, span: float, growth: float, *, cut: bool) -> None:
-        """Set the length of the next step; cut: True if a sample of the motion ended this step."""
+        """Set the length of the next step. `cut` is True if a sample of the motion ended this step."""
         base = max(span, self.length if cut else 0.0) if growth > 1.0 else span
         self.length = min(base * min(max(growth, 0.3), 4.0), 0.2 / self.pace)
 
     def _end(self, kind: str) -> None:
-        """Continue the mode, or end it by the event of a kind."""
+        """Handle the end of a step: the event of a kind ends the mode, or the mode continues."""
         if any(self._slip(i) > self.slides for i in self.mode.starts):
             slow = {i: d for i, d in self.mode.starts.items() if self._slip(i) <= self.slides}
             self.mode = replace(self.mode, starts=slow)

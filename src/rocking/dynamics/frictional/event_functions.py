@@ -8,16 +8,16 @@ from rocking.dynamics.frictional.body import HullBody
 from rocking.dynamics.frictional.ground import HullGround, added, applied, dot, frame, length
 from rocking.dynamics.frictional.motion import HullMode, Rates, State, StepResult, gap, point_velocity, slip_direction
 
-CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: of simultaneous landings, and of a landing
+CLOSED, _GRAZED = 1e-11, 1e-14  # gaps over the size: limit for simultaneous landings, and limit for one landing
 _FORCE = 1e-11  # acceleration over gravity below which a force counts as zero
 _SLIP = 5e-6
 MAX_ITERATIONS = 80
 
 
 def stops_at(tolerance: float) -> float:
-    """Return the speed over sqrt(g size) at which sliding stops, and below which a vertex may stick.
+    """Return the speed over sqrt(g size) at which sliding stops. A slower vertex may stick.
 
-    Its square is the energy loss of a stop over m g size.
+    The square of this speed is the energy loss of a stop over m g size.
 
     >>> stops_at(1e-12), stops_at(1e-6)
     (5e-06, 0.001)
@@ -26,12 +26,12 @@ def stops_at(tolerance: float) -> float:
 
 
 Step = Callable[[float], StepResult]
-"""Function that returns the step up to a fraction of it."""
+"""Function from a fraction of a step to the result of the step up to this fraction."""
 
 
 @dataclass(frozen=True)
 class EventFunctions:
-    """Functions that are positive during a contact: heights, normal forces, friction margin, slip."""
+    """Functions that are positive as long as a contact lasts: heights, normal forces, friction margin, slip."""
 
     body: HullBody
     ground: HullGround
@@ -54,7 +54,7 @@ class EventFunctions:
         """Return the first zero as a fraction of the step, and the kind of its function."""
         fraction, event_kind = 1.0, ""
         for _, low, high, kind, i in sorted(self._sign_changes(result, to)):
-            # stages are approximate: a negative value at a stage may belong to a slightly later zero
+            # stages are approximate, so that a negative value at a stage may belong to a slightly later zero
             for end in (min(high, fraction), fraction):
                 if self._at(kind, i, to(end)) < 0.0:
                     fraction, event_kind = self._located(kind, i, (min(low, end), end), to), kind
@@ -67,7 +67,7 @@ class EventFunctions:
         for kind, i in self._functions(result):
             values = [self._value(kind, i, state, rates) for _, state, rates in result.samples]
             if values[0] < 0.0:
-                # a vertex just after its release is on the ground to rounding
+                # a vertex just after its release is on the ground within rounding
                 rises = point_velocity(self.body, self.start, i)[2] >= -1e-12 * self.speed
                 if kind != "gap" or not rises:
                     yield 0.0, 0.0, 0.0, kind, i
@@ -103,7 +103,7 @@ class EventFunctions:
         for _ in range(MAX_ITERATIONS):
             if at_high >= -close or high - low <= 1e-15:
                 break
-            # the target is slightly below zero
+            # the target value is slightly below zero
             middle = low + (high - low) * (at_low + 0.5 * close) / (at_low - at_high)
             middle = middle if low < middle < high else 0.5 * (low + high)
             value = self._at(kind, i, to(middle))
@@ -155,7 +155,7 @@ class EventFunctions:
         return self._value(kind, i, result.state, result.samples[-1][2])
 
     def _dip(self, i: int, result: StepResult, values: list[float]) -> float | None:
-        """Return the fraction of the step at a minimum of a gap, from its rates at the ends; None without one."""
+        """Return the fraction of the step at the minimum of a gap, from its rates at both ends; None without one."""
         (_, initial, _), (_, final, _) = result.samples[0], result.samples[-1]
         a, b = point_velocity(self.body, initial, i)[2], point_velocity(self.body, final, i)[2]
         return a / (a - b) if a < 0.0 < b and min(values) < self.body.size * 1e-3 else None

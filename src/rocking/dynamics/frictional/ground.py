@@ -1,4 +1,4 @@
-"""The ground: a plane, tilted or bounded, and its acceleration; vectors and quaternions as tuples."""
+"""The ground, a plane that may be tilted or bounded, and its acceleration. Vectors and quaternions are tuples."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from rocking.dynamics.rolling.ground import SpatialGround, ground_of
 
 Vector = tuple[float, float, float]
 Frame = tuple[Vector, Vector, Vector]
-"""Rows of a matrix; for an attitude, the axes of the ground in body axes."""
+"""Rows of a matrix. The matrix of an attitude has the axes of the ground in body axes as rows."""
 
 ZERO: Vector = (0.0, 0.0, 0.0)
 
@@ -37,12 +37,12 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 
 def scaled(s: float, a: Vector) -> Vector:
-    """Return a multiple."""
+    """Return s times a vector."""
     return s * a[0], s * a[1], s * a[2]
 
 
 def added(a: Vector, s: float, b: Vector) -> Vector:
-    """Return a vector and a multiple of another one."""
+    """Return the sum of the vector a and s times the vector b."""
     return a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]
 
 
@@ -52,18 +52,21 @@ def length(a: Vector) -> float:
 
 
 def unit(a: Vector) -> Vector:
-    """Return the direction; zero of a vector without length."""
+    """Return the unit vector along a vector; a zero vector remains zero."""
     size = length(a)
     return scaled(1.0 / size, a) if size > 0.0 else ZERO
 
 
 def applied(m: Frame, a: Vector) -> Vector:
-    """Return a matrix times a vector; for an attitude, from body axes to axes of the ground."""
+    """Return a matrix times a vector. An attitude converts a vector from body axes to axes of the ground."""
     return dot(m[0], a), dot(m[1], a), dot(m[2], a)
 
 
 def back(m: Frame, a: Vector) -> Vector:
-    """Return the transpose of a matrix times a vector; for an attitude, from axes of the ground to body axes."""
+    """Return the transpose of a matrix times a vector.
+
+    For an attitude, this converts from axes of the ground to body axes.
+    """
     return (
         m[0][0] * a[0] + m[1][0] * a[1] + m[2][0] * a[2],
         m[0][1] * a[0] + m[1][1] * a[1] + m[2][1] * a[2],
@@ -72,7 +75,7 @@ def back(m: Frame, a: Vector) -> Vector:
 
 
 def frame(q: tuple[float, ...]) -> Frame:
-    """Return the rotation of a unit quaternion (s, x, y, z), from axes of the body to those of the ground."""
+    """Return the rotation matrix of a unit quaternion (s, x, y, z), from body axes to axes of the ground."""
     s, x, y, z = q
     return (
         (s * s + x * x - y * y - z * z, 2.0 * (x * y - s * z), 2.0 * (x * z + s * y)),  # Eq. 79
@@ -106,11 +109,11 @@ class HullGround:
     vertical: Any = None
     slope: float = 0.0  # angle of the plane from the horizontal [rad]
     azimuth: float = 0.0  # direction of descent, from x towards y [rad]
-    # half sizes of the plane along its two axes, without contact at points beyond and at its edges; None for an
+    # half sizes of the plane along its two axes; there is no contact at its edges and beyond; None for an
     # infinite plane [m]
     shelf: tuple[float, float] | None = None
     gravity: float = conventions.g  # [m/s2]
-    motion: SpatialGround = field(init=False, repr=False)  # the three components on common stretches of time
+    motion: SpatialGround = field(init=False, repr=False)  # the three components, with common stretches of time
     level: Frame = field(init=False, repr=False)  # level axes to axes of the plane
 
     def __post_init__(self) -> None:
@@ -118,7 +121,7 @@ class HullGround:
         checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
         object.__setattr__(self, "motion", ground_of(self.x, self.y, self.vertical))
         c, s, cc, ss = math.cos(self.azimuth), math.sin(self.azimuth), math.cos(self.slope), math.sin(self.slope)
-        # rotated about the horizontal line across the direction of descent
+        # rotation about the horizontal line normal to the direction of descent
         rows: Frame = (
             (c * c * cc + s * s, c * s * (cc - 1.0), -c * ss),
             (c * s * (cc - 1.0), s * s * cc + c * c, -s * ss),
@@ -128,7 +131,7 @@ class HullGround:
 
     @classmethod
     def placed(cls, motion: SpatialGround, level: Any, shelf: Any, gravity: float) -> "HullGround":
-        """Return a ground from its motion, its axes as 9 numbers, and the half sizes of its shelf (inf: no shelf)."""
+        """Return a ground from its motion, its axes (9 numbers) and the half sizes of its shelf (inf: no shelf)."""
         ends = float(shelf[0]), float(shelf[1])
         ground = cls(shelf=None if ends == (math.inf, math.inf) else ends, gravity=gravity)
         object.__setattr__(ground, "motion", motion)
@@ -142,7 +145,7 @@ class HullGround:
         return applied(self.level, (0.0, 0.0, -self.gravity))
 
     def field(self, stretch: int, start: float, span: float) -> list[Vector]:
-        """Return gravity minus ground acceleration over a span, by powers of time over the span, in plane axes."""
+        """Return gravity minus ground acceleration in plane axes, as a polynomial of the time divided by `span`."""
         rows = self.motion.segment(stretch, start, span)
         vectors = []
         for k in range(rows.shape[1]):

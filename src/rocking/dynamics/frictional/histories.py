@@ -1,4 +1,4 @@
-"""Many histories of bodies on their hulls: all combinations of bodies, grounds, scales, laws, frictions and starts."""
+"""Many histories on hulls: all combinations of bodies, grounds, scales, laws, frictions and starts."""
 
 import math
 from collections.abc import Callable, Collection, Sequence
@@ -47,7 +47,10 @@ COLUMNS = _COMPILED.columns
 
 
 def library_of(bodies: Sequence[HullBody | None], motions: Sequence[SpatialGround], laws: Collection[int]) -> Any:
-    """Return bodies and motions in the form of the compiled engine; laws: codes of the rows."""
+    """Return bodies and motions in the form of the compiled engine.
+
+    `laws` contains the codes of the laws in the rows.
+    """
     library = module().Library()
     for body in bodies:
         if body is None:
@@ -77,9 +80,10 @@ def numbers_of_rows(  # noqa: PLR0917 - the columns in order
     plane: FloatArray = LEVEL,
     horizon: Any = 0.0,
 ) -> FloatArray:
-    """Return histories as rows of numbers, one row per initial state; single values of other columns are repeated.
+    """Return histories as rows of numbers, one row per initial state. Single values of other columns are repeated.
 
-    value: coefficient or position of the law; plane: level axes to axes of the plane, and half sizes of the shelf.
+    `value` is the coefficient or the impulse position of the law. `plane` contains the rotation from level axes to axes
+    of the plane, and the half sizes of the shelf.
     """
     count = len(state)
     first = (np.broadcast_to(column, count) for column in (value, scale, horizon, friction))
@@ -96,7 +100,7 @@ def traced(
     horizon: float,
     settings: HullSettings,
 ) -> HullHistory:
-    """Return one history of the compiled engine in the form of the reference engine; its only events are impacts."""
+    """Return one history of the compiled engine in the form of the reference engine. The events are impacts only."""
     code, value = _code(law)
     if code == KED:
         mass_distribution(body)
@@ -179,9 +183,12 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
     >>> batch["outcome"].ravel().tolist(), batch["status"].ravel().tolist()
     ([0], [0])
     """
-    # bodies: None for an invalid body, whose rows get an error status; restitution: argument of `HullEngine`; friction:
-    # infinite for vertices that never slide; start: in the axes of the vertices, the lowest at rest on the ground;
-    # horizon: shortest duration [s]; the reference engine is hundreds of times slower
+    # bodies: None for an invalid body, whose rows get an error status
+    # restitution: argument of `HullEngine`
+    # friction: infinite for vertices that never slide
+    # start: state in the axes of the vertices; the lowest vertex is at rest on the ground
+    # horizon: shortest duration [s]
+    # engine: the reference engine is hundreds of times slower
     worker_count = thread_count(threads)
     check_progress(progress)
     settings = settings or HullSettings()
@@ -218,13 +225,13 @@ def hull_histories(  # noqa: PLR0913 - the axes of a study
 
 @dataclass(frozen=True, eq=False)
 class HullRows:
-    """Bodies and motions; runs histories given as rows. A row without a body gets an error status."""
+    """Bodies and motions. `run` computes histories given as rows; a row without a body gets an error status."""
 
     bodies: Sequence[HullBody | None]
     motions: Sequence[SpatialGround]
     settings: HullSettings
     engine: str  # fast or reference
-    laws: Collection[int]  # codes of the rows
+    laws: Collection[int]  # codes of the laws in the rows
 
     @property
     def engine_name(self) -> str:
@@ -239,9 +246,10 @@ class HullRows:
     def run(
         self, numbers: FloatArray, choices: IntArray, threads: int, progress: Callable[[int], None] | None = None
     ) -> dict[str, np.ndarray]:
-        """Return the results of rows by name; NaN without a result.
+        """Return the results of rows by name; NaN if there is no result.
 
-        numbers: from `numbers_of_rows`; choices: body, motion, law, facet of the body before its tilt.
+        `numbers` is the result of `numbers_of_rows`. `choices` contains body, motion, law, and facet of the body before
+        its tilt.
         """
         pieces = []
         size = PIECE if self.engine == "fast" else 1
@@ -331,7 +339,7 @@ def numbers_of(body: HullBody | None, start: SpatialStart) -> FloatArray:
 
 
 def start_of(body: HullBody, start: SpatialStart) -> State:
-    """Return the initial state of a body, with the lowest vertex at rest on the ground, or above it."""
+    """Return the initial state of a body. Its lowest vertex is at rest on the ground, or above the ground."""
     return _state(numbers_of(body, start))
 
 

@@ -41,8 +41,8 @@ class HullHistory:
     outcome: Outcome = Outcome.NO_UPLIFT
     still_rocking: bool = False
     lost: float = 0.0  # energy lost in impacts and at the start of rest, without the work of friction [J]
-    replaced: int = 0  # impacts with the impulse at the landing vertices in place of that of the law
-    held: int = 0  # impacts and changes without a solution, where the largest face sticks
+    replaced: int = 0  # number of impacts with the impulse at the landing vertices instead of the position of the law
+    held: int = 0  # number of impacts and changes of contact without a solution; the largest face then sticks
     flew: bool = False
     slid: bool = False
     rocked: bool = False
@@ -55,7 +55,7 @@ class HullHistory:
     peak_time: float = 0.0  # time of the smallest cosine [s]
     peak_spin: float = 0.0  # largest angular velocity [rad/s]
     sliding_distance: float = 0.0  # path of the vertex with the largest slip [m]
-    first_uplift: float = math.nan  # [s]
+    first_uplift: float = math.nan  # time of the first uplift [s]
     uplifts: int = 0
     steps: int = 0
 

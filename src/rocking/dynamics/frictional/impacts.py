@@ -30,7 +30,7 @@ _FLAT = 1e-6  # gap over the size below which all corners of a facet land togeth
 
 
 class HullImpacts(ContactChoice):
-    """State of a history that resolves its impacts."""
+    """State of a history, with the computation of impacts."""
 
     def _impact(self) -> None:
         """Resolve the impact of all touching vertices."""
@@ -65,10 +65,12 @@ class HullImpacts(ContactChoice):
         self._keep()
 
     def _touching_with_facet(self, touching: tuple[int, ...]) -> tuple[int, ...]:
-        """Return the touching vertices, with all corners of a facet that lands nearly flat, after its rotation to flat.
+        """Return the touching vertices.
 
-        In such a landing, contact passes from corner to corner at first without loss, in an order that depends on
-        rounding. Real faces are not flat to `_FLAT` of the size of a body.
+        A facet that lands nearly flat is first rotated to flat, and all its corners touch.
+
+        Otherwise, contact would first pass from corner to corner without energy loss, in an order that depends on
+        rounding. Real faces are less flat than `_FLAT` times the size of the body.
         """
         body, state, near = self.body, self.state, self._touching(_FLAT)
         if len(near) < 3 or len(near) == len(touching):
@@ -98,7 +100,7 @@ class HullImpacts(ContactChoice):
         return {i: point for i, point in impulse_points.items() if point != points[i]}
 
     def _struck(self, problem: Problem, touching: tuple[int, ...], before: float) -> Solution | None:
-        """Return the first candidate with impulses that satisfy all laws; None without one."""
+        """Return the first candidate whose impulses satisfy all laws; None if there is none."""
         self.struck = [
             s for s in self._candidates(problem, touching, touching, {}) if self._energy(s) <= before * (1.0 + 1e-12)
         ]
@@ -117,7 +119,7 @@ class HullImpacts(ContactChoice):
         return 0.5 * (self.body.mass * dot(solution.linear, solution.linear) + dot(w, applied(self.body.tensor, w)))
 
     def _calm(self) -> None:
-        """Bring a body with small motion above a facet to rest on it, if the contact forces allow it."""
+        """Bring a body that moves slowly close to a facet to rest, if contact forces can keep the body at rest."""
         near = self._touching(10.0 * self.rest)
         if self._resting or len(near) < 3 or self.ended is not None:
             return

@@ -19,7 +19,7 @@ class HullRocking(SpatialMechanics):
     options = frozenset({"engine"})
 
     def takes(self, body: Any, friction: Any, *, study: bool = False) -> bool:
-        # in a study without friction the body hops and falls into other poses, but does not slide
+        # in a study without friction, the body may hop and fall into other poses, but does not slide
         return (study or friction is not None) and in_space(body)
 
     def follow(

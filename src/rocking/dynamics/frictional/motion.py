@@ -1,6 +1,6 @@
-"""Motion during a contact: accelerations, and steps of the fifth order of Dormand and Prince (1980).
+"""Motion during a contact: accelerations, and steps by the fifth-order method of Dormand and Prince (1980).
 
-The contact problem gives the forces at every stage, and with them normal forces, friction and gaps for the events.
+The contact problem gives the forces at every stage. Normal forces, friction and gaps locate the events.
 """
 
 import math
@@ -62,12 +62,12 @@ class State(NamedTuple):
 
 @dataclass(frozen=True)
 class HullMode:
-    """Contact of a step, with the initial directions of sliding of its vertices, in axes of the ground."""
+    """Contact of a step, with the initial directions of sliding of its vertices in axes of the ground."""
 
     contact: HullContact
     friction: float
     starts: dict[int, Vector]
-    pulled: bool = False  # True if no contact satisfies all laws, and this one has the smallest tension
+    pulled: bool = False  # True if no contact satisfies all laws; this contact has the smallest tension
 
 
 class Rates(NamedTuple):
@@ -81,7 +81,7 @@ class Rates(NamedTuple):
 
 
 def problem_of(body: HullBody, state: State, field: Vector, friction: float) -> Problem:
-    """Return the contact problem of the accelerations; field: gravity minus ground acceleration [m/s2]."""
+    """Return the contact problem of the accelerations. `field` is gravity minus ground acceleration [m/s2]."""
     axes, w = frame(state.attitude), state.spin
     free = applied(body.compliance, scaled(-1.0, cross(w, applied(body.tensor, w))))
     return Problem(body, axes, back(axes, field), free, friction)
@@ -100,7 +100,7 @@ def rates_of(body: HullBody, state: State, mode: HullMode, field: Vector) -> Rat
 
 
 def quaternion_rate(q: tuple[float, ...], w: Vector) -> tuple[float, ...]:
-    """Return the rate of an attitude."""
+    """Return the rate of the quaternion of an attitude."""
     s, x, y, z = q
     return (
         -0.5 * (x * w[0] + y * w[1] + z * w[2]),  # Eq. 22
@@ -154,10 +154,11 @@ class StepResult(NamedTuple):
 def step(
     body: HullBody, state: State, mode: HullMode, field: list[Vector], span: tuple[float, float], pace: float
 ) -> StepResult:
-    """Return a step by a fraction of its duration.
+    """Return the result of a step over a fraction of its duration.
 
-    field: gravity minus ground acceleration over the full step, by powers of its fraction [m/s2]; span: duration of the
-    full step [s] and fraction [-]; pace: sqrt(g / size), the scale of velocity errors [1/s].
+    `field` is gravity minus ground acceleration over the full step, as a polynomial of the fraction of the step [m/s2].
+    `span` contains the duration of the full step [s] and the fraction [-]. `pace` is sqrt(g / size), the scale of
+    velocity errors [1/s].
     """
     fraction = span[1]
     h = fraction * span[0]
@@ -188,7 +189,7 @@ def valued(field: list[Vector], x: float) -> Vector:
 
 
 def energies(body: HullBody, state: State, gravity: Vector) -> tuple[float, float]:
-    """Return the kinetic energy and the potential energy over the origin of the ground [J]."""
+    """Return the kinetic energy, and the potential energy relative to the origin of the ground [J]."""
     w = state.spin
     kinetic = 0.5 * (body.mass * dot(state.velocity, state.velocity) + dot(w, applied(body.tensor, w)))
     return kinetic, -body.mass * dot(gravity, state.position)
@@ -217,8 +218,11 @@ def levelled(body: HullBody, attitude: tuple[float, ...], members: tuple[int, ..
 
 
 def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azimuth: float = 0.0) -> State:
-    """Return the state at rest on a facet, or in the axes of the vertices, with a tilt and its azimuth [rad]."""
-    # the lowest vertex is on the ground, the centre of mass over the origin
+    """Return the state at rest on a facet, with a tilt and its azimuth [rad].
+
+    Without facet, the axes of the vertices are upright.
+    """
+    # the lowest vertex is on the ground, and the centre of mass above the origin
     attitude: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0)
     if facet is not None:
         down = unit(body.facets[facet])
@@ -233,16 +237,17 @@ def standing(body: HullBody, *, facet: int | None = None, tilt: float = 0.0, azi
 
 
 _TURNS, _STRAIGHT = 300, 1e-12
-_NEWTON, _TRIES, _SWING = 20, 6, 1e-7  # steps, bisections, and angle of a finite difference
+# Newton's method: limits of steps and bisections, angle of the finite difference
+_NEWTON, _TRIES, _SWING = 20, 6, 1e-7
 _NOTHING = 1e-300
 _BEGIN = 6  # iterations before Newton's method for a facet with many corners
 
 
 def sliding(problem: Problem, contact: HullContact, imposed: dict[int, Vector], still: float) -> Solution | None:
-    """Return a candidate with the initial directions of sliding of its free vertices, by iteration; None if it fails.
+    """Return a candidate with the initial sliding directions of its free vertices, by iteration. None if it fails.
 
-    imposed: directions of vertices that slide already; still: largest rate of a vertex that starts to slide, whose
-    direction is opposite to the former friction force.
+    `imposed` contains the directions of vertices that already slide. `still` is a limit of the slip rate: a slower
+    vertex slides in the direction opposite to the former friction force.
     """
     free = [i for i in contact.members if i not in contact.stuck and i not in imposed]
     if not free or problem.friction == 0.0:
@@ -280,7 +285,7 @@ def sliding(problem: Problem, contact: HullContact, imposed: dict[int, Vector], 
 
 
 def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: float) -> Solution | None:
-    """Return the start of sliding of a facet with many corners, by Newton's method for its three accelerations."""
+    """Return the start of sliding of a facet with many corners, by Newton's method for three accelerations."""
     (x, y, up), size = problem.axes, problem.body.size
 
     def beside(u: FloatArray) -> tuple[Solution, FloatArray] | None:
@@ -320,7 +325,7 @@ def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: flo
             if length(tuple(current[1])) < residual_norm:
                 break
         u = candidate
-    # accelerations below `still` have no direction
+    # accelerations below `still` define no direction
     is_close = current is not None and length(tuple(current[1])) <= max(still, 1e-9 * length(tuple(u)))
     return current[0] if current is not None and is_close else None
 
@@ -328,7 +333,7 @@ def _turned_whole(problem: Problem, begun: Solution, free: list[int], still: flo
 def _turned(
     problem: Problem, contact: HullContact, directions: dict[int, Vector], soft: dict[int, float]
 ) -> Solution | None:
-    """Return a candidate with sliding in the directions of acceleration, by Newton's method; None if it fails."""
+    """Return a candidate that slides in the directions of its accelerations, by Newton's method. None if it fails."""
     up, free = problem.axes[2], list(soft)
 
     def across(trial: dict[int, Vector]) -> tuple[Solution, list[float], list[float]] | None:
@@ -375,7 +380,7 @@ def _turned(
 
 
 def _solved(table: FloatArray, side: FloatArray) -> FloatArray | None:
-    """Return the solution by Gauss elimination with pivoting, equal on all processors; None for a singular table."""
+    """Return the solution by Gauss elimination with pivoting, with equal bits on all processors; None if singular."""
     rows = np.column_stack([table, side])
     for k in range(len(side)):
         pivot_row = k + int(np.argmax(np.abs(rows[k:, k])))

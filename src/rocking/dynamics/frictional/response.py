@@ -31,11 +31,11 @@ from rocking.portable import applied
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FINE = 0.05  # time between samples without a record, over sqrt(size / g)
-_NO_SLIP = 1e-6  # sliding distance over the size below which results do not mention it
+FINE = 0.05  # time between samples if there is no record, over sqrt(size / g)
+_NO_SLIP = 1e-6  # sliding distance over the size; results do not mention a smaller distance
 
 HULL_IMPACT = np.dtype([("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("vertices", "U64")])
-"""Fields of `HullResponse.impacts`: [s], kinetic energy [J], [J], vertices in contact after."""
+"""Fields of `HullResponse.impacts`: time [s], kinetic energy before and after [J], vertices in contact after."""
 
 _AXES = ("x", "y", "z")
 
@@ -51,8 +51,8 @@ def response_on_hull(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> "HullResponse":
-    """Return the response of a body in space with friction; on ground at rest without components."""
-    # duration: shortest duration [s]; by default until the body rests after the motion
+    """Return the response of a 3D body with friction. Without components, the ground is at rest."""
+    # duration: shortest duration [s]; by default, the response ends when the body rests after the motion
     hull_body = HullBody.of(body)
     law = law_on_hull(restitution)
     scale = checks.within("scale", scale, -1e6, 1e6)
@@ -65,7 +65,7 @@ def response_on_hull(
     steps = [record.time_step for record in motions if isinstance(record, GroundMotion)]
     step = min(steps, default=FINE / math.sqrt(settings.gravity / hull_body.size))
     if duration is not None:
-        samples(step, duration)  # refuses too many samples before the computation
+        samples(step, duration)  # raises an error before the computation if there are too many samples
     horizon, used = 0.0 if duration is None else duration, chosen(engine)
     if used == "fast":
         history = traced(hull_body, ground, law, settings.friction, start, horizon=horizon, settings=settings)
@@ -83,16 +83,16 @@ class HullStates:
     """States of a body at n instants, in axes of the ground."""
 
     quaternion: FloatArray  # attitude (s, x, y, z) [-]; shape (n, 4)
-    angular_velocity: FloatArray  # [rad/s]; shape (n, 3)
+    angular_velocity: FloatArray  # angular velocity [rad/s]; shape (n, 3)
     centre: FloatArray  # centre of mass relative to the ground point under its start [m]; shape (n, 3)
-    centre_velocity: FloatArray  # [m/s]; shape (n, 3)
+    centre_velocity: FloatArray  # velocity of the centre of mass [m/s]; shape (n, 3)
     touching: IntArray  # number of vertices in contact
-    sliding: IntArray  # number of these that slide
+    sliding: IntArray  # number of sliding vertices
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HullResponse(ResponseBase):
-    """Response of a body in space with friction, as returned by `simulate`.
+    """Response of a 3D body with friction, as returned by `simulate`.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class HullResponse(ResponseBase):
     trajectory : HullHistory
         Result of the engine.
     end : float
-        End of the response; the engine may continue until the body rests [s].
+        End of the response [s]. The engine may continue until the body rests.
     components : tuple
         Motions along x, y and z, or None.
     scale : float
@@ -167,7 +167,7 @@ class HullResponse(ResponseBase):
 
     @cached_property
     def tilt(self) -> FloatArray:
-        """Angle from the initial pose, before the initial tilt, at the samples [rad]."""
+        """Angle from the pose before the initial tilt, at the samples [rad]."""
         x, y, z = self._up.T
         return np.asarray(np.arctan2(np.hypot(x, y), z))
 
@@ -178,7 +178,7 @@ class HullResponse(ResponseBase):
 
     @cached_property
     def intervals(self) -> list[tuple[float, float, tuple[int, ...], tuple[int, ...]]]:
-        """Intervals of one contact: start and end [s], vertices in contact, and vertices that slide."""
+        """Intervals with constant contact: start and end [s], vertices in contact, sliding vertices."""
         rows: list[tuple[float, float, tuple[int, ...], tuple[int, ...]]] = []
         history, end = self.trajectory, self.end
         stops = [*history.time[1:], history.time[-1]]
@@ -218,7 +218,7 @@ class HullResponse(ResponseBase):
 
     @property
     def overturning_direction(self) -> float:
-        """Direction of tilt when the body left its initial pose, from x towards y; NaN if it did not [rad]."""
+        """Direction of tilt when the body left its initial pose, from x towards y [rad]; NaN if the body did not."""
         return self.trajectory.direction
 
     @property
@@ -236,7 +236,7 @@ class HullResponse(ResponseBase):
         count = self.impacts.size
         impacts = f"{count} impact{'s' * (count != 1)}"
         if self.outcome is Outcome.OVERTURNED:
-            degrees = round(math.degrees(self.overturning_direction), 6) + 0.0  # less is rounding
+            degrees = round(math.degrees(self.overturning_direction), 6) + 0.0  # smaller angles are rounding errors
             direction = "" if self.trajectory.fell_off else f" towards {degrees:.4g} degrees"
             time = "" if math.isnan(self.overturning_time) else f", for good at {self.overturning_time:.4g} s"
             return f"overturned{direction} into pose {self.pose}{time}; {impacts}{slid}"
@@ -250,7 +250,7 @@ class HullResponse(ResponseBase):
     def at(self, time: Any) -> HullStates:
         """Return the state of the body at any times within the response.
 
-        Between steps of the engine, position and attitude follow cubics with its velocities.
+        Between the steps of the engine, position and attitude are cubics that match the velocities at the steps.
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class HullResponse(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or outside the response by more than rounding.
+            If a time is not finite, or is outside the response by more than rounding.
         """
         stops, positions, attitudes, velocities, attitude_rates = self._nodes
         times = np.atleast_1d(self._times_within(time, float(stops[-1])))
@@ -371,7 +371,7 @@ class HullResponse(ResponseBase):
 def _hermite(
     a: FloatArray, va: FloatArray, b: FloatArray, vb: FloatArray, span: FloatArray, x: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the cubic with the values and rates at both ends, and its rate."""
+    """Return value and rate of the cubic that has the given values and rates at both ends."""
     da, db, rise = span * va, span * vb, b - a
     cubic, square = da + db - 2.0 * rise, 3.0 * rise - 2.0 * da - db
     value = a + x * (da + x * (square + x * cubic))

@@ -1,4 +1,4 @@
-"""Restitution of a body in space with friction: position of the impulse of a landing, for any law."""
+"""Restitution of a 3D body with friction: impulse position of a landing, for all laws."""
 
 import math
 from collections.abc import Callable
@@ -22,15 +22,18 @@ from rocking.restitution.space.calibrated import CalibratedPosition
 from rocking.restitution.space.impulse_position import impulse_position
 
 MODELS = ("housner-3d", "ked-3d", "calibrated-3d")
-"""Models of `rocking.restitution.space` that apply with friction."""
+"""Models of `rocking.restitution.space` for bodies with friction."""
 
 ImpulseLaw = Callable[[Vector, Vector], float]
-"""Position k of the impulse of a step between two points relative to the centre of mass; 1 at the new one [-]."""
+"""Impulse position k of a step from an old to a new point [-].
+
+Points are relative to the centre of mass; k = 1 at the new point.
+"""
 
 
 @dataclass(frozen=True)
 class FixedPosition:
-    """Position k of the impulse of every landing on the base: 0 at the middle of the step, 1 (Housner) at its end."""
+    """Constant impulse position k of landings on the base: 0 at the middle of the step, 1 (Housner) at its end."""
 
     k: float
 
@@ -42,8 +45,8 @@ class FixedPosition:
 
 
 def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
-    """Return the law of k from the name of a model, a fixed k, or the coefficient of a landing of the full base."""
-    # the law applies to the facet `base`: steps on other facets have k = 1
+    """Return the law of the impulse position from a model name, a fixed k, or the coefficient of a full landing."""
+    # the law applies to the facet `base`; steps on other facets have k = 1
     law = law_on_hull(restitution)
     if isinstance(law, FixedPosition):
         return _on_base(body, base, lambda _step: law.k)
@@ -59,7 +62,7 @@ def law_of(restitution: Any, body: HullBody, base: int) -> ImpulseLaw:
 
 
 def mass_distribution(body: HullBody) -> Solid:
-    """Return the distribution of mass of a body for "ked-3d"; an error if only its moments are given."""
+    """Return the distribution of mass of a body for "ked-3d". Raise an error if only its moments are given."""
     if body.solid is None:
         raise InvalidValueError(
             "restitution 'ked-3d' needs the distribution of mass, but this body has moments only; give HullBody a solid"
@@ -69,7 +72,7 @@ def mass_distribution(body: HullBody) -> Solid:
 
 @lru_cache(maxsize=256)
 def position_on_base(body: HullBody) -> CalibratedPosition:
-    """Return the impulse position of a landing on the base by the calibrated model; cached."""
+    """Return the impulse position of a landing on the base by the calibrated model. The result is cached."""
     base, (x, y, _) = body.footprint, body.centre.tolist()
     if base is None:
         if dot(unit(body.facets[body.base]), (0.0, 0.0, -1.0)) < 1.0 - 1e-12:
@@ -93,7 +96,7 @@ def _on_base(body: HullBody, base: int, position: Callable[[Vector], float], hig
 
 
 def _of_coefficient(body: HullBody, base: int, r: float) -> Callable[[Vector], float]:
-    """Return the position k by step at which a landing of the full base has a given coefficient."""
+    """Return a function from a step to the position k that gives a landing of the full base the coefficient r."""
     corners = [body.points[i] for i in body.hull.corners(base)]
     up, height = scaled(-1.0, unit(body.facets[base])), float(body.hull.heights[base])
 
@@ -110,7 +113,7 @@ def _of_coefficient(body: HullBody, base: int, r: float) -> Callable[[Vector], f
 
 
 def impulse_point(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
-    """Return the point of action of the impulse of a step."""
+    """Return the point of action of the impulse of a step from an old to a new point."""
     step = minus(new, old)
     if not math.sqrt(dot(step, step)) > 0.0:
         return new
@@ -118,7 +121,7 @@ def impulse_point(law: ImpulseLaw, old: Vector, new: Vector) -> Vector:
 
 
 def nearest(points: list[Vector], to: Vector) -> Vector:
-    """Return the point of a vertex, an edge or the border of a facet nearest to another point."""
+    """Return the point of a vertex, an edge or a border of a facet that is nearest to another point."""
     if len(points) == 1:
         return points[0]
     best = points[0]
@@ -155,18 +158,18 @@ def law_on_hull(restitution: Any) -> str | float | FixedPosition:
 
 @dataclass(frozen=True, eq=False)
 class RestitutionOnHull(ConstantRestitution):
-    """Restitution and body for rows, which contain size, coefficient, friction and scale only."""
+    """Restitution and body for rows. The rows contain only size, coefficient, friction and scale."""
 
     body: Any = None  # a Solid, or a body with a distribution of mass
     model: str | float = "ked-3d"
-    frequency: float = 1.0  # p of the body under `gravity`, the reference for rows of other sizes [rad/s]
+    frequency: float = 1.0  # p of the body under `gravity` [rad/s]; rows with another p have another size
     gravity: float = field(default=1.0)  # [m/s2]
-    slenderness_angle: float = 1.0  # smallest over the edges of the base [rad]
-    size: float = 1.0  # R [m]
+    slenderness_angle: float = 1.0  # smallest slenderness angle over the edges of the base [rad]
+    size: float = 1.0  # semi-diagonal R [m]
 
     @cached_property
     def on_hull(self) -> HullBody:
-        """The body on the vertices of its hull; an error if the model needs more data."""
+        """The body on the vertices of its hull. Raises an error if the model needs more data."""
         hull_body = HullBody.of(self.body)
         if self.model == "ked-3d":
             mass_distribution(hull_body)
@@ -174,12 +177,12 @@ class RestitutionOnHull(ConstantRestitution):
 
     @property
     def tabulated(self) -> bool:
-        """True: the fast engine supports it."""
+        """True, because the fast engine supports this law."""
         return True
 
     @property
     def label(self) -> str:
-        """The model, or the coefficient."""
+        """Label: the model, or the coefficient."""
         return self.model if isinstance(self.model, str) else f"{self.model:.6g}"
 
     @classmethod
@@ -199,7 +202,7 @@ class RestitutionOnHull(ConstantRestitution):
         )  # fmt: skip
 
     def content(self) -> dict[str, Any]:
-        """Return mass, centre, inertia and hull of the body, and the model."""
+        """Return mass, centre, inertia and hull of the body, and the model, as plain values."""
         hull_body = self.on_hull
         arrays = {"centre": hull_body.centre, "inertia": hull_body.inertia, "hull": hull_body.hull.vertices}
         return {"model": self.model, "mass": hull_body.mass, **{name: hash_of(array) for name, array in arrays.items()}}

@@ -7,19 +7,20 @@ from rocking.dynamics.settings import NEVER_SLIDES, Settings, checked, checked_f
 
 @dataclass(frozen=True)
 class HullSettings(Settings):
-    """Settings of the integration of a body in space with `friction`.
+    """Settings of the integration of a 3D body with `friction`.
 
     Parameters
     ----------
     gravity, most_events
-        As for all mechanics, `Settings`.
+        See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed over sqrt(g size); its square is the energy over m g size at which a body comes to rest, at least 1e-11,
-        since smaller gaps count as closed [-].
+        Speed over sqrt(g size) [-]. A body comes to rest if its energy over m g size is below the square of this speed.
+        The square is 1e-11 or more, because smaller gaps count as closed.
     tolerance : float
-        Bound on the local error of a step of order 5, over size, radian and their rates [-].
+        Bound on the local error of a step of order 5 [-]. Errors are relative to the size of the body, to one radian,
+        and to the rates of both.
     friction : float
-        Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for a body that never slides [-].
+        Coulomb's coefficient between body and ground, from 0 to 1e6 [-]. With 1e6, the body never slides.
     """
 
     most_events: int = counted(100_000, 1, 10_000_000)

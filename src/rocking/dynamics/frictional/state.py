@@ -1,4 +1,4 @@
-"""A body on the vertices of its hull during a history: its state, its contacts and what is recorded."""
+"""A body on the vertices of its hull during a history: state, contacts and recorded results."""
 
 import math
 from typing import Any, NamedTuple
@@ -30,8 +30,8 @@ from rocking.dynamics.frictional.restitution import law_of
 from rocking.dynamics.frictional.settings import HullSettings
 from rocking.outcome import Outcome, Status
 
-_SLIDES = 1e-4  # speed over sqrt(g size) up to which a vertex keeps its initial direction of sliding
-_AHEAD = 1e-6  # delay, over sqrt(size / g), at which the ground acceleration determines the next mode
+_SLIDES = 1e-4  # speed over sqrt(g size); a slower vertex keeps its initial direction of sliding
+_AHEAD = 1e-6  # delay over sqrt(size / g); the ground acceleration after this delay determines the next mode
 
 
 class _Watched(NamedTuple):
@@ -44,7 +44,7 @@ class _Watched(NamedTuple):
 
 
 class HullState:
-    """State of a history: pose, velocities, contact, and its record."""
+    """State of a history: pose, velocities, contact, and recorded results."""
 
     def __init__(
         self,
@@ -70,13 +70,14 @@ class HullState:
         self.anchors: dict[int, Vector] = {}
         self.at_once, self.moment = 0, -1.0
         self.changes, self.since, self.gathered = 0, 0.0, -math.inf
-        self.over: list[tuple[HullContact, bool]] = []  # contacts that ended at this time, and True if a vertex leaves
+        # contacts that ended at this time; True if one of their vertices leaves
+        self.over: list[tuple[HullContact, bool]] = []
         self.struck: list[Solution] = []
         self.history = HullHistory()
         self.ended: Status | None = None
 
     def _start(self, state: State, horizon: float, initial_facet: int | None) -> None:
-        """Set the state, and the pose from which the body rocks."""
+        """Set the initial state, and the pose from which the body rocks."""
         self.state = state
         self.until = max(horizon, self.ground.motion.end)
         up = frame(state.attitude)[2]
@@ -124,14 +125,17 @@ class HullState:
         self.history.events.append(HullEvent(self.time, kind, self.mode.contact, energy, energy))
 
     def _watch(self) -> None:
-        """Record peaks, and the time at which the facet under the centre of mass leads to another pose."""
+        """Record peaks, and the time at which the body leaves its pose.
+
+        The body leaves its pose when the facet under its centre of mass leads to another pose.
+        """
         history, axes = self.history, frame(self.state.attitude)
         up, tilt = axes[2], dot(self.upright, axes[2])
         last = _Watched(self.time, up, tilt, -dot(self.upright, cross(self.state.spin, up)))
         peaks = [(tilt, self.time)]
         span = self.time - self.watched.time
         if span > 0.0 and self.watched.rate < 0.0 < last.rate:
-            # the smallest cosine of Hermite's cubic
+            # smallest cosine of the Hermite cubic between both times
             first, second, rise = self.watched.rate * span, last.rate * span, tilt - self.watched.tilt
             cubic, square = first + second - 2.0 * rise, 3.0 * rise - 2.0 * first - second
             slope = square + math.sqrt(max(square * square - 3.0 * cubic * first, 0.0))

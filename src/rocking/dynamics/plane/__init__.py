@@ -1,1 +1,1 @@
-"""A plane body that rocks about its feet without sliding or flying."""
+"""A plane body that rocks about its feet and does not slide or fly."""

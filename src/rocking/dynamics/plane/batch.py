@@ -1,4 +1,4 @@
-"""Many histories of plane bodies without friction: rows, by the fast engine or one by one."""
+"""Many histories of plane bodies without friction, given as rows, by the fast or the reference engine."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,14 +19,14 @@ _CHUNK = 64
 
 
 class RowsInPlane:
-    """Motions of a study; runs histories given as rows."""
+    """Motions of a study. `run` computes histories given as rows."""
 
     def __init__(self, motions: Sequence[Segments], law: ImpactLaw, settings: PlaneSettings, engine: str) -> None:
         self.motions, self.law, self.settings = motions, law, settings
         self.library = self._library() if fast_engine.chosen(engine, law) == "fast" else None
 
     def run(self, piece: Rows, threads: int) -> tuple[fast_engine.Arrays, dict[str, int]]:
-        """Return the results of a piece, and counts of steps (empty for the reference engine)."""
+        """Return the results of a piece, and numbers of steps (empty for the reference engine)."""
         if not np.isnan(piece.values["friction"]).all():
             raise InvalidValueError("rows with friction need settings with friction")
         out = fast_engine.empty_results(len(piece))

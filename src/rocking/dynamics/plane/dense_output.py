@@ -1,6 +1,6 @@
-"""A response between its samples and events: states at both ends of every interval, and smooth curves between them.
+"""A response between samples and events: states at both ends of every interval, and smooth curves between the ends.
 
-States are added inside long steps, and inside a step with overturning.
+Additional states divide long steps, and the step with overturning.
 """
 
 import math
@@ -19,26 +19,26 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 from rocking.portable import applied, gauss_legendre, powers, times
 
-# Gauss-Legendre points and weights on [0, 1], exact to degree 9
+# Gauss-Legendre points and weights on [0, 1], exact for polynomials up to degree 9
 _POINTS, _WEIGHTS = gauss_legendre(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True)
 class DenseOutput:
-    """Intervals between consecutive samples, events and states added inside long steps and falls, in order of time."""
+    """Intervals between samples, events and additional states, in order of time."""
 
     start: FloatArray  # start, end: times [s]; shape (n,)
     end: FloatArray
-    side: FloatArray  # +1, -1 or 0 where the body rests; shape (n,)
+    side: FloatArray  # +1 or -1; 0 if the body rests; shape (n,)
     # rotation, velocity, acceleration: theta [rad], theta' [rad/s] and theta'' [rad/s2] at the start and at the end of
-    # each interval, as limits from within it; shape (n, 2)
+    # each interval, as limits from inside the interval; shape (n, 2)
     rotation: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-    push: FloatArray  # push, lift: a_x and a_z at the same instants [m/s2]; shape (n, 2)
+    push: FloatArray  # push, lift: a_x and a_z at both ends of each interval [m/s2]; shape (n, 2)
     lift: FloatArray
-    # alpha, p, semi_diagonal: of the side on which the body stands; at rest of the right one; shape (n,)
+    # alpha, p, semi_diagonal: values of the side in contact; at rest, values of the right side; shape (n,)
     alpha: FloatArray
     p: FloatArray
     semi_diagonal: FloatArray
@@ -93,18 +93,18 @@ class DenseOutput:
         return self.end - self.start
 
     def indices(self, time: FloatArray) -> IntArray:
-        """Return the index of the last interval that ends by each time [s]; zero where none does."""
+        """Return for every time [s] the index of the last interval that ends before or at this time, or zero."""
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
     def evaluated(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return theta [rad] and theta' [rad/s] at positions x of every interval, by the quintics (shape (n, m))."""
+        """Return theta [rad] and theta' [rad/s] of the quintics at positions x of every interval (shape (n, m))."""
         c = self.quintics()
         by_power = powers(x, 6).T
         slopes = np.arange(1, 6)[:, None] * by_power[:5]
         return times(c, by_power), times(c[:, 1:], slopes) / self.length[:, None]
 
     def quintics(self) -> FloatArray:
-        """Return the quintics over 0 <= x <= 1 with the value, rate and acceleration of both ends [rad]."""
+        """Return the quintics over 0 <= x <= 1 [rad]. They match value, rate and acceleration at both ends."""
         h = self.length
         a, b = self.rotation[:, 0], self.rotation[:, 1]
         va, vb = self.velocity[:, 0] * h, self.velocity[:, 1] * h
@@ -123,8 +123,8 @@ class DenseOutput:
         )
 
     def work(self, settings: PlaneSettings) -> FloatArray:
-        """Return the work of the ground in each interval per unit mass [J/kg]."""
-        # in the frame of the ground the inertia forces -m a_x and -m a_z act; the slender-linear terms correspond
+        """Return the work of the ground per unit mass in every interval [J/kg]."""
+        # the inertia forces -m a_x and -m a_z act in the frame of the ground; slender-linear equations are analogous
         rotation, velocity = self.evaluated(_POINTS)
         middle = 0.5 * (self.start + self.end) / self._segments.step
         stretch = np.clip(middle.astype(np.int64), 0, self._segments.count - 1)
@@ -140,14 +140,14 @@ class DenseOutput:
 
 
 def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times, and the states (rotation, velocity) just before and just after each sample and event."""
+    """Return times, and the states (rotation, velocity) just before and just after every sample and event."""
     finite = np.isfinite(trajectory.rotation)
     samples = np.stack([trajectory.rotation[finite], trajectory.angular_velocity[finite]], axis=1)
-    # events other than impacts have no velocities: before and after are zero
+    # events other than impacts have zero velocity before and after
     events = [e for e in trajectory.events if e.time > 0.0 or e.kind is EventKind.IMPACT]
     times = np.concatenate([np.flatnonzero(finite) * step, [e.time for e in events]])
     before, after = (np.array([[0.0, getattr(e, name)] for e in events]).reshape(-1, 2) for name in ("before", "after"))
-    # at one instant: impacts first, then rest or uplift, then the sample
+    # order at one instant: impacts, then rest or uplift, then the sample
     rank = np.concatenate([np.full(len(samples), 2), [int(e.kind is not EventKind.IMPACT) for e in events]])
     order = np.lexsort((rank, times))
     return times[order], np.concatenate([samples, before])[order], np.concatenate([samples, after])[order]
@@ -162,10 +162,13 @@ def _evaluated(polynomials: FloatArray, stretch: IntArray, tau: FloatArray) -> F
 
 
 LONG = 0.1
-"""p times length above which an interval is long [-]; the curve of a shorter one is accurate to 1e-11."""
+"""An interval is long if p times its length exceeds this value [-].
+
+Curves of shorter intervals are accurate to 1e-11.
+"""
 
 _ORDER = 16
-# bound on the first power beyond a quintic within a piece, over the angle
+# bound on the sixth-power term within a piece, over the slenderness angle
 _TOLERANCE = 1e-11
 _MAX_PIECES = 100_000
 _ROUNDING = 1e-12
@@ -181,10 +184,10 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
     before: FloatArray,
     after: FloatArray,
 ) -> list[tuple[float, float, float]]:
-    """Return additional states, as time [s], theta [rad] and theta' [rad/s]."""
+    """Return additional states: times [s], theta [rad] and theta' [rad/s]."""
     # time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
-    # just after each. States are added within long intervals, at the overturning time, and after the last sample until
-    # the body lies.
+    # just after these times
+    # States are added in long intervals, at the overturning time, and after the last sample until the body has fallen.
     fall, step, g = trajectory.overturning_time, segments.step, settings.gravity
     shortest = _ROUNDING * step
 
@@ -192,7 +195,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
         return shifted((scale / g * motion[stretch]).tolist(), at, width)
 
     def terms_of(time: float, left: float, side: int, u: float, rate: float) -> list[float]:
-        """Return the series of the motion over the remainder of a stretch."""
+        """Return the Taylor series of the motion over the remainder of a stretch."""
         stretch = min(int((time + 0.5 * left) / step), segments.count - 1)
         at, width = time / step - stretch, left / step
         push = [side * c for c in coefficients(segments.horizontal, stretch, at, width)]
@@ -204,7 +207,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
     def states(
         start: tuple[float, float, float], side: int, until: float, *, to_the_ground: bool
     ) -> list[tuple[float, float, float]]:
-        """Return states close enough for quintics, up to the end of the stretch at most."""
+        """Return states at spacings short enough for quintics, not beyond the end of the stretch."""
         alpha = parameters.side(side).slenderness_angle
         time, rotation, velocity = start
         u, rate = alpha - side * rotation, -side * velocity
@@ -221,7 +224,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
         return inner_states
 
     turned = after[:-1, 0] + before[1:, 0]
-    turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
+    turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # intervals from impact to impact
     quickest = max(parameters.right.frequency_parameter, parameters.left.frequency_parameter)
     falls = (time[:-1] < fall - shortest) & (time[1:] > fall + shortest)
     added: list[tuple[float, float, float]] = []
@@ -236,7 +239,7 @@ def _inner_states(  # noqa: PLR0917 - a history and its inputs
 
 
 def _quintic_fraction(terms: list[float], alpha: float) -> float:
-    """Return the fraction over which the powers beyond a quintic stay small."""
+    """Return the fraction of the step over which the terms above the fifth power are small."""
     fraction = 1.0
     for k in range(6, len(terms)):
         if abs(terms[k]) * fraction**k > _TOLERANCE * alpha:

@@ -1,4 +1,7 @@
-"""Energy balance and contact forces of a response without friction, and warnings if pure rocking is not possible."""
+"""Energy balance and contact forces of a response without friction.
+
+Warnings report that pure rocking is not possible.
+"""
 
 from dataclasses import dataclass
 
@@ -18,11 +21,11 @@ from rocking.messages import Message
 class ResponseEnergy:
     """Energy of a response at its samples."""
 
-    time: FloatArray  # times of the samples, and of a later overturning [s]
-    kinetic: FloatArray  # kinetic energy, and potential energy above rest [J]
+    time: FloatArray  # times of the samples, and the overturning time if it is later [s]
+    kinetic: FloatArray  # kinetic energy, and potential energy relative to the body at rest [J]
     potential: FloatArray
-    work: FloatArray  # done by the ground since the start [J]
-    lost: FloatArray  # at impacts since the start [J]
+    work: FloatArray  # work of the ground since the start [J]
+    lost: FloatArray  # energy lost at impacts since the start [J]
 
     def __repr__(self) -> str:
         return f"<ResponseEnergy: {self.lost[-1]:.4g} J lost at impacts; closes to {self.closure:.1e}>"
@@ -35,14 +38,14 @@ class ResponseEnergy:
 
     @property
     def closure(self) -> float:
-        """Largest energy balance error over the largest stored energy or loss [-]."""
+        """Largest energy balance error, divided by the largest stored energy or loss [-]."""
         scale = max(float(np.max(self.kinetic + self.potential)), float(np.max(np.abs(self.lost))))
-        fallen = float(np.max(np.abs(self.potential)))  # far beyond the top this is the only energy
+        fallen = float(np.max(np.abs(self.potential)))  # the only energy far beyond the top
         return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
 def energy_of(dense_output: DenseOutput, time: FloatArray, mass: float, settings: PlaneSettings) -> ResponseEnergy:
-    """Return the energy of a response at times from zero [s]: the samples, and a later overturning."""
+    """Return the energy of a response at times from zero [s]: samples, and a later overturning time."""
     index = dense_output.indices(time[1:])
     both_ends = energies(dense_output, mass, settings)
     return ResponseEnergy(time, *(np.append(values[0, 0], values[index, 1]) for values in both_ends))
@@ -56,7 +59,7 @@ def energies(
     alpha, p = dense_output.alpha[:, None], dense_output.p[:, None]
     stored = unit * equations.energy(dense_output.rotation, dense_output.velocity, alpha, p, linear=settings.linear)
     kinetic = unit * 0.5 * np.square(dense_output.velocity / p)
-    # the energy difference between the end of an interval and the start of the next is lost
+    # an impact loses the difference of energy between the end of an interval and the start of the next interval
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
     work = np.concatenate([[0.0], np.cumsum(mass * dense_output.work(settings))])
     return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)
@@ -70,30 +73,30 @@ _FOLLOWS = "use simulate(body, motion, friction=...)"
 class GroundForces:
     """Contact forces at the samples, and friction demand of rocking without slip."""
 
-    time: FloatArray  # times of the samples, and of a later overturning [s]
+    time: FloatArray  # times of the samples, and the overturning time if it is later [s]
     horizontal: FloatArray  # horizontal and vertical force on the body, to the right and upwards [N]
     vertical: FloatArray
-    # smallest vertical force up to the overturning time; a negative force is tensile [N]
+    # smallest vertical force up to the overturning time [N]; a negative force is tensile
     least_vertical: float
-    # largest |horizontal / vertical| up to this time; infinite where the vertical force vanishes [-]
+    # largest |horizontal / vertical| up to the overturning time [-]; infinite if the vertical force vanishes
     friction_of_motion: float
-    friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
+    friction_of_impacts: float  # largest ratio of horizontal to vertical impulse at an impact [-]
 
     def __repr__(self) -> str:
         return f"<GroundForces: {'; '.join(self.warnings()) or f'friction {self.friction_demand:.3g} needed'}>"
 
     @property
     def friction_demand(self) -> float:
-        """Friction demand of the response, motion and impacts [-]."""
+        """Friction demand of the response, including impacts [-]."""
         return max(self.friction_of_motion, self.friction_of_impacts)
 
     @property
     def loses_contact(self) -> bool:
-        """True if the force is tensile at these times; `Response.lost_contact` includes later times."""
+        """True if the vertical force is tensile at these times. `Response.lost_contact` includes later times."""
         return self.least_vertical < 0.0
 
     def warnings(self, friction: float = 0.5) -> list[str]:
-        """Return the reasons against pure rocking: loss of contact, and those of `slips`; empty if there are none."""
+        """Return the reasons against pure rocking: loss of contact, and the reasons from `slips`; may be empty."""
         slips = self.slips(friction)
         if not self.loses_contact:
             return slips
@@ -101,7 +104,7 @@ class GroundForces:
         return [Message("the contact force becomes tensile: {leaves}; {consequence}", facts), *slips]
 
     def slips(self, friction: float = 0.5) -> list[str]:
-        """Return the reasons against feet without slip, as sentences; empty if there are none."""
+        """Return the reasons why the feet would slip, as sentences; empty if there are none."""
         friction = checks.positive("friction", friction)
         warnings: list[str] = []
         if not self.loses_contact and self.friction_of_motion > friction:
@@ -126,9 +129,9 @@ class GroundForces:
 def contact_of(
     trajectory: Trajectory, dense_output: DenseOutput, time: FloatArray, body: Body, settings: PlaneSettings
 ) -> GroundForces:
-    """Return the contact forces of a response at the samples, and at a later overturning [s]."""
+    """Return the contact forces of a response at the samples, and at an overturning time after the samples [s]."""
     f_x, f_z, demand = forces(dense_output, settings.gravity)
-    # after overturning friction does not matter; the start counts even beyond the top
+    # friction after overturning is not relevant; the start is included, even beyond the top
     late = dense_output.start >= trajectory.overturning_time - 1e-9 * dense_output.length
     standing = np.stack([~late, ~late], axis=1)
     standing[0, 0] = True
@@ -145,8 +148,8 @@ def contact_of(
 
 
 def forces(dense_output: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return horizontal and vertical force over mass at both ends of intervals [N/kg], and the friction demand [-]."""
-    # the demand is infinite where the force is tensile
+    """Return horizontal and vertical force per mass at both ends of intervals [N/kg], and the friction demand [-]."""
+    # the friction demand is infinite if the force is tensile
     side = dense_output.side[:, None]
     f_x, f_z = equations.reactions(
         dense_output.rotation, dense_output.velocity, dense_output.acceleration, np.where(side == 0.0, 1.0, side),

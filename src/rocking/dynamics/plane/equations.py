@@ -1,4 +1,4 @@
-"""Equations of motion of a rocking body, and closed forms derived from them (docs/theory/rocking.md).
+"""Equations of motion of a rocking body, and formulas derived from these equations (docs/theory/rocking.md).
 
 All functions accept numbers or arrays.
 """
@@ -18,7 +18,7 @@ from rocking.portable import each
 def angular_acceleration(
     rotation: Any, side: Any, alpha: Any, p: Any, push: Any, weight: Any = 1.0, *, linear: bool = False
 ) -> FloatArray:
-    """Return theta'' [rad/s2]; push: a_x / g [-]; weight: 1 + a_z / g [-]."""
+    """Return theta'' [rad/s2]. `push` is a_x / g, `weight` is 1 + a_z / g [-]."""
     to_top = np.asarray(alpha) * side - rotation
     sine, cosine = (to_top, np.ones_like(to_top)) if linear else (np.sin(to_top), np.cos(to_top))  # Eq. 15
     return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))  # Eq. 14
@@ -30,7 +30,7 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
     if linear:
         return np.asarray(kinetic + size * (angle - 0.5 * size))  # Eq. 30
-    # cos a - cos b as a product, without cancellation at small rotations
+    # cos a - cos b is written as a product to avoid cancellation at small rotations
     return np.asarray(kinetic + 2.0 * np.sin(angle - 0.5 * size) * np.sin(0.5 * size))  # Eq. 17
 
 
@@ -43,7 +43,7 @@ def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
     """Return the amplitude of a freely rocking body.
 
-    energy_over_mgr: energy above rest, over m g R, not above that at the top [-]. Returns |theta| [rad].
+    `energy_over_mgr` is the energy above rest over m g R [-], up to the energy at the top. Returns |theta| [rad].
 
     >>> round(turning_rotation(energy(0.05, 0.0, 0.2, 3.0), 0.2).item(), 12)
     0.05
@@ -91,38 +91,38 @@ class EventKind(IntEnum):
 class Event:
     """An uplift, an impact or the start of rest."""
 
-    time: float  # [s]
+    time: float  # time [s]
     kind: EventKind
     side: int  # foot in contact after the event: +1 right, -1 left
-    before: float = 0.0  # before, after: angular velocities, of an impact [rad/s]
+    before: float = 0.0  # before, after: angular velocities of an impact [rad/s]
     after: float = 0.0
-    coefficient: float = 0.0  # coefficient of restitution, of an impact [-]
+    coefficient: float = 0.0  # coefficient of restitution of an impact [-]
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """A history at the ends of all stretches of the motion, with its events."""
+    """A history: states at the ends of all stretches of the motion, and events."""
 
-    # rotation, angular_velocity: theta [rad] and theta' [rad/s]; after overturning NaN; shape (stretches + 1,)
+    # rotation, angular_velocity: theta [rad] and theta' [rad/s]; NaN after overturning; shape (stretches + 1,)
     rotation: FloatArray
     angular_velocity: FloatArray
     events: list[Event] = field(repr=False)  # in order of time
     outcome: Outcome
     status: Status
     side: int  # side of overturning, +1 or -1; 0 without overturning
-    peak_rotation: float  # theta of largest size; a quarter turn after overturning [rad]
-    peak_time: float  # [s]
+    peak_rotation: float  # theta of largest absolute value; a quarter turn after overturning [rad]
+    peak_time: float  # time [s]
     peak_velocity: float  # largest |theta'| [rad/s]
     # last passage of the centre of mass over the foot, or the end of the motion if the passage is later; NaN without
     # overturning [s]
     overturning_time: float
-    impacts: int  # numbers of impacts and uplifts
+    impacts: int  # impacts, uplifts: their numbers
     uplifts: int
-    truncation: float  # sum of the truncation errors of the steps, no measure of the global error [rad]
-    # smallest normal contact force during rocking over the weight m g, up to the overturning time, at samples, uplifts
+    truncation: float  # sum of the truncation errors of the steps [rad]; not a measure of the global error
+    # smallest normal contact force during rocking, over the weight m g, up to the overturning time, at samples, uplifts
     # and impacts; a negative force is tensile; NaN without rocking [-]
     least_force: float
-    # largest ratio of horizontal to normal force at the same instants; infinite where contact is lost [-]
+    # largest ratio of horizontal to normal force at the same instants [-]; infinite if contact is lost
     friction_demand: float
     engine: str  # engine and method
 

@@ -1,4 +1,4 @@
-"""Restoring moments of a body by stretch: times of uplift, and decay of impacts to rest."""
+"""Restoring moments of a body over the stretches of a motion: times of uplift, and decay of impacts to rest."""
 
 import math
 from collections.abc import Mapping
@@ -24,7 +24,10 @@ class Push:
 
 
 class RestoringMoments:
-    """Restoring moments of a body by stretch; more: constant moments of restraints by side over m g R [-]."""
+    """Restoring moments of a body over stretches.
+
+    `more` contains constant moments of restraints by side, over m g R [-].
+    """
 
     def __init__(
         self, parameters: RockingParameters, push: Push, *, linear: bool, more: Mapping[int, float] = NO_MORE
@@ -47,11 +50,11 @@ class RestoringMoments:
         )
 
     def held(self, sign: int, stretch: int, tau: float) -> float:
-        """Return the restoring moment on a side over m g R; positive without uplift [-]."""
+        """Return the restoring moment on a side over m g R [-]; positive as long as there is no uplift."""
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
-        """Return stretch, time within it, and side of the next uplift; None without uplift."""
+        """Return the next uplift: stretch, time within the stretch, and side; None without uplift."""
         for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
             start = tau if k == stretch else 0.0
             right, left = self._release(1, k, start), self._release(-1, k, start)
@@ -59,20 +62,20 @@ class RestoringMoments:
                 return k, right, 1
             if left < right:
                 return k, left, -1
-            if right <= 1.0:  # both sides at once: the ground accelerates downwards by more than g
+            if right <= 1.0:  # both sides lift at once if the downward acceleration of the ground exceeds g
                 pushed = value(self.push.horizontal[k].tolist(), right)
                 if pushed:
                     return k, right, -1 if pushed > 0.0 else 1
         return None
 
     def until_jump(self, stretch: int) -> int:
-        """Return the number of stretches up to the end, or to a jump of the record to rest."""
+        """Return the number of stretches up to the end of the motion, or up to a jump of the record to rest."""
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
     def window(self, stretch: int, tau: float, stretches: int) -> tuple[dict[int, float], float, float] | None:
-        """Return bounds of the restoring moments from an instant to the end of the last stretch; None on uplift."""
+        """Return bounds of the restoring moments from an instant to the end of the last stretch; None if uplift."""
         # smallest restoring moment on each side [-], bound on the total variation of the logarithm of the moments [-],
-        # and bound on their change with the rotation [1/rad]
+        # and bound on the change of the moments with the rotation [1/rad]
         rows = slice(stretch, stretch + stretches)
         x_min, x_max, x_variation = _extent(self.push.horizontal[rows], tau)
         z_min, z_max, z_variation = _extent(self.push.vertical[rows], tau)
@@ -104,7 +107,7 @@ class RestoringMoments:
 
 
 def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
-    """Return minimum, maximum and variation of a motion over stretches, from tau of the first; exact for lines."""
+    """Return minimum, maximum and variation of a motion over stretches, from tau in the first. Exact for lines."""
     if rows.shape[1] == 2:
         values = np.concatenate([[value(rows[0].tolist(), tau)], rows.sum(axis=1)])
         return (float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
@@ -115,7 +118,7 @@ def _extent(rows: FloatArray, tau: float) -> tuple[float, float, float]:
 
 
 def _jumps(lines: FloatArray) -> np.ndarray:
-    """Return True where a record jumps between two stretches; in smooth motions jumps count as variation."""
+    """Return True for every jump of a record between two stretches. In smooth motions, jumps count as variation."""
     if lines.shape[1] > 2:
         return np.zeros(len(lines) - 1, dtype=bool)
     gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
@@ -123,8 +126,8 @@ def _jumps(lines: FloatArray) -> np.ndarray:
 
 
 _LONGEST_WINDOW = 40.0
-_HEIGHTS = 0.1  # bound on the contribution of rocking amplitudes to the logarithm of the gain
-NOTHING = 1e-9  # speed over p alpha that counts as rest
+_HEIGHTS = 0.1  # bound on the part of the logarithm of the gain that is due to the rocking amplitudes
+NOTHING = 1e-9  # slower speeds over p alpha count as rest
 
 
 def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
@@ -136,10 +139,11 @@ def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     tau: float,
     rest_speed: float,
 ) -> bool:
-    """Return True if the next impacts provably decay to rest before the body could rise again."""
-    # The half cycles have disjoint times, so that the total variation of the moments bounds the speed gain; their sum
-    # is a geometric series. The proof is in docs/theory/rest.md. after: speed after the impact [rad/s]; rest_speed:
-    # largest speed over p alpha for which rest is considered; it always is below `NOTHING` [-].
+    """Return True if it is proven that the next impacts decay to rest before the body can rise again."""
+    # The half cycles do not overlap in time, so that the total variation of the moments bounds the gain of speed.
+    # The sum of the durations is a geometric series. The proof is in docs/theory/rest.md.
+    # after: speed after the impact [rad/s]
+    # rest_speed: largest speed over p alpha for which rest is checked [-]; always checked below `NOTHING`
     side = parameters.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
     held = ground.held(sign, stretch, tau)
@@ -148,7 +152,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     other, across = parameters.side(-sign), ground.held(-sign, stretch, tau)
     if not (after <= rest_speed * unit and held > 0.0 and across > 0.0):
         return False
-    # in units of stretches; the half cycles under the present moments estimate the time to rest
+    # times in units of stretches; the half cycles under the present moments give an estimate of the time to rest
     step = ground.push.step
     p2, p2_other = ((k.frequency_parameter * step) ** 2 for k in (side, other))
     r, q = parameters.largest(sign), parameters.largest(-sign)
@@ -164,7 +168,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state in the order of the engine
     lows, variation, steepness = window
     low, low_ = lows[sign], lows[-sign]
     x = 0.5 * (variation + _HEIGHTS)
-    gain = 1.0 + x + x * x  # more than exp(x) up to x = 1
+    gain = 1.0 + x + x * x  # upper bound of exp(x) up to x = 1
     heights = steepness * (speed * gain) ** 2 / min(p2 * low * low, p2_other * low_ * low_)  # Eq. 40
     is_small = 2.2 * heights * (1.0 + q * q) <= _HEIGHTS * (1.0 - (r * q) ** 2) and heights <= 0.3
     if not (x <= 1.0 and is_small):

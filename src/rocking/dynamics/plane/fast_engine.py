@@ -1,4 +1,4 @@
-"""The fast engine of pure rocking: availability, arrays in and out, and one history with all samples."""
+"""The fast engine of pure rocking: availability, input and output arrays, and one history with all samples."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -39,7 +39,7 @@ instruction_sets, instruction_set = _COMPILED.instruction_sets, _COMPILED.instru
 
 
 def chosen(requested: str, law: ImpactLaw | None = None) -> str:
-    """Return the name of the engine that runs; warn if "auto" leads to the slow one."""
+    """Return the name of the engine to use. Issue a warning if "auto" selects the slow engine."""
     if law is None or law.tabulated or requested == "reference":
         return _COMPILED.chosen(requested)
     if checks.one_of("engine", requested, ENGINES) == "fast":
@@ -51,7 +51,10 @@ def chosen(requested: str, law: ImpactLaw | None = None) -> str:
 
 
 def library_of(segments: Sequence[Segments]) -> Any:
-    """Return motions in the form of the engine: of equal degree, all with or all without a vertical component."""
+    """Return motions in the form of the engine.
+
+    All motions have the same degree; either all motions have a vertical component, or none.
+    """
     if not segments:
         raise InvalidValueError("motions must be at least one, got none")
     degree = segments[0].degree
@@ -64,7 +67,7 @@ def library_of(segments: Sequence[Segments]) -> Any:
     data = np.empty((sum(s.count + 2 for s in segments), columns))
     offsets = np.empty((3, len(segments)), np.int64)
     row_count = 0
-    with np.errstate(invalid="ignore", over="ignore"):  # numbers that are not finite are refused below
+    with np.errstate(invalid="ignore", over="ignore"):  # numbers that are not finite raise an error below
         for k, motion in enumerate(segments):
             rows, before, still = _write_motion(motion, data[row_count:])
             offsets[:, k] = row_count * columns, before, still
@@ -74,7 +77,10 @@ def library_of(segments: Sequence[Segments]) -> Any:
 
 
 def _write_motion(segments: Segments, rows: FloatArray) -> tuple[int, int, int]:
-    """Write a motion into the first rows; return the number of rows, and of stretches before and after a jump."""
+    """Write a motion into the first rows.
+
+    Return the numbers of rows, stretches before a jump, and stretches after it.
+    """
     count, still = segments.count, 0
     if segments.degree > 1:
         rows[:count] = segments.horizontal
@@ -94,7 +100,7 @@ def _write_motion(segments: Segments, rows: FloatArray) -> tuple[int, int, int]:
 
 
 def _continuous(lines: FloatArray, samples: FloatArray) -> bool:
-    """Write the samples that lines join; return True if the lines are continuous."""
+    """Write the samples at the ends of lines. Return True if the lines are continuous."""
     samples[:-1], samples[-1] = lines[:, 0], lines[-1, 0] + lines[-1, 1]
     return bool(_gaps(lines, samples).max(initial=0.0) <= _allowed(samples) < math.inf)
 
@@ -107,12 +113,12 @@ def _gaps(lines: FloatArray, samples: FloatArray) -> FloatArray:
 
 
 def _allowed(samples: FloatArray) -> float:
-    """Return the largest gap that is rounding."""
+    """Return the largest gap that rounding can explain."""
     return 1e-14 * float(max(samples.max(), -samples.min()))
 
 
 def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int:
-    """Return the number of stretches before the jump to rest; refuse other jumps."""
+    """Return the number of stretches before the jump to rest. Raise an error for other jumps."""
     if not all(np.isfinite(x).all() for x in (*components, samples)):
         raise InvalidValueError(_NOT_FINITE)
     columns = zip(components, samples.T, strict=False)
@@ -127,14 +133,14 @@ def _jump(components: list[FloatArray], samples: FloatArray, step: float) -> int
 
 
 def empty_results(count: int, types: Mapping[str, Any] = RESULTS) -> Arrays:
-    """Return arrays for the results of histories by name, filled with NaN or 0."""
+    """Return empty arrays for the results of histories by name, filled with NaN or 0."""
     return {
         name: np.full(count, np.nan if np.issubdtype(dtype, np.floating) else 0, dtype) for name, dtype in types.items()
     }
 
 
 def common(settings: PlaneSettings, law: ImpactLaw) -> Arrays:
-    """Return the arguments common to all calls of the fast engine."""
+    """Return the arguments that all calls of the fast engine share."""
     return {
         "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
         "gravity": settings.gravity, "longest_step": settings.longest_step, "rest": settings.rest_speed,
@@ -157,7 +163,10 @@ def run(
     rotation: float = 0.0,
     velocity: float = 0.0,
 ) -> Trajectory:
-    """Return one history by the requested engine; the fast one gives the same bits as within a batch."""
+    """Return one history by the requested engine.
+
+    The fast engine gives the same bits for one history and for a batch.
+    """
     engine_name = chosen(engine, parameters.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(
@@ -181,13 +190,13 @@ def run(
     )
     results = {name: values[0].item() for name, values in out.items()}
     results |= {"outcome": _OUTCOMES[results["outcome"]], "status": _STATUSES[results["status"]]}
-    if results["outcome"] in {Outcome.OVERTURNED, Outcome.FAILED}:  # nothing was written after the last event
+    if results["outcome"] in {Outcome.OVERTURNED, Outcome.FAILED}:  # values after the last event were not computed
         written = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
         latest = int(max((event[0] for event in raw_events), default=0.0) / segments.step)
         after = max(written[-1] if written.size else 0, latest) + 1
         rotations[after:] = velocities[after:] = np.nan
     order = 6 if _uses_order_six(parameters, segments, settings, scale) else _ORDER
-    # a single history uses the kernels of AVX2: wider registers have no effect
+    # a single history uses the kernels of AVX2, because wider registers have no effect
     kernels = "avx2" if arguments["isa"] == "avx512" and order == _ORDER else arguments["isa"]
     events = [Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in raw_events]
     for name in ("first_uplift", "still_rocking"):  # properties of the trajectory
@@ -196,7 +205,7 @@ def run(
 
 
 def _uses_order_six(parameters: RockingParameters, segments: Segments, settings: PlaneSettings, scale: float) -> bool:
-    """Return True if the time step of a record is so short that the engine uses order 6."""
+    """Return True if the engine uses order 6 because the time step of a record is short."""
     if segments.degree != 1 or settings.linear:
         return False
     components = [component for component in (segments.horizontal, segments.vertical) if component is not None]

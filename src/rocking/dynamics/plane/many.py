@@ -1,4 +1,4 @@
-"""All combinations of plane bodies without friction, motions, scales, restitutions and starts."""
+"""Histories for all combinations of plane bodies without friction, motions, scales, restitutions and starts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -54,7 +54,7 @@ def rocking_alone(cases: Combinations, settings: PlaneSettings) -> "xr.Dataset":
         results |= {"twin_change": change, "twin_flips": flips}
     results |= flags(results)
     labels = list(map(label_of, restitutions))
-    if law.kind:  # the label is that of the body with the strongest truncation
+    if law.kind:  # use the label of the body with the strongest truncation
         labels = [min((row[0] for row in all_parameters), key=lambda p: min(p.left.share, p.right.share)).label]
     attributes = {
         "engine": f"fast ({instruction_set()})" if work else "reference",

@@ -24,7 +24,7 @@ class PlaneRocking(PlaneMechanics):
         return friction is None and not in_space(body)
 
     def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # their limits depend on the body
+        return rotation, angular_velocity  # their limits depend on the body and are checked later
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
         from rocking.dynamics.plane_frictional.base import rocking_start

@@ -1,7 +1,8 @@
-"""The reference engine: Taylor steps of variable order and length, one history at a time, events located to rounding.
+"""The reference engine: Taylor steps of variable order and length, and event times exact to rounding.
 
-It has no code in common with the fast engine, so that each verifies the other: the order is up to 30, the size of the
-last terms sets the length, and zeros are located between those of the slope by Newton's method.
+The reference engine computes one history at a time. It shares no code with the fast engine, so that the two engines
+verify each other. The order is up to 30, and the size of the last terms determines the length of a step. Newton's
+method locates zeros between the zeros of the slope.
 """
 
 import math
@@ -30,7 +31,7 @@ class _Ended(NamedTuple):
 
 
 class Reference:
-    """Engine of one history."""
+    """Reference engine of one history."""
 
     def __init__(
         self,
@@ -65,7 +66,7 @@ class Reference:
         def extreme_to_end(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
             return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
 
-        # extreme push in both directions, and smallest gravity, from each stretch to the end
+        # from every stretch to the end: largest push in both directions, and smallest gravity
         h, v = self.push.horizontal, self.push.vertical
         self.later_high = extreme_to_end(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
         self.later_low = extreme_to_end(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
@@ -89,7 +90,7 @@ class Reference:
             return self._rest()
         self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
         self._raise_peak(abs(rotation), 0.0)
-        if self.u < 0.0:  # start beyond the top
+        if self.u < 0.0:  # the body starts beyond the top
             self._note_force(self.u, self.rate, *self._ground_at(0, 0.0))
             self.over_time, self.forces_before = 0.0, self.forces
         self.uplifts = 1
@@ -97,7 +98,7 @@ class Reference:
         return self._impact(self.rate, 0.0) if upright and self.rate > 0.0 else None
 
     def _step(self) -> _Ended | None:
-        """Advance to the end of the stretch, or to the first event before it."""
+        """Advance to the end of the stretch, or to an earlier event."""
         remaining = (1.0 - self.tau) * self.push.step
         push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, 1.0 - self.tau)
         weight = shifted(self.push.vertical[self.stretch].tolist(), self.tau, 1.0 - self.tau)
@@ -123,7 +124,7 @@ class Reference:
         return self._advance(scaled, length, 1.0 if fraction == 1.0 else self.tau + fraction * (1.0 - self.tau))
 
     def _trusted_part(self, terms: list[float]) -> float:
-        """Return the fraction of the step over which the last terms stay below the tolerance."""
+        """Return the fraction of the step over which the last terms are below the tolerance."""
         if not all(map(math.isfinite, terms)):
             return 0.0
         if len(terms) <= _ORDER:
@@ -136,15 +137,15 @@ class Reference:
         return fraction
 
     def _contact(self, gap: list[float]) -> float | None:
-        """Return the first return of |theta| to zero; of a step that starts at zero, the next one."""
+        """Return the next zero of |theta| within the step, excluding a zero at the start of the step."""
         if gap[0] > 0.0:
             return first_fall(gap)
-        if gap[1] < 0.0:  # the last step ended on the ground, to rounding
+        if gap[1] < 0.0:  # the last step ended on the ground, within rounding
             return 0.0
         if gap[1] > 0.0:
             return first_fall(gap[1:])
         tail = gap[2:]
-        tail[0] = max(tail[0], 0.0)  # just after uplift only rounding can be negative
+        tail[0] = max(tail[0], 0.0)  # just after uplift, only rounding can make this value negative
         if tail[0] > 0.0:
             return first_fall(tail)
         return first_fall(tail[1:]) if tail[1] > 0.0 else None
@@ -181,7 +182,7 @@ class Reference:
             self.over_time, self.forces_before = self._now + at, self.forces
         self.u, self.rate = end, slope(terms, 1.0) / length
         self.fastest = max(self.fastest, abs(self.rate))
-        if tau >= _STRETCH_END:  # before a jump to rest, if any
+        if tau >= _STRETCH_END:  # a jump to rest may follow
             self._note_force(self.u, self.rate, *self._ground_at(self.stretch, 1.0))
         self._move(tau)
         if end < 0.0:
@@ -192,11 +193,11 @@ class Reference:
         return self._conclude() if self.stretch >= self.count else None
 
     def _rest(self) -> _Ended | None:
-        """Rest until the next uplift, or to the end."""
+        """Keep the body at rest until the next uplift, or to the end."""
         uplift = self.ground.next_uplift(self.stretch, self.tau) if self.stretch < self.count else None
         rested = 1.0 + self.push.vertical[self.stretch : self.count if uplift is None else uplift[0]]
         min_force = min(rested[:, 0].min(initial=0.0), (rested.sum(axis=1) - rested.shape[1] + 1.0).min(initial=0.0))
-        if min_force < 0.0:  # without push the body stays at rest
+        if min_force < 0.0:  # without horizontal push, the body stays at rest although the force is tensile
             self.forces = min(self.forces[0], float(min_force)), math.inf
         calm = _Ended(Outcome.ROCKED if self.uplifts or self.impacts else Outcome.NO_UPLIFT)
         if uplift is None:
@@ -224,7 +225,7 @@ class Reference:
                 self.over_time, self.forces_before = self._now, self.forces
             return _Ended(Outcome.OVERTURNED)
         if not inward:
-            if passes:  # on ground at rest the force grows up to the top, unless it is tensile or q < 0.3
+            if passes:  # on ground at rest, the force increases up to the top, unless the force is tensile or q < 0.3
                 self._note_force(self.u, self.rate, 0.0, 1.0)
                 self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)
@@ -260,17 +261,17 @@ class Reference:
         return (self.stretch + self.tau) * self.push.step
 
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
-        """Return the push towards the foot in contact, and the weight, over gravity [-]."""
+        """Return the push towards the foot in contact, and the effective weight, both over gravity [-]."""
         push = value(self.push.horizontal[stretch].tolist(), tau)
         lift = value(self.push.vertical[stretch].tolist(), tau)
         return self.side * push, 1.0 + lift
 
     def _note_force(self, u: float, rate: float, push: float, weight: float) -> None:
-        """Update the extreme forces over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along."""
+        """Update the extreme forces over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g horizontal."""
         sine, cosine = math.sin(u), math.cos(u)
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
         inertia_ratio, spin = self.parameters.side(self.side).inertia_ratio, rate / self._p
-        spin *= spin  # a power would raise where this is infinite
+        spin *= spin  # `**` would raise an error if the result is infinite
         up = weight - inertia_ratio * (moment * sine + spin * cosine)  # Eq. 33
         along = push - inertia_ratio * (moment * cosine - spin * sine)  # Eq. 34
         min_force, demand = self.forces

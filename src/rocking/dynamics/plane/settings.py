@@ -12,7 +12,7 @@ ORDERS = (4, 6, 8)  # orders of the fast engine
 
 
 def checked_linear(_: str, value: object) -> bool:
-    """Return a flag; an error for another value."""
+    """Return True or False. Raise an error for another value."""
     if not isinstance(value, bool):
         raise InvalidValueError(parameter="linear", allowed="True or False", value=value)
     return value
@@ -31,21 +31,21 @@ class PlaneSettings(Settings):
     Parameters
     ----------
     gravity, most_events
-        As for all mechanics, `Settings`.
+        See `Settings`; the same for all mechanics.
     linear : bool
-        Slender-linear equations: sine and cosine of the angles replaced by angle and one.
+        True for the slender-linear equations, in which the angle replaces its sine, and 1 replaces its cosine.
     rest_speed : float
-        Speed after an impact, over p alpha. After a slower impact, the remaining impacts are summed up to rest instead
-        of resolved one by one, if these impacts provably end before the body could rise again [-].
+        Speed after an impact over p alpha [-]. After a slower impact, the remaining impacts are not computed one by
+        one: the engine sums them up to rest, if it is proven that they end before the body can rise again.
     longest_step : float
-        Longest Taylor step of the fast engine as p times time [-].
+        Longest Taylor step of the fast engine, as the product of p and time [-].
     order : int
         Order of the Taylor series of the fast engine: 4, 6 or 8. With order 8, records with short time steps are
-        integrated with order 6, if its truncation error is below a hundredth of that of order 8 at the longest step.
-        Orders 4 and 6 apply only to many histories (`simulate_many`), the nonlinear equations, and motions without a
-        vertical component. The reference engine chooses its own order.
+        integrated with order 6, if the truncation error of order 6 is below 1/100 of the error of order 8 at the
+        longest step. Orders 4 and 6 apply only to many histories (`simulate_many`), to the nonlinear equations, and to
+        motions without a vertical component. The reference engine chooses the order itself.
     tolerance : float
-        Bound on the last two terms of a Taylor step over the angle alpha [-].
+        Bound on the last two terms of a Taylor step, divided by the slenderness angle [-].
     """
 
     linear: bool = checked(False, checked_linear)

@@ -1,4 +1,4 @@
-"""Rest, sliding, rocking, sliding while rocking, and flight of a plane body, with friction and impacts."""
+"""Motion of a plane body with friction: rest, sliding, rocking, sliding during rocking, flight, impacts."""
 
 from lazy_loader import attach_stub
 

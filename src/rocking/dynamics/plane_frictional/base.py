@@ -1,4 +1,4 @@
-"""A body on its two feet as the planar equations see it, per unit of mass (docs/theory/contact.md, Feet)."""
+"""Data of a body on two feet for the planar equations, per unit of mass (docs/theory/contact.md, Feet)."""
 
 import math
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ class PlaneBase:
     """Inertia of a body and positions of its feet relative to the centre of mass."""
 
     mass: float  # m [kg]
-    inertia: float  # polar moment about the centre over the mass, I_C / m [m2]
+    inertia: float  # polar moment of inertia about the centre, divided by the mass, I_C / m [m2]
     height: float  # height h of the centre above the ground at rest [m]
     left: float  # left, right: horizontal distances of the feet from the centre, both above zero [m]
     right: float
@@ -55,17 +55,20 @@ class PlaneBase:
         return math.atan2(abs(self.lever(foot)), self.height)
 
     def arm(self, foot: int, rotation: float) -> tuple[float, float]:
-        """Return the position of a foot relative to the centre, to the right and upwards [m]; rotation: theta [rad]."""
+        """Return the position of a foot relative to the centre, to the right and upwards [m].
+
+        `rotation` is theta [rad].
+        """
         d, sine, cosine = self.lever(foot), math.sin(rotation), math.cos(rotation)
         return d * cosine - self.height * sine, -d * sine - self.height * cosine  # Eq. 58
 
     def rise_on(self, foot: int, rotation: float) -> float:
-        """Return the rise of the centre on one foot, d sin(theta) - 2 h sin(theta / 2)^2, exactly zero at rest [m]."""
+        """Return the rise of the centre on one foot, d sin(theta) - 2 h sin(theta / 2)^2 [m], exactly zero at rest."""
         return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2  # Eq. 59
 
 
 class Mode(NamedTuple):
-    """One smooth piece of the motion."""
+    """Contact conditions of one smooth piece of the motion."""
 
     feet: tuple[int, ...]  # feet in contact: none, -1 (left), +1 (right) or both
     slip: int = 0  # direction of sliding: -1, 0 (sticking) or +1
@@ -104,17 +107,17 @@ class ContactState(NamedTuple):
 
 
 def along(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return the velocity of a foot along the ground, to the right; exactly zero if it was set to stick [m/s]."""
+    """Return the velocity of a foot along the ground, to the right [m/s]. Exactly zero for a sticking foot."""
     return state.u + base.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
 def away(base: PlaneBase, state: ContactState, foot: int) -> float:
-    """Return the velocity of a foot away from the ground, upwards; exactly zero if it was set to rest [m/s]."""
+    """Return the velocity of a foot away from the ground, upwards [m/s]. Exactly zero for a foot at rest."""
     return state.w - base.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
 def kept(base: PlaneBase, state: ContactState, feet: tuple[int, ...], *, stick: bool) -> ContactState:
-    """Return the state with exact contact conditions: ``v_n = 0``, and ``v_t = 0`` if the feet stick."""
+    """Return a state that satisfies the contact conditions exactly: ``v_n = 0``, and ``v_t = 0`` if the feet stick."""
     if not feet:
         return state
     if len(feet) == 2:
@@ -138,7 +141,7 @@ class Start:
     Parameters
     ----------
     rotation : float
-        theta, within a quarter turn; the lower foot is on the ground unless `height` is given [rad].
+        theta, within a quarter turn [rad]. The lower foot is on the ground unless `height` is given.
     angular_velocity : float
         theta' [rad/s].
     horizontal_velocity : float
@@ -155,7 +158,7 @@ class Start:
 
     Notes
     -----
-    Without friction only `rotation` and `angular_velocity` apply: the body neither slides nor flies.
+    Without friction, only `rotation` and `angular_velocity` are allowed, because the body does not slide or fly.
 
     Examples
     --------
@@ -186,7 +189,7 @@ class Start:
 
 
 def rocking_start(start: Start) -> tuple[float, float]:
-    """Return theta [rad] and theta' [rad/s] of a start; refuse a height or another velocity."""
+    """Return theta [rad] and theta' [rad/s] of a start. Raise an error for a height or another velocity."""
     if not start.rocks_alone:
         raise InvalidValueError(
             "without friction= {parameter} has rotation and angular_velocity only, since the body neither slides "
@@ -196,7 +199,7 @@ def rocking_start(start: Start) -> tuple[float, float]:
 
 
 def starts_of(start: Any, rotation: Any = 0.0, angular_velocity: Any = 0.0) -> list[Start] | None:
-    """Return the starts of plane bodies, from `start` or from numbers or rows; None if no start is stated."""
+    """Return the starts of plane bodies, from `start` or from numbers or arrays; None if no start is stated."""
     stated = np.ndim(rotation) or np.ndim(angular_velocity) or rotation != 0.0 or angular_velocity != 0.0
     if start is None:
         return _starts_of_numbers(rotation, angular_velocity) if stated else None
@@ -229,7 +232,7 @@ def _starts_of_numbers(rotation: Any, angular_velocity: Any) -> list[Start]:
 
 
 def state_at_start(start: Start, base: PlaneBase) -> ContactState:
-    """Return the state of the centre of mass; x is zero for the upright body on the same foot."""
+    """Return the initial state of the centre of mass. The origin of x is the upright body on the same foot."""
     direction = start.rotation or start.angular_velocity
     foot = RIGHT if direction > 0.0 else LEFT
     r_x, r_z = base.arm(foot, start.rotation)

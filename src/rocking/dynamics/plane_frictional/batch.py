@@ -1,4 +1,4 @@
-"""Many histories with friction: rows of a study, and all combinations of `simulate_many`."""
+"""Many histories of plane bodies with friction: rows of a study, and all combinations of `simulate_many`."""
 
 import math
 import warnings
@@ -42,8 +42,11 @@ NUMBERS = (
     "inertia", "height", "left", "right", "friction", "bounce", "imposed_left", "imposed_right", "scale", "end",
     "x", "rise", "rotation", "u", "w", "spin",
 )  # fmt: skip
-"""Columns of a history, in addition to motion, law and feet in contact; names as in `PlaneBase`, `GroundContact` and
-`ContactState`. Imposed coefficients are NaN if there are none; `end` is the end of the history [s]."""
+"""Columns of a history, besides motion, law and feet in contact.
+
+The names are those of `PlaneBase`, `GroundContact` and `ContactState`. Coefficients that are not imposed are NaN. `end`
+is the end of the history [s].
+"""
 
 FAST = "fast: Taylor series with events and complementarity, compiled"
 REFERENCE = "reference: Taylor series with events and complementarity"
@@ -80,8 +83,8 @@ def run_compiled(
     settings: ContactSettings,
     threads: int,
 ) -> dict[str, np.ndarray]:
-    """Return results by name of histories with columns `NUMBERS`; motion: indices of the motions."""
-    # touching: feet in contact, 1 for left plus 2 for right
+    """Return results by name for histories with columns `NUMBERS`. `motion` contains the indices of the motions."""
+    # touching: feet in contact, as the sum of 1 (left) and 2 (right)
     bounce_law = BOUNCE_LAWS.index(settings.normal_restitution_law)
     columns = np.broadcast_arrays(*(values[name] for name in NUMBERS), motion, bounce_law, touching)
     numbers: FloatArray = np.column_stack([np.ravel(column) for column in columns[:-3]]).astype(np.float64)
@@ -95,7 +98,7 @@ def run_compiled(
 
 
 class RowsWithContact:
-    """Motions in the form of the compiled engine with friction; runs histories given as rows of a study."""
+    """Motions in the form of the compiled engine with friction. `run` computes histories given as rows of a study."""
 
     def __init__(self, motions: Sequence[Segments], law: ImpactLaw, settings: ContactSettings, engine: str) -> None:
         if engine == "reference":
@@ -115,9 +118,9 @@ class RowsWithContact:
         return library_of(self.motions)
 
     def run(self, piece: Rows, threads: int) -> tuple[dict[str, np.ndarray], dict[str, int]]:
-        """Return the results of a piece by their names in studies, and counts of steps."""
-        # r = `UNIMPOSED` is not imposed; a NaN friction means that of the settings; a row with another r that is
-        # negative or not finite gets an error status
+        """Return the results of a piece by their names in studies, and numbers of steps."""
+        # r = `UNIMPOSED` is not imposed; if a friction is NaN, the friction of the settings applies; a row with another
+        # r that is negative or not finite gets an error status
         values, motion = piece.values, piece.motion
         right, left = _side(values, "right", self.settings), _side(values, "left", self.settings)
         same = np.isclose(right["height"], left["height"], rtol=1e-6) & np.isclose(
@@ -153,7 +156,10 @@ class RowsWithContact:
 
 
 def ends_of(length: Any, step: Any, pulse: Any, slow: Any) -> FloatArray:
-    """Return the ends of histories, at a sample of the reference engine, which divides pulses into finer steps [s]."""
+    """Return the ends of histories [s].
+
+    An end is at a sample of the reference engine, which divides pulses into finer steps.
+    """
     # slow: sqrt(R / g) [s]
     with np.errstate(invalid="ignore"):
         step = np.where(pulse, step / np.maximum(1.0, np.ceil(step / (FINE * slow))), step)
@@ -175,7 +181,7 @@ def _imposed(coefficient: FloatArray) -> FloatArray:
 
 
 def _start(table: dict[str, Any], rotation: FloatArray, velocity: FloatArray) -> np.ndarray:
-    """Add the state of bodies tilted about a foot without sliding to the table; return feet in contact as bits."""
+    """Add the state of bodies tilted about a foot without sliding to the table. Return the feet in contact as bits."""
     foot = np.where(rotation + np.where(rotation == 0.0, velocity, 0.0) < 0.0, -1.0, 1.0)
     lever = np.where(foot > 0.0, table["right"], -table["left"])
     with np.errstate(all="ignore"):
@@ -231,7 +237,7 @@ def _one_by_one(
     rows = []
     combinations = product(bodies, motions, scales.tolist(), cases.restitutions, cases.frictions.tolist(), starts)
     for body, motion, scale, restitution, mu, start in combinations:
-        with warnings.catch_warnings():  # warned once, before
+        with warnings.catch_warnings():  # the warning was already issued once
             warnings.simplefilter("ignore", PlausibilityWarning)
             response = response_with_contact(
                 body, motion, restitution, replace(settings, friction=mu), start=start, scale=scale,
@@ -257,7 +263,7 @@ class _Table:
     settings: ContactSettings
 
     def run(self, threads: int, progress: Callable[[int], None] | None) -> dict[str, np.ndarray]:
-        """Return the columns of `_row_of`, computed piece by piece."""
+        """Return the columns of `_row_of`, computed in pieces."""
         segments = [motion.segments() for motion in self.motions]
         library = library_of(segments)
         numbers = [(base.inertia, base.height, base.left, base.right) for base in self.bases]
@@ -288,7 +294,7 @@ class _Table:
         return _columns({name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]})
 
     def _ends(self, segments: Sequence[Segments]) -> list[FloatArray]:
-        """Return the possible durations of histories, shortest first, each by body and motion [s]."""
+        """Return the possible durations of histories [s], shortest first, as arrays over body and motion."""
         return [
             np.array([
                 [ends_of(length_of(motion, slow, self.duration, after), segment.step, isinstance(motion, Pulse), slow)
@@ -302,14 +308,17 @@ class _Table:
         self, library: Any, values: dict[str, Any], motion: IntArray, feet: IntArray, ends: list[FloatArray],
         threads: int,
     ) -> dict[str, np.ndarray]:  # fmt: skip
-        """Return results of rows; histories that still rock at one end run to the next, unless that run fails."""
+        """Return results of rows.
+
+        A history that still rocks at its end is computed to the next end, unless this run fails.
+        """
 
         def computed(rows: IntArray, end: FloatArray) -> dict[str, np.ndarray]:
             own = {name: column[rows] for name, column in values.items()} | {"end": end[rows]}
             return run_compiled(library, own, motion[rows], feet[rows], settings=self.settings, threads=threads)
 
         results = computed(np.arange(motion.size), ends[0])
-        rows = np.flatnonzero(~(values["imposed_left"] * values["imposed_right"] >= 1.0))  # NaN: no coefficient
+        rows = np.flatnonzero(~(values["imposed_left"] * values["imposed_right"] >= 1.0))  # NaN means no coefficient
         for end in ends[1:]:
             rows = rows[results["still_rocking"][rows] == 1]
             if not rows.size:
@@ -339,7 +348,7 @@ def _columns(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _row_of(response: ContactResponse) -> dict[str, float]:
-    """Return the results of one history; NaN without a result."""
+    """Return the results of one history; NaN if there is no result."""
     good = response.outcome is not Outcome.FAILED
     rotation = response.rotation
     side = np.sign(rotation[np.argmax(np.abs(rotation))]) if rotation.size else 0.0

@@ -1,7 +1,7 @@
-"""The planar engine: Taylor series between events, events located to rounding, complementarity at each event.
+"""The planar engine: Taylor series between events, event times exact to rounding, complementarity at events.
 
-Every step ends at a sample of the motion at the latest, so that no step crosses a kink; an event is a zero of a
-polynomial. A body at rest skips the stretches that cannot move it.
+A step ends at the next sample of the motion or earlier, so that no step crosses a kink of the motion. An event is a
+zero of a polynomial. A body at rest skips the stretches that cannot move the body.
 """
 
 import math
@@ -112,7 +112,7 @@ class ContactEngine:
         return not tilted or (self.stretch - self.count) * self.step * self.pace > _AFTER
 
     def _ground(self, unit: float) -> GroundSeries:
-        """Return the motion from now on, over a unit of time."""
+        """Return the ground motion from the present time on, over a unit of time."""
         if self.stretch >= self.count:
             return GroundSeries([0.0], [self.settings.gravity], unit)
         width = unit / self.step
@@ -147,7 +147,7 @@ class ContactEngine:
             self._end(kind, trusted, at)
 
     def _trusted(self, full: ModeSeries) -> float:
-        """Return the fraction of a series over which its last terms stay below the tolerance."""
+        """Return the fraction of a series over which the last terms are below the tolerance."""
         if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
             return 0.0
         if full.rotation.size <= _ORDER:
@@ -211,7 +211,7 @@ class ContactEngine:
         self._strike(mode, self.settings.gravity * (before.rise - self.state.rise))
 
     def _strike(self, mode: Mode, dropped: float = 0.0) -> None:
-        """Resolve an impact of the feet in contact; dropped: energy of position corrections [J/kg]."""
+        """Compute an impact of the feet in contact. `dropped` is the energy of position corrections [J/kg]."""
         struck = self._struck(self.state, mode)
         if isinstance(struck, Status):
             self.ended = struck
@@ -219,7 +219,7 @@ class ContactEngine:
         self._continue_after(struck, dropped)
 
     def _shocked(self, otherwise: Status) -> None:
-        """Apply an impact without collision; end with a status where it does not apply."""
+        """Apply an impact without collision. If it does not apply, end the history with a status."""
         self.events, self.changed = self.events + 1, self.changed + 1
         stopped = self.events >= self.settings.most_events or self.changed > _MAX_CHANGES
         struck = otherwise if stopped else shock(self.base, self.state, self.law)
@@ -254,7 +254,7 @@ class ContactEngine:
         return struck
 
     def _calmed(self, after: ContactState) -> ContactState:
-        """Return a body with small velocities after an impact at rest on both feet, if its forces allow it."""
+        """Return a slow body after an impact as a body at rest on both feet, if the contact forces allow this."""
         slow = max(abs(after.w), abs(after.spin) * self.base.size) <= self.slowest
         if after.touching != BOTH or not slow:
             return after
@@ -286,7 +286,7 @@ class ContactEngine:
     # ---- rest -------------------------------------------------------------------------------------------------------
 
     def _skip(self) -> bool:
-        """Rest through stretches that cannot move the body; return True if there were any."""
+        """Keep the body at rest over stretches that cannot move the body. Return True if there were such stretches."""
         if not hasattr(self, "_excited"):
             self._excited = excited_stretches(self.base, self.push, self.lift, self.law.friction)
         index = int(np.searchsorted(self._excited, self.stretch))

@@ -1,7 +1,7 @@
-"""Choice of the next mode by complementarity of contact forces and motions; functions whose zeros end a mode.
+"""Choice of the next mode by complementarity of contact forces and motions, and functions whose zeros end a mode.
 
-The sign of a series just after its start is that of its first coefficient that is not zero: at an uplift under a
-continuous motion accelerations vanish, and a higher derivative decides.
+The sign of a series just after its start is the sign of its first nonzero coefficient. At an uplift under a continuous
+motion, accelerations vanish, and a higher derivative decides.
 """
 
 import math
@@ -17,7 +17,7 @@ from rocking.dynamics.plane_frictional.mode_series import GroundSeries, ModeSeri
 from rocking.dynamics.taylor import first_fall
 from rocking.outcome import Status
 
-_DEPTH = 7  # number of coefficients considered for the sign
+_DEPTH = 7  # number of coefficients that are used for the sign
 
 
 class ModeEnd(Enum):
@@ -33,17 +33,17 @@ class ModeEnd(Enum):
 class EventFunction(NamedTuple):
     """A quantity that is not negative during a mode."""
 
-    kind: ModeEnd  # event where it becomes negative
+    kind: ModeEnd  # event at which the quantity becomes negative
     series: FloatArray
-    exact: int  # number of leading coefficients without rounding, whose sign always counts
-    scale: float  # scale of the rounding of the other coefficients
+    exact: int  # number of leading coefficients without rounding errors; their sign always counts
+    scale: float  # scale of the rounding errors of the other coefficients
 
 
 def event_functions(
     base: PlaneBase, mode: Mode, series: ModeSeries, friction: float, weight: float
 ) -> list[EventFunction]:
     """Return the functions that are not negative during a mode."""
-    # weight: scale of the forces, such as g + |a_x| + |a_z| [m/s2]
+    # weight: scale of the forces per mass, such as g + |a_x| + |a_z| [m/s2]
     functions = [EventFunction(ModeEnd.LOSS_OF_CONTACT, normal, 0, weight) for normal in series.normals.values()]
     per_gap = weight * series.unit**2 / (1.0 if not mode.feet else base.size)
     functions += [EventFunction(ModeEnd.LANDING, gap, 2, per_gap) for gap in series.gaps.values()]
@@ -62,9 +62,9 @@ def event_functions(
 
 
 def leading(function: EventFunction, stretch: float, tolerance: float) -> int:
-    """Return the index of the coefficient that decides the sign just after the start; -1 if all vanish."""
-    # stretch: duration of the series over the natural time of the body, a common scale of all coefficients [-];
-    # tolerance: a smaller coefficient, over the scale, counts as zero [-]
+    """Return the index of the coefficient that determines the sign just after the start; -1 if all vanish."""
+    # stretch: duration of the series over the natural time of the body, a common scale of all coefficients [-]
+    # tolerance: coefficients below tolerance times scale count as zero [-]
     bound = tolerance * function.scale
     for k, c in enumerate(function.series[:_DEPTH].tolist()):
         size = abs(c) if k < function.exact else abs(c) - bound * stretch ** (k - function.exact)
@@ -75,13 +75,13 @@ def leading(function: EventFunction, stretch: float, tolerance: float) -> int:
 
 def consistent(functions: list[EventFunction], stretch: float, tolerance: float) -> bool:
     """Return True if no event function becomes negative just after the start."""
-    # stretch and tolerance as of `leading`
+    # stretch and tolerance as in `leading`
     decisive = ((function, leading(function, stretch, tolerance)) for function in functions)
     return all(k < 0 or function.series[k] > 0.0 for function, k in decisive)
 
 
 def first_end(functions: list[EventFunction], stretch: float, tolerance: float) -> tuple[float, ModeEnd] | None:
-    """Return the first zero crossing, in units of the series, and its event; None without one."""
+    """Return the first zero crossing, in units of the series, and its event; None if there is none."""
     earliest: tuple[float, ModeEnd] | None = None
     for function in functions:
         k = leading(function, stretch, tolerance)
@@ -95,7 +95,7 @@ def first_end(functions: list[EventFunction], stretch: float, tolerance: float) 
 
 
 def excited_stretches(base: PlaneBase, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
-    """Return stretches that might move a body at rest; push, lift: coefficients of a_x and g + a_z [m/s2]."""
+    """Return stretches that may move a body at rest. `push` and `lift` are coefficients of a_x and g + a_z [m/s2]."""
     turn = push * base.height
     # Eq. 69
     margins = [lift * base.right + turn, lift * base.left - turn, friction * lift - push, friction * lift + push]
@@ -109,7 +109,7 @@ _ORDER = 8
 
 
 def candidates(base: PlaneBase, state: ContactState) -> list[Mode]:
-    """Return the modes compatible with the velocities, ordered by number of feet, sticking before sliding."""
+    """Return the modes that are compatible with the velocities: more feet first, sticking before sliding."""
     resting = [foot for foot in state.touching if away(base, state, foot) == 0.0]
     subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
     modes = []
@@ -125,12 +125,12 @@ class NextMode(NamedTuple):
     """The mode that follows."""
 
     mode: Mode
-    tolerance: float  # smaller coefficients, over their scale, counted as zero [-]
+    tolerance: float  # coefficients below tolerance times scale counted as zero [-]
 
 
 def choose(base: PlaneBase, state: ContactState, ground: GroundSeries, friction: float) -> NextMode | Status:
-    """Return the mode that follows a state; a status if there is none."""
-    # the first consistent mode: contacts persist and stick where possible
+    """Return the next mode after a state, or a status if there is none."""
+    # the first consistent mode is chosen, so that contacts persist and stick if possible
     weight = weight_of(ground)
     series_by_mode = [
         (mode, mode_series(base, state, mode, ground, friction, _ORDER)) for mode in candidates(base, state)

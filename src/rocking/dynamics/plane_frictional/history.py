@@ -1,4 +1,4 @@
-"""Record of a history, with regimes, impacts and positions as arrays."""
+"""Record of a history. Regimes, impacts and positions are available as arrays."""
 
 import math
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ SAMPLED = (
     "impact_loss", "slid", "regime",
 )  # fmt: skip
 
-_LIGHT = 1e-9  # force over the weight that is rounding: friction is not evaluated below
+_LIGHT = 1e-9  # force over the weight; smaller forces are rounding errors, for which friction usage is not evaluated
 
 
 class SmoothPiece(NamedTuple):
@@ -27,7 +27,7 @@ class SmoothPiece(NamedTuple):
     start: float  # start and duration [s]
     duration: float
     series: ModeSeries
-    at: float  # end within the series, in (0, 1]
+    at: float  # end of the piece within the series, in (0, 1]
 
 
 class Blow(NamedTuple):
@@ -45,7 +45,7 @@ class History:
     """The record of a history, per unit of mass."""
 
     engine: ClassVar[str] = "planar: Taylor series with events and complementarity"
-    count: int  # number of stretches of the motion; there is one sample more
+    count: int  # number of stretches of the motion; the number of samples is count + 1
     gravity: float  # acceleration of gravity [m/s2]
     work: float = 0.0
     friction_loss: float = 0.0
@@ -53,8 +53,8 @@ class History:
     slid: float = 0.0
     usage: float = 0.0
     peak: float = 0.0
-    replaced: int = 0  # impacts with Stronge's law in place of another one
-    shocks: int = 0  # impacts without collision (Painleve)
+    replaced: int = 0  # number of impacts with Stronge's law instead of the requested law
+    shocks: int = 0  # number of impacts without collision (Painleve)
     last_x: float = math.nan  # displacement of the centre at the end [m]
     pieces: list[SmoothPiece] = field(default_factory=list)
     blows: list[Blow] = field(default_factory=list)
@@ -62,7 +62,7 @@ class History:
     samples: FloatArray = field(init=False)
     status: Status = Status.GOOD
     lies: bool = False  # True if the body overturned
-    passed: float = math.nan  # last passage of the centre over a foot; NaN without one, or after a return [s]
+    passed: float = math.nan  # last passage of the centre over a foot [s]; NaN if there is none, or after a return
     end: float = 0.0  # end of the history [s]
 
     def __post_init__(self) -> None:
@@ -70,7 +70,7 @@ class History:
 
     @property
     def intervals(self) -> list[tuple[float, float, Mode]]:
-        """Start [s], end [s] and mode of each interval, in order; without intervals of zero duration."""
+        """Start [s], end [s] and mode of every interval, in order. Intervals of zero duration are omitted."""
         ends = [*(time for time, _ in self.changes[1:]), self.end]
         return [(start, end, mode) for (start, mode), end in zip(self.changes, ends, strict=False) if end > start]
 
@@ -144,7 +144,7 @@ class History:
 REGIME = np.dtype(
     [("start", "f8"), ("end", "f8"), ("regime", "U10"), ("feet", "U5"), ("slip", "i1"), ("distance", "f8")]
 )
-"""Fields of `ContactResponse.regimes`: [s], [s], name of a `Regime`, feet in contact, direction, [m] to the right."""
+"""Fields of `ContactResponse.regimes`: start, end [s], name of a `Regime`, feet, direction, slip to the right [m]."""
 
 IMPACT = np.dtype(
     [
@@ -153,7 +153,7 @@ IMPACT = np.dtype(
         ("energy_lost", "f8"), ("slips", "?"),
     ]
 )  # fmt: skip
-"""Fields of `ContactResponse.impacts`: [s], feet in contact, theta' [rad/s] twice, impulses [N s], [J], flag."""
+"""Fields of `ContactResponse.impacts`: time [s], feet, theta' [rad/s], impulses [N s], energy loss [J], slip."""
 
 
 def regimes_of(history: History, base: PlaneBase) -> np.ndarray:
@@ -175,7 +175,7 @@ def _distance(history: History, base: PlaneBase, mode: Mode, start: float, end: 
 
 def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
     """Return the impacts of a history in order, of type `IMPACT`."""
-    # only the sum of the tangential impulses is determined: it is divided like the vertical impulses
+    # only the sum of the tangential impulses is determined; it is divided in proportion to the vertical impulses
     rows = []
     for blow in history.blows:
         normal = {foot: blow.struck.normal.get(foot, 0.0) for foot in (LEFT, RIGHT)}
@@ -189,7 +189,10 @@ def impacts_of(history: History, base: PlaneBase) -> np.ndarray:
 
 
 def positions_of(history: History, time: FloatArray) -> FloatArray:
-    """Return x [m], rise [m] and theta [rad] at times [s], shape (..., 3); the later of two pieces applies."""
+    """Return x [m], rise [m] and theta [rad] at times [s], shape (..., 3).
+
+    Between two pieces, the later piece applies.
+    """
     pieces = history.pieces
     if not pieces:
         return np.zeros((*time.shape, 3))

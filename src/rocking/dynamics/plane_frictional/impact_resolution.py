@@ -1,6 +1,6 @@
-"""Impacts on one or two feet: impulses by complementarity, or as a process with an impulse that grows at one point.
+"""Impacts on one or two feet: impulses by complementarity, or by a process with an increasing impulse at one point.
 
-Newton's law, Poisson's and Stronge's, and the impact without collision: docs/theory/contact.md.
+The laws of Newton, Poisson and Stronge, and the impact without collision, are in docs/theory/contact.md.
 """
 
 import math
@@ -32,16 +32,16 @@ class GroundContact:
     Parameters
     ----------
     friction : float
-        Coulomb coefficient mu, the same for sticking and sliding [-].
+        Coulomb's coefficient mu [-], equal for sticking and sliding.
     bounce : float
         Coefficient e of normal restitution, 0 for plastic impacts [-].
     restitution : tuple of float, optional
-        Imposed coefficients theta_dot_after / theta_dot_before for landing left and right, which replace the
-        complementarity problem at rocking impacts [-].
+        Imposed coefficients theta_dot_after / theta_dot_before for landing left and right [-]. They replace the
+        complementarity problem at rocking impacts.
     bounce_law : {"newton", "poisson", "stronge"}
-        Definition of `bounce`: ratio of normal velocities (Newton), of normal impulses (Poisson), or, squared, of the
-        work of the normal impulses (Stronge 1990). Newton's and Poisson's laws may create energy with friction, or
-        have no solution; Stronge's law, which never creates energy, then replaces them.
+        Definition of `bounce`: ratio of normal velocities (Newton), ratio of normal impulses (Poisson), or square root
+        of the ratio of the work of the normal impulses (Stronge 1990). With friction, the laws of Newton and Poisson
+        may create energy or have no solution. Stronge's law, which never creates energy, then replaces them.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class GroundContact:
 
     @property
     def is_lossless(self) -> bool:
-        """True if imposed coefficients lose no energy at rocking impacts, so that the body never comes to rest."""
+        """True if the imposed coefficients conserve energy at rocking impacts, so that the body never rests."""
         return self.restitution is not None and self.restitution[0] * self.restitution[1] >= 1.0
 
 
@@ -79,8 +79,8 @@ class Struck(NamedTuple):
 
 
 def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Struck | Status:
-    """Return the result of an impact; bounce: coefficient e_N by foot [-]."""
-    # a status without a solution, with two different ones, or with an energy gain
+    """Return the result of an impact. `bounce` contains the coefficient e_N by foot [-]."""
+    # the result is a status if there is no solution, if there are two different solutions, or if energy increases
     solutions = list(placed(base, state, friction, bounce))
     if not solutions:
         return Status.NO_CONTACT_FORCE
@@ -98,7 +98,7 @@ def strike(base: PlaneBase, state: ContactState, friction: float, bounce: dict[i
 
 
 def placed(base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float]) -> Iterator[Struck]:
-    """Return all solutions of Newton's and Coulomb's laws, sticking before sliding; bounce: e by foot [-]."""
+    """Return all solutions of Newton's and Coulomb's laws, sticking before sliding. `bounce` is e by foot [-]."""
     targets = {foot: -bounce[foot] * away(base, state, foot) for foot in state.touching}  # Eq. 70
     speed = largest_speed(base, state)
     # Eq. 20
@@ -112,12 +112,12 @@ def cleared(base: PlaneBase, struck: Struck, before: ContactState) -> bool:
 
 
 def largest_speed(base: PlaneBase, state: ContactState) -> float:
-    """Return the velocity scale of the feet, which sets their rounding [m/s]."""
+    """Return the scale of the velocities of the feet [m/s]. It determines the rounding errors of these velocities."""
     return max(abs(state.u), abs(state.w), base.size * abs(state.spin))
 
 
 def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: dict[int, float]) -> Iterator[Struck]:
-    """Yield the results of all combinations of feet and directions of sliding, valid or not."""
+    """Yield the results of all combinations of feet and directions of sliding, including invalid results."""
     for slip, n in product((0, 1, -1), range(1, len(targets) + 1)):
         pull = slip * friction
         for feet in combinations(state.touching, n):
@@ -130,7 +130,7 @@ def _solutions(base: PlaneBase, state: ContactState, friction: float, targets: d
 
 
 def _on_one(base: PlaneBase, state: ContactState, foot: int, target: float) -> Struck:
-    """Return the impact on a foot that sticks; angular momentum about the foot changes by the bounce only."""
+    """Return the impact on a sticking foot. The angular momentum about the foot changes only by the bounce."""
     r_x, r_z = base.arm(foot, state.rotation)
     j = base.inertia
     spin = (j * state.spin - r_z * state.u + r_x * (state.w - target)) / (j + r_x**2 + r_z**2)  # Eq. 71
@@ -176,7 +176,7 @@ def _valid(base: PlaneBase, struck: Struck, friction: float, targets: dict[int, 
 
 
 def cleaned(base: PlaneBase, struck: Struck, stop: float) -> ContactState:
-    """Return the state after an impact, velocities of its feet below `stop` [m/s] exactly zero."""
+    """Return the state after an impact. Velocities of the feet below `stop` [m/s] become exactly zero."""
     state = struck.state
     resting = tuple(foot for foot in state.touching if abs(away(base, state, foot)) <= stop)
     if not resting:
@@ -192,8 +192,8 @@ _IMPOSED_ROUNDING = 1e-12
 
 def strike_with(base: PlaneBase, state: ContactState, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return the result of a rocking impact with an imposed coefficient of restitution."""
-    # r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns a status for an energy gain; None
-    # for a tensile impulse, or an old foot pressed into the ground.
+    # r: theta_dot_after / theta_dot_before of the impact without slip [-]
+    # The result is a status for an energy gain, and None for a tensile impulse or an old foot pressed into the ground.
     lever = foot * (1.0 - r) * (base.inertia + base.height**2)
     lever /= abs(base.lever(-foot)) + r * abs(base.lever(foot))  # Eq. 4
     speed = abs(away(base, state, foot)) + abs(along(base, state, foot))
@@ -233,7 +233,10 @@ def _slid(base: PlaneBase, state: ContactState, foot: int, lever: float, slip: i
 
 
 def _shared(base: PlaneBase, lever: float, normal: float) -> dict[int, float]:
-    """Return the impulses of both feet for a resultant at a lever; beyond a foot the other impulse is tensile."""
+    """Return the impulses of both feet for a resultant at a lever.
+
+    If it is beyond a foot, the other impulse is tensile.
+    """
     return {
         LEFT: normal * (base.right - lever) / base.width,
         RIGHT: normal * (base.left + lever) / base.width,
@@ -246,8 +249,8 @@ _GROWTH_ROUNDING, _ALMOST = 1e-13, 1e-6
 def impact_of(
     base: PlaneBase, state: ContactState, law: GroundContact, bounce: dict[int, float]
 ) -> tuple[Struck | Status, bool]:
-    """Return the result of an impact, and True if Stronge's law replaces the requested one."""
-    # it does if the other law has no solution, two of them, or an energy gain. bounce: e by foot [-]
+    """Return the result of an impact, and True if Stronge's law replaces the requested law."""
+    # Stronge's law replaces a law with no solution, two solutions or an energy gain; bounce: e by foot [-]
     if law.bounce_law == "newton":
         struck = strike(base, state, law.friction, bounce)
     else:
@@ -258,7 +261,7 @@ def impact_of(
 
 
 def shock(base: PlaneBase, state: ContactState, law: GroundContact) -> Struck | Status:
-    """Return the impact without collision of a foot that slides where no contact force is possible."""
+    """Return the impact without collision of a sliding foot for which no contact force is possible."""
     for foot in state.touching:
         speed = along(base, state, foot)
         if speed == 0.0 or away(base, state, foot) != 0.0:
@@ -279,7 +282,7 @@ def shock(base: PlaneBase, state: ContactState, law: GroundContact) -> Struck | 
 def _grown(
     base: PlaneBase, state: ContactState, friction: float, bounce: dict[int, float], law: str
 ) -> Struck | Status:
-    """Return an impact with a growing impulse at the foot of landing, or at the resultant of the plastic impact."""
+    """Return an impact with an increasing impulse at the foot of landing, or at the resultant of the plastic impact."""
     falling = [foot for foot in state.touching if away(base, state, foot) < 0.0]
     if len(falling) == 1:
         (foot,) = falling
@@ -304,13 +307,13 @@ def _grown(
 
 
 def _fine(base: PlaneBase, before: ContactState, struck: Struck) -> bool:
-    """Return True without energy gain and without a foot pressed into the ground."""
+    """Return True if energy does not increase and no foot is pressed into the ground."""
     is_gain = kinetic(base, struck.state) > kinetic(base, before) * (1.0 + 10.0 * _GROWTH_ROUNDING)
     return not is_gain and cleared(base, struck, before)
 
 
 def _inverse_masses(base: PlaneBase, arm: tuple[float, float]) -> tuple[float, float, float]:
-    """Return A_nn, A_nt and A_tt at an arm [-]."""
+    """Return the inverse masses A_nn, A_nt and A_tt at an arm [-]."""
     r_x, r_z = arm
     return 1.0 + r_x * r_x / base.inertia, -(r_x * r_z) / base.inertia, 1.0 + r_z * r_z / base.inertia
 
@@ -325,7 +328,7 @@ def _grow(
     *,
     shocked: bool = False,
 ) -> Struck:
-    """Return the impact with an impulse that grows at one point; key 0 of `normal` is that point."""
+    """Return the impact with an increasing impulse at one point. Key 0 of `normal` means this point."""
     r_x, r_z = arm
     nn, nt, tt = _inverse_masses(base, arm)
     v_n, v_t = state.w - r_x * state.spin, state.u + r_z * state.spin
@@ -362,7 +365,10 @@ def _grow(
 
 
 def _slip(v_t: float, drift: float, capacity: float) -> int:
-    """Return the direction of sliding of a point, or of its start where friction is too small."""
+    """Return the direction of sliding of a point.
+
+    For a point without slip, the direction in which slip starts, or 0.
+    """
     if v_t:
         return 1 if v_t > 0.0 else -1
     return 0 if abs(drift) <= capacity else 1 if drift > 0.0 else -1

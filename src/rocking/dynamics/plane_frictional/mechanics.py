@@ -53,5 +53,5 @@ class PlaneContact(PlaneMechanics):
         ]
 
     def sample_rows(self, values: dict[str, Any]) -> dict[str, Any]:
-        # both sides are of one height and one moment of inertia
+        # both sides have the same height and the same moment of inertia
         return values | {f"{name}_left": values[f"{name}_right"] for name in ("alpha", "p", "q")}

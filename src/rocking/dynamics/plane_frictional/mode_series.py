@@ -18,12 +18,12 @@ _SMALLEST = 1e-22
 class GroundSeries(NamedTuple):
     """Ground motion over a unit of time."""
 
-    push: list[float]  # push, lift: coefficients of a_x and of g + a_z [m/s2]
+    push: list[float]  # push, lift: coefficients of a_x and g + a_z [m/s2]
     lift: list[float]
     unit: float  # the unit of time [s]
 
     def shortened(self, fraction: float) -> "GroundSeries":
-        """Return the first fraction of the motion."""
+        """Return the first part of the motion, up to a fraction of the unit."""
         if fraction == 1.0:
             return self
         push, lift = ([c * fraction**k for k, c in enumerate(series)] for series in (self.push, self.lift))
@@ -31,7 +31,10 @@ class GroundSeries(NamedTuple):
 
 
 Acceleration = Callable[[int], float]
-"""Function that returns the coefficient k of theta'', called in order while the series of spin and arm grow."""
+"""Function that returns coefficient k of theta''.
+
+It is called in the order of k, as the series of spin and arm grow.
+"""
 
 
 class PivotSeries(NamedTuple):
@@ -40,7 +43,7 @@ class PivotSeries(NamedTuple):
     rotation: list[float]  # rotation, arm_x, arm_z: coefficients of theta [rad] and of the arm [m]
     arm_x: list[float]
     arm_z: list[float]
-    stiff: float  # ``j + r_x L`` at the start over its value without friction; 1 for a sticking foot [-]
+    stiff: float  # ``j + r_x L`` at the start, divided by its value without friction [-]; 1 for a sticking foot
 
 
 def pivot_motion(
@@ -53,8 +56,8 @@ def pivot_motion(
 ) -> PivotSeries:
     """Return the series of a body that turns about one foot.
 
-    inertia: j = I_C / m [m2]; arm: r_x and r_z at the start [m]; motion: theta [rad] and theta' [rad/s] at the start;
-    pull: ``sigma mu`` for a foot that slides; None for a foot that sticks [-].
+    `inertia` is j = I_C / m [m2]. `arm` contains r_x and r_z at the start [m]. `motion` contains theta [rad] and theta'
+    [rad/s] at the start. `pull` is ``sigma mu`` for a sliding foot [-], and None for a sticking foot.
 
     >>> found = pivot_motion(1.0, (0.0, -1.0), (0.0, 0.0), GroundSeries([2.0], [10.0], 1.0), None, 2)
     >>> found.rotation  # theta'' = -a_x h / (j + h^2)
@@ -98,7 +101,7 @@ def _sticking(inertia: float, x: list[float], z: list[float], ground: GroundSeri
 def _sliding(
     inertia: float, x: list[float], z: list[float], spin: list[float], ground: GroundSeries, pull: float
 ) -> Acceleration:
-    """Return theta'' from the moments about the centre with sliding friction, by division of series."""
+    """Return theta'' from the moments about the centre with sliding friction, by a division of series."""
     _, lift, unit = ground
     level: list[float] = []
     stiffness: list[float] = []
@@ -147,7 +150,7 @@ def integral(first: FloatArray, second: FloatArray, at: float) -> float:
 
 
 def integrated_twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> FloatArray:
-    """Return coefficients of a position [m] from those of its acceleration [m/s2] and its initial values."""
+    """Return coefficients of a position [m] from the coefficients of its acceleration [m/s2] and its initial values."""
     position = np.zeros(acceleration.size)
     position[0], position[1] = start, rate * unit
     k = np.arange(2, acceleration.size)
@@ -157,7 +160,7 @@ def integrated_twice(acceleration: FloatArray, start: float, rate: float, unit: 
 
 @dataclass(frozen=True)
 class ModeSeries:
-    """Series of a mode; the time within it runs from 0 to 1."""
+    """Series of a mode. The time within the series is from 0 to 1."""
 
     unit: float  # duration [s]
     rotation: FloatArray  # rotation, x, rise: theta [rad], x and rise of the centre [m]
@@ -166,10 +169,10 @@ class ModeSeries:
     tangential: FloatArray  # total force of the ground to the right, per unit of mass [m/s2]
     # vertical force at each foot in contact, per unit of mass [m/s2]
     normals: dict[int, FloatArray] = field(default_factory=dict)
-    sliding: FloatArray | None = None  # velocity of the feet in contact along the ground; None in flight [m/s]
-    # gap of each foot without contact [m]; of a body on one foot the angle |theta| [rad]
+    sliding: FloatArray | None = None  # velocity of the feet in contact along the ground [m/s]; None in flight
+    # gap of every foot without contact [m]; for a body on one foot, the angle |theta| [rad]
     gaps: dict[int, FloatArray] = field(default_factory=dict)
-    stiff: float = 1.0  # no contact force is possible for values <= 0 (Painleve) [-]
+    stiff: float = 1.0  # stiffness ratio [-]; for values <= 0, no contact force is possible (Painleve)
 
     def state(self, at: float, touching: tuple[int, ...]) -> ContactState:
         x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
@@ -177,7 +180,7 @@ class ModeSeries:
         return ContactState(x, rise, rotation, u, w, spin, touching)
 
     def shortened(self, fraction: float) -> "ModeSeries":
-        """Return the first fraction of the series, over a shorter unit."""
+        """Return the first part of the series, up to a fraction, over a shorter unit of time."""
         if fraction == 1.0:
             return self
         powers = fraction ** np.arange(self.rotation.size)
@@ -222,11 +225,11 @@ def _flat(base: PlaneBase, state: ContactState, mode: Mode, ground: GroundSeries
 
 
 def _flight(base: PlaneBase, state: ContactState, ground: GroundSeries, order: int) -> ModeSeries:
-    """Return the series for flight: parabolas relative to the ground."""
+    """Return the series for flight, relative to the ground."""
     size = order + 1
     x = integrated_twice(-padded(ground.push, size), state.x, state.u, ground.unit)  # Eq. 64
     rise = integrated_twice(-padded(ground.lift, size), state.rise, state.w, ground.unit)  # Eq. 64
-    # products, not powers: powers of negative numbers may differ in the last bit
+    # products replace powers, because powers of negative numbers may differ in the last bit
     powers = np.cumprod([1.0, *(state.spin * ground.unit / k for k in range(1, size))])
     quarter = np.arange(size) % 4
     sine, cosine = math.sin(state.rotation), math.cos(state.rotation)

@@ -37,10 +37,10 @@ class ContactEnergy:
     """Energy in the frame of the ground."""
 
     time: FloatArray  # times of the samples [s]
-    kinetic: FloatArray  # kinetic energy, and potential energy above rest [J]
+    kinetic: FloatArray  # kinetic energy, and potential energy relative to the body at rest [J]
     potential: FloatArray
-    work: FloatArray  # done by the ground since the start [J]
-    lost_in_impacts: FloatArray  # lost_in_impacts, lost_in_friction: since the start [J]
+    work: FloatArray  # work of the ground since the start [J]
+    lost_in_impacts: FloatArray  # lost_in_impacts, lost_in_friction: energy lost since the start [J]
     lost_in_friction: FloatArray
 
     @property
@@ -52,7 +52,7 @@ class ContactEnergy:
 
     @property
     def closure(self) -> float:
-        """Largest energy balance error over the largest stored energy, loss or work [-]."""
+        """Largest energy balance error, divided by the largest stored energy, loss or work [-]."""
         energies = (self.kinetic + self.potential, self.lost_in_impacts, self.lost_in_friction, self.work)
         scale = max(1e-300, *(float(np.abs(energy).max()) for energy in energies))
         return float(np.abs(self.gap).max()) / scale
@@ -66,7 +66,7 @@ class ContactForces:
     horizontal: FloatArray  # total of both feet, to the right [N]
     left: FloatArray  # left, right: vertical force on each foot [N]
     right: FloatArray
-    usage: FloatArray  # |horizontal| over mu times the vertical force; zero in flight [-]
+    usage: FloatArray  # |horizontal| divided by mu times the vertical force [-]; zero in flight
 
     @property
     def vertical(self) -> FloatArray:
@@ -83,7 +83,7 @@ class ContactResponse(ResponseBase):
     body : Body
         The body.
     motion : GroundMotion or Pulse, optional
-        The motion; None on ground at rest.
+        The ground motion; None for ground at rest.
     base : PlaneBase
         Inertia and feet of the body.
     law : GroundContact
@@ -117,12 +117,12 @@ class ContactResponse(ResponseBase):
         return rows[: int(bad[0])] if bad.size else rows
 
     def _sampled(self, name: str) -> FloatArray:
-        """Return one column of the record; forces and energies are per unit of mass."""
+        """Return one column of the record. Forces and energies are per unit of mass."""
         return np.asarray(self._record[:, SAMPLED.index(name)], dtype=np.float64)
 
     @cached_property
     def time(self) -> FloatArray:
-        """Times of the samples, up to the end or until the body lies [s]."""
+        """Times of the samples, up to the end or until the body has fallen [s]."""
         return np.asarray(np.arange(len(self._record)) * self.segments.step, dtype=np.float64)
 
     @property
@@ -157,7 +157,7 @@ class ContactResponse(ResponseBase):
 
     @property
     def regime(self) -> IntArray:
-        """Regime up to each sample, as `Regime.code`."""
+        """Regime just before every sample, as `Regime.code`."""
         return np.asarray(self._sampled("regime"), dtype=np.int64)
 
     @cached_property
@@ -188,7 +188,7 @@ class ContactResponse(ResponseBase):
 
     @cached_property
     def forces(self) -> ContactForces:
-        """Forces of the ground on the feet [N] and friction usage [-]; at an event, the values before it."""
+        """Forces of the ground on the feet [N] and friction usage [-]. At an event, the values before the event."""
         along, left, right = (self._sampled(name) for name in ("tangential", "normal_left", "normal_right"))
         capacity, mass = self.law.friction * (left + right), self.base.mass
         usage = np.zeros(capacity.size)
@@ -197,12 +197,12 @@ class ContactResponse(ResponseBase):
 
     @property
     def friction_usage(self) -> float:
-        """Largest horizontal force over mu times the vertical force; 1 where the body slides [-]."""
+        """Largest horizontal force, divided by mu times the vertical force [-]; 1 if the body slides."""
         return self.trajectory.usage
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation, also between the samples; a quarter turn after overturning [rad]."""
+        """Largest rotation, including times between the samples; a quarter turn after overturning [rad]."""
         return self.trajectory.peak
 
     @property
@@ -245,7 +245,7 @@ class ContactResponse(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or outside the response by more than rounding.
+            If a time is not finite, or is outside the response by more than rounding.
         """
         return positions_of(self.trajectory, self._times_within(time, self.trajectory.end))
 
@@ -316,11 +316,11 @@ class ContactResponse(ResponseBase):
 
 
 FINE, AFTER = 0.1, 15.0
-"""sqrt(g / R) times the step between samples under a pulse, and times the duration after the motion."""
+"""Products of sqrt(g / R) with the step between samples under a pulse, and with the duration after the motion."""
 
-_FREE = 60.0  # sqrt(g / R) times the duration on ground at rest
+_FREE = 60.0  # product of sqrt(g / R) with the duration on ground at rest
 LONGER = 30.0, 60.0, 120.0, 240.0, 300.0
-"""The next durations after the motion, while the body still rocks."""
+"""Longer durations after the motion, which are used in this order if the body still rocks."""
 
 
 def response_with_contact(
@@ -333,9 +333,10 @@ def response_with_contact(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> ContactResponse:
-    """Return the response of a plane body with friction; on ground at rest if motion is None."""
-    # restitution: None for impacts by complementarity; duration [s]: by default the motion and 15 sqrt(R / g) after
-    # it, 60 sqrt(R / g) on ground at rest, and up to 300 sqrt(R / g) while the body still rocks
+    """Return the response of a plane body with friction. If `motion` is None, the ground is at rest."""
+    # restitution: None for impacts by complementarity
+    # duration [s]: by default to 15 sqrt(R / g) after the motion (to 60 sqrt(R / g) on ground at rest), and up to
+    # 300 sqrt(R / g) if the body still rocks
     base = PlaneBase.of_body(body)
     imposed = imposed_on(body, restitution, settings)
     law = GroundContact(settings.friction, settings.normal_restitution, imposed, settings.normal_restitution_law)
@@ -361,7 +362,7 @@ def response_with_contact(
 
 
 def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple[float, float] | None:
-    """Return the imposed coefficients for landing left and right [-]; None without any."""
+    """Return the imposed coefficients for landing left and right [-]; None if none is imposed."""
     if is_none(restitution):
         return None
     if isinstance(restitution, ImpactLaw):
@@ -374,7 +375,10 @@ def imposed_on(body: Body, restitution: Any, settings: ContactSettings) -> tuple
 
 
 def length_of(motion: GroundMotion | Pulse, slow: float, duration: float | None, after: float = AFTER) -> float:
-    """Return the duration of a history [s]; slow: sqrt(R / g) [s], after: number of these after the motion."""
+    """Return the duration of a history [s].
+
+    `slow` is sqrt(R / g) [s]; `after` is the time after the motion over `slow`.
+    """
     if duration is not None:
         return checks.positive("duration", duration, "s")
     return motion.duration + after * slow

@@ -1,4 +1,4 @@
-"""Settings of the integration of a plane body that may slide, hop and fly, and of its ground."""
+"""Settings of the integration of a plane body that may slide, hop and fly, and settings of the ground."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -13,19 +13,19 @@ _BOUNCE = "a ratio of velocities, impulses or, squared, of energies; at 1 bounce
 
 @dataclass(frozen=True)
 class ContactSettings(Settings):
-    """Settings of the integration of a plane body with `friction`, and of its ground.
+    """Settings of the integration of a plane body with `friction`, and settings of the ground.
 
     Parameters
     ----------
     gravity, most_events
-        As for all mechanics, `Settings`.
+        See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed after an impact over sqrt(g R); a slower bounce or rocking motion ends at once, and the impact loses
-        its energy [-].
+        Speed after an impact over sqrt(g R) [-]. A slower bounce or rocking motion ends at the impact, which loses the
+        energy of this motion.
     tolerance : float
-        Bound on the last two terms of a Taylor step, over the angle alpha and the size R [-].
+        Bound on the last two terms of a Taylor step, divided by the angle alpha and the size R [-].
     friction : float
-        Coulomb's coefficient between body and ground, from 0 to 1e6; 1e6 for feet that never slide [-].
+        Coulomb's coefficient between body and ground, from 0 to 1e6 [-]. With 1e6, feet never slide.
     normal_restitution : float
         Coefficient of normal restitution, in [0, 1) [-].
     normal_restitution_law : {"newton", "poisson", "stronge"}
@@ -40,5 +40,5 @@ class ContactSettings(Settings):
 
     @property
     def integration(self) -> dict[str, Any]:
-        """Values by name, without those of the ground."""
+        """Values by name, without the values of the ground."""
         return {name: value for name, value in self.stated.items() if name not in _GROUND}

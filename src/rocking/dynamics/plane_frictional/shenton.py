@@ -1,4 +1,4 @@
-"""Regime of a body at rest after a sudden ground acceleration: Shenton's map (1996; docs/theory/contact.md)."""
+"""Regime after a sudden ground acceleration of a body at rest: Shenton's map (1996; docs/theory/contact.md)."""
 
 import numpy as np
 
@@ -20,12 +20,12 @@ def friction_demand(body: Body, acceleration: float) -> float:
     body : Body
         The body.
     acceleration : float
-        Horizontal acceleration of the ground, over gravity; above b / h of the foot of rotation [-].
+        Horizontal acceleration of the ground over gravity [-]. It must exceed b / h of the foot of rotation.
 
     Returns
     -------
     float
-        Coefficient of friction below which the foot slides [-].
+        Coefficient of friction [-]. With a smaller coefficient, the foot slides.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
     Returns
     -------
     Regime
-        The regime; on a boundary the one with less motion.
+        The regime. On a boundary, the regime with less motion.
     """
     base = PlaneBase.of_body(body)
     push = checks.number("acceleration", acceleration)

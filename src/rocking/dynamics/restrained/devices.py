@@ -1,4 +1,4 @@
-"""Restraints of one history: laws, levers about both feet, extremes, events and energy."""
+"""Restraints during one history: laws, levers about both feet, extremes, events and energy."""
 
 import math
 from dataclasses import dataclass, field
@@ -13,11 +13,11 @@ class RestraintEvent:
     """A change of phase of a restraint."""
 
     time: float  # [s]
-    index: int  # of the restraint
-    phase: str  # after the event
+    index: int  # index of the restraint
+    phase: str  # phase after the event
     rotation: float  # [rad]
     elongation: float  # [m]
-    force: float  # before the event [N]
+    force: float  # force before the event [N]
 
 
 @dataclass(slots=True)
@@ -25,11 +25,11 @@ class Device:
     """One restraint during a history."""
 
     law: ForceLaw
-    levers: dict[int, Lever]  # by side
-    work: float = 0.0  # done on the restraint [J]
-    elongation: float = 0.0  # at the last change of state [m]
+    levers: dict[int, Lever]  # levers by side
+    work: float = 0.0  # work done on the restraint [J]
+    elongation: float = 0.0  # elongation at the last change of state [m]
     rate: float = 0.0  # [m/s]
-    largest_force: float = -math.inf  # extremes [N, m]
+    largest_force: float = -math.inf  # extremes of force [N] and elongation [m]
     smallest_force: float = math.inf
     largest_elongation: float = 0.0
     smallest_elongation: float = 0.0
@@ -42,20 +42,20 @@ class Device:
         return law.phase.force(self.elongation) + math.copysign(viscous, self.rate)
 
     def note(self) -> None:
-        """Update the extremes."""
+        """Update the extremes with the present values."""
         force, e = self.force(), self.elongation
         self.largest_force, self.smallest_force = max(self.largest_force, force), min(self.smallest_force, force)
         self.largest_elongation = max(self.largest_elongation, e)
         self.smallest_elongation = min(self.smallest_elongation, e)
 
     def move(self, elongation: float, rate: float) -> None:
-        """Move within a phase; the viscous work is added by the step."""
+        """Move to an elongation within a phase. The viscous work is added by the step."""
         self.work += self.law.phase.work(self.elongation, elongation)
         self.elongation, self.rate = elongation, rate
         self.note()
 
     def load(self, elongation: float) -> None:
-        """Move from the upright state to the state at the start of the history, without dynamics."""
+        """Move quasi-statically from the upright state to the state at the start of the history."""
         direction = 1 if elongation > 0.0 else -1
         if elongation:
             self.law.settle(0.0, direction)
@@ -79,7 +79,7 @@ class Device:
 
     @property
     def dissipated(self) -> float:
-        """Energy dissipated so far, without the loss by rupture [J]."""
+        """Energy dissipated up to now, without the loss by rupture [J]."""
         return self.start_energy + self.work - self.law.stored(self.elongation) - self.law.lost
 
 
@@ -94,7 +94,7 @@ def devices_of(body: Restrained, *, linear: bool) -> list[Device]:
 
 
 def moment_at_rest(devices: list[Device], side: int) -> float:
-    """Return the moment of restraints against uplift about a foot, with static friction [N m]."""
+    """Return the moment of restraints against uplift about a foot, including static friction [N m]."""
     return sum(
         side * device.levers[side].at_rest * device.law.phase.force(0.0) * (not device.law.slip_force)
         + device.law.slip_force * abs(device.levers[side].at_rest)

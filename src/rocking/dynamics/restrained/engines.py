@@ -55,14 +55,14 @@ class RestrainedHistory:
 
     body: Restrained
     parameters: RockingParameters
-    motion: int  # index
+    motion: int  # index of the motion
     start: tuple[float, float]  # theta [rad], theta' [rad/s]
     scale: float
-    length: float  # [s]
+    length: float  # duration [s]
 
 
 def chosen(requested: str, law: ImpactLaw) -> str:
-    """Return the name of the engine that runs; the compiled engine has constant coefficients."""
+    """Return the name of the engine to use. The compiled engine requires constant coefficients."""
     if isinstance(law, ConstantRestitution) or requested == "reference":
         return _COMPILED.chosen(requested)
     if requested == "fast":
@@ -168,7 +168,7 @@ def _run_piece(  # noqa: PLR0917 - tables of inputs and results
     integers: IntArray,
     restraints: list[FloatArray],
 ) -> None:
-    """Run a piece of many histories; each body is described once."""
+    """Run a piece of many histories. The description of a body is passed once to the engine."""
     bodies = {id(history.body): history.body for history in histories}
     laws = {key: _laws(devices_of(body, linear=settings.linear)) for key, body in bodies.items()}
     starts = dict(zip(laws, np.cumsum([0, *map(len, laws.values())]).tolist(), strict=False))
@@ -227,7 +227,7 @@ def _numbers(
 
 
 def _laws(devices: list[Device]) -> FloatArray:
-    """Return law and levers of each restraint as a row."""
+    """Return law and levers of the restraints, one row per restraint."""
     rows = [
         [*device.law.row(), *(value for side in (1, -1) for value in device.levers[side].row())] for device in devices
     ]
@@ -245,7 +245,7 @@ def _restore(device: Device, state: tuple[Any, ...]) -> None:
 
 
 def _followed(history: RestrainedHistory, motion: Segments, settings: RestrainedSettings) -> RestrainedTrajectory:
-    """Return one history of many by the reference engine."""
+    """Return one of many histories by the reference engine."""
     count = max(1, math.ceil(history.length / motion.step - 1e-9))
     return run(
         history.body, history.parameters, motion.extended(history.length).first(count), settings, history.start,

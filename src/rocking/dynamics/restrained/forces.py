@@ -18,13 +18,13 @@ from rocking.dynamics.restrained.reference import RestrainedTrajectory
 class RestrainedForces:
     """Forces of the ground and of the foundation, and energy, at the samples."""
 
-    horizontal_force: FloatArray  # of the ground on the body alone, to the right and upwards [N]
+    horizontal_force: FloatArray  # force of the ground on the body alone, to the right and upwards [N]
     vertical_force: FloatArray
-    base_shear: FloatArray  # of the body with its restraints on the foundation [N]
-    overturning_moment: FloatArray  # about the middle of the base, clockwise [N m]
+    base_shear: FloatArray  # force of body and restraints on the foundation [N]
+    overturning_moment: FloatArray  # moment on the foundation about the middle of the base, clockwise [N m]
     kinetic_energy: FloatArray  # [J]
     potential_energy: FloatArray
-    energy_lost: FloatArray  # at impacts
+    energy_lost: FloatArray  # energy lost at impacts [J]
 
     @classmethod
     def of(  # noqa: PLR0917 - a history and its inputs
@@ -39,7 +39,7 @@ class RestrainedForces:
         *,
         linear: bool,
     ) -> "RestrainedForces":
-        """Return the forces at times; horizontal, vertical: acceleration of the ground [m/s2]."""
+        """Return the forces at times. `horizontal` and `vertical` are accelerations of the ground [m/s2]."""
         count, mass = time.size, body.mass
         rotation, velocity = run.rotation[:count], run.angular_velocity[:count]
         moving = np.where(rotation != 0.0, rotation, velocity)
@@ -83,7 +83,7 @@ class RestrainedForces:
 def losses(
     run: RestrainedTrajectory, parameters: RockingParameters, mass: float, gravity: float, time: FloatArray
 ) -> FloatArray:
-    """Return the energy lost at impacts up to each time [J]."""
+    """Return the energy lost at impacts up to every time [J]."""
     inertia = {
         sign: mass * gravity * side.semi_diagonal / side.frequency_parameter**2
         for sign in (1, -1)
@@ -112,5 +112,5 @@ def direction_of(
     length = math.hypot(x, z)
     if length > 1e-6 * math.hypot(d_x, d_z) or math.hypot(ground_x - point_x, ground_z - point_z):
         return (x / length, z / length) if length else (0.0, 0.0)
-    sign = -math.copysign(1.0, d_x * side) if d_x else 0.0  # coincident points: half the angle
+    sign = -math.copysign(1.0, d_x * side) if d_x else 0.0  # coincident points: the direction at half the angle
     return sign * math.sin(0.5 * rotation), sign * math.cos(0.5 * rotation)  # Eq. 354

@@ -1,4 +1,4 @@
-"""Force laws of restraints as phases: the force is n + K e + c |e'|^a sgn e' between events of the elongation e."""
+"""Force laws of restraints as phases. Between events, the force is n + K e + c |e'|^a sgn e' for the elongation e."""
 
 import math
 from abc import ABC, abstractmethod
@@ -19,10 +19,10 @@ class Phase:
     stiffness: float = 0.0  # K [N/m]
     low: float = -_INF  # elongations at which the phase ends [m]
     high: float = _INF
-    direction: int = 0  # sign of e' throughout the phase; 0 for any
+    direction: int = 0  # required sign of e' during the phase; 0 for any sign
 
     def force(self, elongation: float) -> float:
-        """Return the force without viscous part [N]."""
+        """Return the force without the viscous force [N]."""
         return self.constant + self.stiffness * elongation
 
     def work(self, start: float, end: float) -> float:
@@ -34,24 +34,24 @@ class ForceLaw(ABC):
     """State of one restraint: its phase and plastic elongation."""
 
     phase: Phase
-    coefficient, exponent = 0.0, 1.0  # of the viscous force
-    slip_force = 0.0  # of a rigid friction damper [N]
+    coefficient, exponent = 0.0, 1.0  # coefficient c and exponent a of the viscous force
+    slip_force = 0.0  # slip force of a rigid friction damper [N]
     plastic = 0.0  # plastic elongation [m]
     yields = 0
     lost = 0.0  # energy lost by rupture [J]
 
     def settle(self, elongation: float, direction: int) -> None:  # noqa: B027 - most laws have one phase
-        """Choose the phase for a direction of e', after uplift, impact, turning point, or reversal of the lever."""
+        """Choose the phase for a sign of e', after uplift, impact, turning point, or reversal of the lever."""
 
     def cross(self, elongation: float, *, upwards: bool) -> None:  # noqa: B027
         """Choose the phase beyond a limit of the present phase."""
 
     def stored(self, elongation: float) -> float:
-        """Return the elastic energy, with that of the hardening [J]."""
+        """Return the elastic energy, including the energy of hardening [J]."""
         return 0.0
 
     def named(self, name: str) -> Phase:
-        """Return the phase of a name in the present state."""
+        """Return the phase with a given name in the present state."""
         return self.phase
 
     @property
@@ -61,7 +61,7 @@ class ForceLaw(ABC):
 
     @property
     def residual_slack(self) -> float:
-        """Elongation of the upright body before a slack restraint has a force [m]."""
+        """Elongation that a slack restraint of the upright body needs before a force appears [m]."""
         return 0.0
 
     @property
@@ -75,7 +75,10 @@ class ForceLaw(ABC):
 
 
 class Bilinear(ForceLaw):
-    """Elastic or plastic with kinematic hardening, symmetric or slack in compression, until rupture."""
+    """Elastic-plastic law with kinematic hardening until rupture.
+
+    The restraint is symmetric, or slack in compression.
+    """
 
     def __init__(
         self, stiffness: float, prestress: float, limit: float, ratio: float, rupture: float, symmetric: bool
@@ -159,7 +162,7 @@ class Bilinear(ForceLaw):
 
 
 class Viscous(ForceLaw):
-    """Force of the rate alone."""
+    """Viscous force, which depends on the rate only."""
 
     def __init__(self, coefficient: float, exponent: float) -> None:
         self.coefficient, self.exponent = coefficient, exponent

@@ -1,4 +1,4 @@
-"""Elongation of a restraint as a function of the rotation, exact or linear, for each pivot."""
+"""Elongation of a restraint as a function of the rotation about a pivot, exact or linear."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,10 @@ from rocking.bodies.restraints import COINCIDENT, Restraint
 
 @dataclass(frozen=True, slots=True)
 class Lever:
-    """Distance L of two points by the rotation theta about a pivot: L^2 = L0^2 + 4 s (B s - C c), s, c of theta / 2."""
+    """Distance L of two points after a rotation theta about a pivot.
+
+    L^2 = L0^2 + 4 s (B s - C c), with s and c the sine and cosine of theta / 2.
+    """
 
     side: int  # pivot: 1 right, -1 left
     length: float  # L0 [m]
@@ -25,7 +28,7 @@ class Lever:
         a_x, a_z, d_x, d_z = ground_x - foot, ground_z, point_x - foot, point_z
         size = max(abs(value) for value in (a_x, a_z, d_x, d_z, 1e-300))
         length = math.hypot(a_x - d_x, a_z - d_z)
-        if length <= COINCIDENT * size:  # no direction: the half-angle limit is used
+        if length <= COINCIDENT * size:  # coincident points have no direction; use the direction at half the angle
             return cls(side, 0.0, d_x * d_x + d_z * d_z, 0.0, linear)
         return cls(side, length, a_x * d_x + a_z * d_z, a_x * d_z - a_z * d_x, linear)
 

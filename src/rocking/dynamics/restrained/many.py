@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 COLUMNS = (*RESULTS, *RESTRAINT_RESULTS, "overturned")
-_AFTER = 15.0  # p times the duration after the motion
+_AFTER = 15.0  # product of p and the duration after the motion
 
 
 def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "xr.Dataset":
@@ -65,7 +65,7 @@ def many_with_restraints(cases: Combinations, settings: RestrainedSettings) -> "
 
 
 def _with_restraints(dataset: "xr.Dataset", values: dict[str, FloatArray], bodies: list[Any]) -> "xr.Dataset":
-    """Add the results of restraints over a further dimension, padded with NaN."""
+    """Add the results of restraints to the dataset. They have one more dimension, padded with NaN."""
     dims = (*dataset["outcome"].dims, "restraint")
     shape = (*dataset["outcome"].shape, -1)
     for name, array in values.items():

@@ -19,7 +19,7 @@ class RestrainedRocking(PlaneMechanics):
         return isinstance(body, Restrained)
 
     def start_of(self, rotation: Any, angular_velocity: Any) -> Any:
-        return rotation, angular_velocity  # their limits depend on the body
+        return rotation, angular_velocity  # their limits depend on the body and are checked later
 
     def begun(self, start: Any, rotation: Any, angular_velocity: Any) -> Any:
         from rocking.dynamics.plane_frictional.base import rocking_start

@@ -1,4 +1,4 @@
-"""Quasi-static pushover of a body with restraints: moment by rotation, monotonic or cyclic."""
+"""Quasi-static pushover of a body with restraints: moment as a function of the rotation, monotonic or cyclic."""
 
 import math
 from dataclasses import dataclass
@@ -68,7 +68,7 @@ class Pushover:
         })  # fmt: skip
 
     def plot(self) -> "Figure":
-        """Draw the moment and the force of each restraint by rotation.
+        """Draw the moment, and the force of every restraint, over the rotation.
 
         Returns
         -------
@@ -91,7 +91,7 @@ def pushover(
         The body with its restraints.
     rotation : array_like
         Path of the rotation theta from the upright body, for example up, back and up again [rad]. The path is monotonic
-        between its points, and each change of sign passes the upright position.
+        between its points. When the rotation changes its sign, the path includes the upright position.
     gravity : float
         Acceleration of gravity [m/s2].
     linear : bool
@@ -144,7 +144,7 @@ def pushover(
 
 
 def _drive(devices: list[Device], side: int, angle: float) -> None:
-    """Move all restraints to a rotation, through all changes of their phases."""
+    """Move all restraints to a rotation, including all changes of their phases."""
     for device in devices:
         end = device.levers[side].elongation(angle)
         direction = 1 if end > device.elongation else -1

@@ -1,6 +1,6 @@
-"""The reference engine of a body with restraints: Taylor steps; all events are zeros of the series.
+"""The reference engine of a body with restraints: Taylor steps, and events as zeros of the series.
 
-Every change of phase of a restraint, turning point and impact ends a step, so that each step is smooth.
+A change of phase of a restraint, a turning point and an impact end a step, so that every step is smooth.
 """
 
 import math
@@ -23,15 +23,15 @@ from rocking.outcome import Outcome, Status
 _ORDER = 30
 _STRETCH_END = 1.0 - 1e-13
 _HALF_PI = 0.5 * math.pi
-_TIE = 1e-11  # of a step
+_TIE = 1e-11  # as a fraction of a step
 _ROUNDING, _MOST_AT_ONCE = 1e-9, 1000
-_AFTER = 30.0  # p times the time on ground at rest for the outcome
-_SHORTER, _SHORTEST = 1e-4, 1e-20  # parts of a stretch
-_SINGULAR = 1e-14  # speed over p alpha next to a turning point with a damper of an exponent other than 1
+_AFTER = 30.0  # product of p and the time on ground at rest that determines the outcome
+_SHORTER, _SHORTEST = 1e-4, 1e-20  # as fractions of a stretch
+_SINGULAR = 1e-14  # speed over p alpha near a turning point, for a damper with an exponent other than 1
 
 
 class _Next(NamedTuple):
-    x: float  # of the step
+    x: float  # fraction of the step
     kind: str
     device: Device | None = None
     upwards: bool = False
@@ -39,21 +39,21 @@ class _Next(NamedTuple):
 
 @dataclass(slots=True)
 class RestrainedTrajectory:
-    """A history at the ends of all stretches of the motion, with its events."""
+    """A history: states at the ends of all stretches of the motion, and events."""
 
     rotation: FloatArray  # theta [rad], NaN after overturning; shape (stretches + 1,)
     angular_velocity: FloatArray  # theta' [rad/s]
     elongation: FloatArray  # [m]; shape (stretches + 1, restraints)
     force: FloatArray  # [N]
-    restraint_work: FloatArray  # done on restraints since the start [J]
-    work: FloatArray  # of the ground since the start [J]
+    restraint_work: FloatArray  # work done on restraints since the start [J]
+    work: FloatArray  # work of the ground since the start [J]
     devices: list[Device]
-    events: list[Event] = field(default_factory=list)  # of the body, in order of time
+    events: list[Event] = field(default_factory=list)  # events of the body, in order of time
     restraint_events: list[RestraintEvent] = field(default_factory=list)
     peaks: list[tuple[float, float]] = field(default_factory=list)  # turning points: time [s], theta [rad]
     outcome: Outcome = Outcome.NO_UPLIFT
     status: Status = Status.GOOD
-    side: int = 0  # of overturning
+    side: int = 0  # side of overturning
     peak_rotation: float = 0.0  # [rad]
     peak_time: float = 0.0  # [s]
     peak_velocity: float = 0.0  # [rad/s]
@@ -63,7 +63,7 @@ class RestrainedTrajectory:
     engine: str = f"reference (Taylor, order up to {_ORDER})"
 
     def cut(self, count: int) -> None:
-        """Keep the first stretches only."""
+        """Keep only the first `count` stretches."""
         for name in ("rotation", "angular_velocity", "elongation", "force", "restraint_work", "work"):
             setattr(self, name, getattr(self, name)[: count + 1])
 
@@ -79,7 +79,7 @@ class RestrainedTrajectory:
 
 
 class RestrainedReference:
-    """Engine of one history."""
+    """Reference engine of one history with restraints."""
 
     def __init__(  # noqa: PLR0917 - a history and its inputs
         self,
@@ -137,7 +137,7 @@ class RestrainedReference:
 
     @property
     def equation(self) -> Equation:
-        """Equation about the foot in contact."""
+        """Equation of motion about the foot in contact."""
         return self.equations[self.side]
 
     @property
@@ -148,7 +148,7 @@ class RestrainedReference:
     # ---- one step ---------------------------------------------------------------------------------------------------
 
     def _step(self, width: float = 1.0) -> None:
-        """Advance to the end of a part of the stretch, or to the first event before it."""
+        """Advance by a part of the stretch, or to an earlier event."""
         width = min(width, 1.0 - self.tau)
         h, is_singular = width * self.push.step, self._is_singular()
         push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, width)
@@ -161,7 +161,7 @@ class RestrainedReference:
         if is_singular:
             return self._pass_turn(terms, h, width)
         fraction = self._trusted_part(terms, h)
-        if not fraction > 0.0:  # next to a turning point with a damper of a power
+        if not fraction > 0.0:  # near a turning point with a power-law damper
             too_short = width < _SHORTEST or not any(item.root for item in items)
             return self._end(Outcome.FAILED, Status.NOT_FINITE) if too_short else self._step(_SHORTER * width)
         event = self._first_event(terms, items, fraction)
@@ -179,7 +179,7 @@ class RestrainedReference:
         return None
 
     def _trusted_part(self, terms: Poly, h: float) -> float:
-        """Return the fraction of the step over which the last terms stay below the tolerance."""
+        """Return the fraction of the step over which the last terms are below the tolerance."""
         if not all(map(math.isfinite, terms)):
             return 0.0
         if len(terms) <= _ORDER:
@@ -210,13 +210,13 @@ class RestrainedReference:
                     for x in _falls(_scaled(item.slope, fraction, math.copysign(1.0, item.slope[0])))
                 ]
         events += [_Next(x, "turn") for x in _falls(rate)]
-        # a limit at the impact itself belongs to the impact
+        # a phase limit that is reached at the impact is part of the impact
         return min(events, key=lambda event: event.x - _TIE * (event.kind == "impact"), default=None)
 
     def _add_work(
         self, terms: Poly, items: list[RestraintSeries], x: float, h: float, push: Poly, weight: Poly
     ) -> None:
-        """Add the work of the ground and of viscous forces over a part of the step."""
+        """Add the work of the ground and the work of viscous forces over a part of the step."""
         g, equation, side = self.settings.gravity, self.equation, self.parameters.side(self.side)
         unit = self.mass * g * side.semi_diagonal
         terms, push, weight = (_scaled(poly, x) for poly in (terms, push, weight))
@@ -238,7 +238,7 @@ class RestrainedReference:
         return abs(self.rate) < _SINGULAR * self.equation.p * self.equation.alpha
 
     def _pass_turn(self, terms: Poly, h: float, width: float) -> None:
-        """Leave or reach a turning point without the damper, whose power has no series there."""
+        """Leave or reach a turning point without the damper, because the power law has no series at this point."""
         first, second, third = [*terms, 0.0, 0.0][1:4]
         if reaches := first * second < 0.0:
             x = min(1.0, -0.5 * first / second)
@@ -298,7 +298,7 @@ class RestrainedReference:
         return comes_to_rest(self.parameters, self._holding(), self.side, after, self.stretch, self.tau, rest_speed)
 
     def _head(self, direction: int) -> None:
-        """Let all restraints follow a direction of theta'."""
+        """Choose the phases of all restraints for a sign of theta'."""
         self.direction = direction
         for device in self.devices:
             arm = device.levers[self.side].slope(self.theta)
@@ -309,7 +309,7 @@ class RestrainedReference:
                 self._note_phase(device, before)
 
     def _turn(self) -> None:
-        """Reverse at a turning point, or stay there by friction."""
+        """Reverse the motion at a turning point, or hold the body there by friction."""
         self.rate = 0.0
         if self.stretch >= self.count and self.side * self._acceleration_at(self.stretch, self.tau) < 0.0:
             self._peak()
@@ -324,7 +324,7 @@ class RestrainedReference:
         return self._hold(limit)  # Eq. 352
 
     def _hold(self, limit: float) -> None:
-        """Stay at a rotation until the moment exceeds friction."""
+        """Hold the body at a rotation until the moment exceeds the friction."""
         while self.stretch < self.count:
             rows = [self._acceleration_at(self.stretch, x) for x in (self.tau, 1.0)]
             poly = self._acceleration_series()
@@ -345,7 +345,7 @@ class RestrainedReference:
         return None
 
     def _rest(self) -> None:
-        """Rest until the next uplift, or to the end."""
+        """Keep the body at rest until the next uplift, or to the end."""
         if self.ended:
             return None
         ground = self._holding()
@@ -359,7 +359,7 @@ class RestrainedReference:
         return None if uplift is None else self._lift(uplift[1], uplift[2])
 
     def _lift(self, tau: float, side: int) -> None:
-        """Lift off at an instant of the stretch."""
+        """Start an uplift at an instant of the stretch."""
         self.side = side
         self._move(tau)
         if self.ended:
@@ -369,7 +369,7 @@ class RestrainedReference:
         return self._head(side)
 
     def _holding(self) -> RestoringMoments:
-        """Return the restoring moments with those of restraints in their present state."""
+        """Return the restoring moments, including restraints in their present state."""
         more = {}
         for side in (1, -1):
             half = self.parameters.side(side)
@@ -398,7 +398,7 @@ class RestrainedReference:
         return self._acceleration(push, 1.0 + lift)
 
     def _acceleration_series(self) -> Poly:
-        """Return theta'' at the present rotation as a polynomial of the stretch."""
+        """Return theta'' at the present rotation as a polynomial over the stretch."""
         push, lift = (rows[self.stretch].tolist() for rows in (self.push.horizontal, self.push.vertical))
         still = self._acceleration(0.0, 0.0)
         push_slope, weight_slope = self._acceleration(1.0, 0.0) - still, self._acceleration(0.0, 1.0) - still
@@ -412,7 +412,7 @@ class RestrainedReference:
         return sum(arms) / self.equation.inertia
 
     def _carry(self, event: _Next | None) -> None:
-        """Move all restraints with the body."""
+        """Move all restraints to the present rotation of the body."""
         if event is not None and event.kind == "impact":
             self.theta = 0.0
         if event is not None and event.kind == "turn":
@@ -472,14 +472,14 @@ class RestrainedReference:
             return self._end(Outcome.HELD)
         if not self._may_overturn():
             return self._end(Outcome.ROCKED if self.out.uplifts or self.out.impacts else Outcome.NO_UPLIFT)
-        # the outcome follows on ground at rest
+        # ground at rest is appended to determine the outcome
         still = np.zeros((math.ceil(_AFTER / (self.equation.p * self.push.step)), self.push.horizontal.shape[1]))
         rows = (np.vstack([self.push.horizontal, still]), np.vstack([self.push.vertical, still]))
         self.push = Push(self.push.step, *rows)
         return None
 
     def _may_overturn(self) -> bool:
-        """Return True if the body is beyond the slenderness angle, or on its way out."""
+        """Return True if the rotation exceeds the slenderness angle or increases."""
         outwards = self.side * self.rate > 0.0
         return self.theta != 0.0 and (outwards or self.side * self.theta > self.equation.alpha)
 
@@ -497,19 +497,19 @@ class RestrainedReference:
 
 
 def _falls(poly: Poly) -> list[float]:
-    """Return the first x in [0, 1] where a polynomial becomes negative, if any; a zero at the start is a touch."""
+    """Return the first x in [0, 1] at which a polynomial becomes negative, if any. A zero at the start is ignored."""
     if poly[0] > 0.0:
         x = first_fall(poly)
     else:
         tail = poly[1:]
         while len(tail) > 1 and -_ROUNDING * max(map(abs, tail[1:])) <= tail[0] <= 0.0:
-            tail = tail[1:]  # after a release only rounding can be negative
+            tail = tail[1:]  # just after a release, only rounding can make these values negative
         x = None if not tail else 0.0 if tail[0] < 0.0 else first_fall(tail)
     return [] if x is None else [x]
 
 
 def _product(a: Poly, b: Poly) -> Poly:
-    """Return the product of two series up to the order of the longer."""
+    """Return the product of two series, up to the order of the longer series."""
     count = max(len(a), len(b))
     result = [0.0] * count
     for i, left in enumerate(a):
@@ -525,7 +525,7 @@ def _sum(a: Poly, b: Poly) -> Poly:
 
 
 def _integral(poly: Poly) -> float:
-    """Return the integral from 0 to 1."""
+    """Return the integral of a polynomial from 0 to 1."""
     return sum(c / (k + 1) for k, c in enumerate(poly))
 
 
@@ -534,7 +534,7 @@ def _scaled(poly: Poly, x: float, sign: float = 1.0) -> Poly:
 
 
 def _sine_cosine(angle: Poly) -> tuple[Poly, Poly]:
-    """Return the series of sine and cosine of a series."""
+    """Return the series of the sine and cosine of a series."""
     sines, cosines = [math.sin(angle[0])], [math.cos(angle[0])]
     for k in range(1, len(angle)):
         steps = [(j + 1) * angle[j + 1] / k for j in range(k)]

@@ -31,7 +31,7 @@ from rocking.tables import Table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FINE, _AFTER, _FREE = 0.05, 15.0, 300.0  # p times step and durations, as without restraints
+_FINE, _AFTER, _FREE = 0.05, 15.0, 300.0  # products of p with time step and durations, as without restraints
 _TENSILE = "the contact force becomes tensile, up to {force:.2g} of the weight: the body would leave the ground"
 _SIDES = {1: "right", -1: "left"}
 
@@ -45,7 +45,7 @@ class RestrainedResponse(ResponseBase):
     body : Restrained
         The body with its restraints.
     motion : GroundMotion or Pulse, optional
-        The motion; None for free rocking.
+        The ground motion; None for free rocking.
     parameters : RockingParameters
         Parameters of the equations, with the coefficients of restitution.
     settings : RestrainedSettings
@@ -68,7 +68,7 @@ class RestrainedResponse(ResponseBase):
 
     @cached_property
     def time(self) -> FloatArray:
-        """Times of the samples, up to the end or until the body lies [s]."""
+        """Times of the samples, up to the end or until the body has fallen [s]."""
         count = int(np.isfinite(self.trajectory.rotation).sum())
         return np.asarray(np.arange(count) * self.segments.step, dtype=np.float64)
 
@@ -114,7 +114,7 @@ class RestrainedResponse(ResponseBase):
 
     @property
     def peak_rotation(self) -> float:
-        """Largest rotation, also between the samples; a quarter turn after overturning [rad]."""
+        """Largest rotation, including times between the samples; a quarter turn after overturning [rad]."""
         return abs(self.trajectory.peak_rotation)
 
     @property
@@ -124,7 +124,7 @@ class RestrainedResponse(ResponseBase):
 
     @property
     def residual_rotation(self) -> float:
-        """Rotation at the end; not zero for a body that friction holds, or that still rocks [rad]."""
+        """Rotation at the end [rad]. It is not zero if friction holds the body or the body still rocks."""
         return float(self.rotation[-1])
 
     @property
@@ -157,7 +157,7 @@ class RestrainedResponse(ResponseBase):
 
     @cached_property
     def least_force(self) -> float:
-        """Smallest normal contact force at the samples over the weight; tensile below 0 [-]."""
+        """Smallest normal contact force at the samples, divided by the weight [-]. A negative force is tensile."""
         weight = self.body.mass * self.settings.gravity
         over = self.overturning_time
         shown = slice(None) if math.isnan(over) else self.time <= over
@@ -170,7 +170,7 @@ class RestrainedResponse(ResponseBase):
 
     @cached_property
     def energy_closure(self) -> float:
-        """Largest energy balance error over the largest energy: body, ground, restraints and impacts [-]."""
+        """Largest energy balance error, divided by the largest energy of body, ground, restraints and impacts [-]."""
         forces = self.forces
         stored = forces.kinetic_energy + forces.potential_energy
         gap = stored - stored[0] - self.trajectory.work[: self.time.size] + self.restraint_work.sum(axis=1)
@@ -346,7 +346,7 @@ def response_with_restraints(  # noqa: PLR0913 - the arguments of `simulate`
     engine: str = "auto",
     stream: int = 0,
 ) -> RestrainedResponse:
-    """Return the response of a plane body with restraints; durations as without restraints."""
+    """Return the response of a plane body with restraints. The durations are those without restraints."""
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
     parameters = RockingParameters.of_body(body.body, restitution, settings.gravity)
@@ -386,7 +386,7 @@ def _doubts(response: RestrainedResponse) -> list[str]:
 
 
 def _until_rest(trajectory: RestrainedTrajectory, segments: Segments, min_stretches: int) -> Segments:
-    """Cut the samples at rest at the end of a response; a number of stretches is kept."""
+    """Remove the samples at rest at the end of a response. At least `min_stretches` stretches are kept."""
     moving = (trajectory.angular_velocity != 0.0) | (np.diff(trajectory.rotation, prepend=0.0) != 0.0)
     last = max(int(moving.nonzero()[0][-1]) + 2 if moving.any() else 2, min_stretches)
     if last >= trajectory.rotation.size:

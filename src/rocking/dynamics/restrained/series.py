@@ -35,10 +35,10 @@ class RestraintSeries:
     rate: Poly = field(default_factory=list)  # de/dx [m]
     viscous: Poly = field(default_factory=list)  # viscous force [N]
     root: Poly = field(default_factory=list)  # |e'|^a
-    is_viscous: bool = True  # False while the viscous force is left out
+    is_viscous: bool = True  # False if the viscous force is omitted
 
     def moments(self, k: int, theta: Poly, sines: Poly, cosines: Poly, half: Poly, h: float) -> float:
-        """Extend all series to the power k; return the power k of the moment N de/dtheta [N m]."""
+        """Extend all series to the power k. Return coefficient k of the moment N de/dtheta [N m]."""
         law, lever, slope = self.law, self.lever, self.slope
         constant, stiffness = law.phase.constant, law.phase.stiffness
         if lever.is_linear:
@@ -60,7 +60,7 @@ class RestraintSeries:
         return moment
 
     def _extend_slope(self, k: int, along: float, theta: float) -> None:
-        """Divide the arm by the distance, L G = B sin theta - C cos theta."""
+        """Extend the slope, the quotient of arm and distance, L G = B sin theta - C cos theta."""
         e, lever = self.elongation, self.lever
         if k == 0:
             e.append(lever.elongation(theta))
@@ -74,7 +74,7 @@ class RestraintSeries:
         self.elongation.append(self.rate[k - 1] / k if k else self.lever.elongation(theta[0]))
 
     def _extend_viscous(self, k: int, h: float) -> None:
-        """Extend c |e'|^a sgn e' by its differential equation."""
+        """Extend the series of c |e'|^a sgn e' by its differential equation."""
         law, rate, root = self.law, self.rate, self.root
         if law.exponent == 1.0:
             self.viscous.append(law.coefficient * rate[k] / h)
@@ -98,7 +98,7 @@ def series(  # noqa: PLR0917 - the state and the ground in the order of the equa
     restraints: Sequence[RestraintSeries],
     order: int,
 ) -> Poly:
-    """Return the coefficients of theta over x = t / h; push: a_x / g, weight: 1 + a_z / g."""
+    """Return the coefficients of theta over x = t / h. `push` is a_x / g, `weight` is 1 + a_z / g."""
     terms, to_top = [theta, velocity * h], equation.side * equation.alpha
     sines, cosines = [math.sin(theta)], [math.cos(theta)]
     half_sines, half = [math.sin(0.5 * theta)], [math.cos(0.5 * theta)]

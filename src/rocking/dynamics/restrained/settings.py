@@ -13,14 +13,14 @@ class RestrainedSettings(Settings):
     Parameters
     ----------
     gravity, most_events
-        As for all mechanics, `Settings`.
+        See `Settings`; the same for all mechanics.
     linear : bool
-        True for the slender-linear equations, with small rotations also in the elongations.
+        True for the slender-linear equations. The elongations then also assume small rotations.
     rest_speed : float
-        Largest speed after an impact, over p alpha, for which rest is considered [-]. Rest follows only if the next
-        impacts provably decay before the next uplift.
+        Largest speed after an impact, over p alpha, for which rest is considered [-]. The body comes to rest only if it
+        is proven that the next impacts decay before the next uplift.
     tolerance : float
-        Bound on the last two terms of a Taylor step, over the angle alpha [-].
+        Bound on the last two terms of a Taylor step, divided by the angle alpha [-].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Bodies in space: rocking about edges and vertices, rolling on rims, under three components of motion."""
+"""3D bodies: rocking about edges and vertices and rolling on rims, under three components of motion."""
 
 from lazy_loader import attach_stub
 

@@ -1,4 +1,4 @@
-"""Attitudes as unit quaternions (s, x, y, z): body axes to axes of the ground, x and y horizontal, z up."""
+"""Attitudes as unit quaternions (s, x, y, z), from body axes to axes of the ground (x and y horizontal, z up)."""
 
 import math
 from collections.abc import Sequence
@@ -28,26 +28,26 @@ _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def cross(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the vector product, faster than numpy for single vectors."""
+    """Return the vector product. For single vectors, this function is faster than numpy."""
     return np.asarray(left[..., _NEXT] * right[..., _LAST] - left[..., _LAST] * right[..., _NEXT])
 
 
 def matrix(quaternion: FloatArray) -> FloatArray:
-    """Return the rotation matrices, from body axes to axes of the ground, of unit quaternions (s, x, y, z) [-]."""
+    """Return the rotation matrices of unit quaternions (s, x, y, z), from body axes to axes of the ground [-]."""
     q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
     rotation: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
     return rotation if quaternion.ndim == 1 else np.moveaxis(rotation, (0, 1), (-2, -1))
 
 
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
-    """Return the unit quaternion of a rotation about an axis of any length by the right hand [rad]."""
+    """Return the unit quaternion of a right-handed rotation [rad] about an axis of any length."""
     unit = np.asarray(axis, dtype=np.float64)
     unit = unit / norm(unit)
     return np.concatenate([[math.cos(0.5 * angle)], math.sin(0.5 * angle) * unit])
 
 
 def product(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the rotation `right` followed by the rotation `left`, both in axes of the ground: a Hamilton product."""
+    """Return the Hamilton product: the rotation `right` followed by the rotation `left`, both in axes of the ground."""
     scalar = left[0] * right[0] - dot(left[1:], right[1:])  # Eq. 80
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
 
@@ -58,24 +58,24 @@ def normalised(quaternion: FloatArray) -> FloatArray:
 
 
 def flat(quaternion: FloatArray) -> FloatArray:
-    """Return an attitude without its tilt, which is below half a turn: that of a body on its full base."""
+    """Return the attitude of a body on its full base, by removing a tilt below half a turn."""
     return normalised(np.array([quaternion[0], 0.0, 0.0, quaternion[3]]))
 
 
 def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return an attitude turned by the smallest angle that makes a nearly horizontal body axis horizontal."""
+    """Return an attitude after the smallest rotation that makes a nearly horizontal body axis horizontal."""
     direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
     if rise == 0.0:
         return quaternion
     level = math.sqrt(1.0 - rise * rise)
-    half = math.sqrt(0.5 * (1.0 + level))  # cosine of half the angle, the sine of which is rise / (2 half)
+    half = math.sqrt(0.5 * (1.0 + level))  # cosine of half the angle; the sine of half the angle is rise / (2 half)
     back = -rise / (2.0 * half * level) * np.array([direction[1], -direction[0], 0.0])
     return normalised(product(np.concatenate([[half], back]), quaternion))
 
 
 def tilt(quaternion: FloatArray) -> FloatArray:
-    """Return the tilts: angles between the axis of the body and the vertical, from 0 to pi [rad]."""
+    """Return the tilts, the angles between the axis of the body and the vertical, from 0 to pi [rad]."""
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return 2.0 * each(math.atan2, np.sqrt(x * x + y * y), np.sqrt(s * s + z * z))  # Eq. 81
 
@@ -107,7 +107,7 @@ class SpatialStart:
 
     Notes
     -----
-    Without friction `height` and `velocity` must be zero: the body neither slides nor flies.
+    Without friction, `height` and `velocity` must be zero, because the body does not slide or fly.
 
     Examples
     --------
@@ -148,7 +148,7 @@ class SpatialStart:
         return [self.tilt, self.azimuth, self.yaw, *spin, self.height, *velocity]
 
     def check_grounded(self) -> None:
-        """Refuse a start with height or velocity of the lowest point."""
+        """Raise an error for a start with height or velocity of the lowest point."""
         if not self.rocks_alone:
             raise InvalidValueError(
                 "height and velocity of the start must be 0 without friction=, got {height} m and {velocity} m/s; "
@@ -158,7 +158,7 @@ class SpatialStart:
 
     @property
     def quaternion(self) -> FloatArray:
-        """Attitude, body axes to axes of the ground, shape (4,) [-]."""
+        """Attitude as a quaternion, from body axes to axes of the ground, shape (4,) [-]."""
         tilting = turn([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0], self.tilt)
         return product(tilting, turn([0.0, 0.0, 1.0], self.yaw))
 

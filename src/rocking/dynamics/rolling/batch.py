@@ -1,4 +1,4 @@
-"""All combinations of bodies in space, motions, scales, restitutions and starts: arrays with provenance."""
+"""Histories for all combinations of 3D bodies, motions, scales, restitutions and starts, as arrays with provenance."""
 
 import hashlib
 import json
@@ -34,25 +34,25 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Made = TypeVar("Made")
-DIMENSIONS = ("body", "motion", "scale", "restitution", "start")  # axes of the arrays of a batch, in order
+DIMENSIONS = ("body", "motion", "scale", "restitution", "start")  # dimensions of the arrays of a batch, in order
 _LONG = 300.0
-_FEW = 100  # largest number of bodies in the provenance; of more bodies it contains the digest only
+_FEW = 100  # largest number of bodies in the provenance; for more bodies, it contains only the digest
 
 
 @dataclass(frozen=True, eq=False)
 class SpatialBatch:
-    """Results of a batch; every array has one axis per dimension."""
+    """Results of a batch. Every array has one axis per dimension."""
 
     shape: tuple[int, ...]
     values: dict[str, np.ndarray] = field(repr=False)  # flat results by name in `rocking.quantities`
     engine: str  # engine and method
     labels: dict[str, list[object]] = field(default_factory=dict, repr=False)  # motions, restitutions, scales
-    refused: dict[int, str] = field(default_factory=dict)  # reason by index of a refused body
+    refused: dict[int, str] = field(default_factory=dict)  # reasons for invalid bodies, by index
     provenance: dict[str, Any] = field(default_factory=dict, repr=False)  # bodies, starts, settings as plain values
     dimensions: tuple[str, ...] = DIMENSIONS
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return an array of the engine by name; in `results` flags are NaN without a result."""
+        """Return an array of the engine by name. In `results`, flags are NaN if there is no result."""
         return self.values[name].reshape(self.shape)
 
     def __len__(self) -> int:
@@ -108,7 +108,7 @@ def many_in_space(cases: Combinations, settings: SpaceBatchSettings) -> SpatialB
 
 
 def motions_in_space(motions: Any) -> list[Any]:
-    """Return the components of motions of bodies in space, None for ground at rest."""
+    """Return the components of motions of 3D bodies; None for ground at rest."""
     return [None if motion is None else components_of(motion) for motion in listed(motions)]
 
 
@@ -124,7 +124,7 @@ def batch_in_space(  # noqa: PLR0913, PLR0917 - the arguments of `simulate_many`
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> SpatialBatch:
-    """Return the outcome of all combinations; motions: tuples of components."""
+    """Return the outcome of all combinations. `motions` contains tuples of components."""
     # the reference engine is thousands of times slower
     settings = settings or SpaceBatchSettings()
     body_list = bodies if isinstance(bodies, Sequence) and not isinstance(bodies, str) else [bodies]
@@ -181,7 +181,7 @@ def _components(motion: Any) -> Sequence[Any]:
 def converted_or_refused(
     make: Callable[[Any], Made], bodies: Sequence[Any]
 ) -> tuple[list[Made | None], dict[int, str]]:
-    """Return the converted bodies, None for a refused body, and the reasons by index."""
+    """Return the converted bodies (None for an invalid body), and the reasons by index."""
     objects: list[Made | None] = []
     refused: dict[int, str] = {}
     for index, body in enumerate(bodies):
@@ -237,7 +237,7 @@ def _one(
 
 
 def results_of(history: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
-    """Return a history of the reference engine as a row of a batch: floats (NaN without result) and integers."""
+    """Return a history of the reference engine as a row of a batch: floats (NaN if missing) and integers."""
     last, events = history.pieces[-1], history.events
     failed = history.outcome is Outcome.FAILED
     first = events[0].time if events else math.nan

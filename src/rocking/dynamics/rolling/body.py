@@ -1,4 +1,4 @@
-"""Rigid body in space: mass, centre, inertia, base, and the solid from which they were computed."""
+"""Rigid 3D body: mass, centre, inertia and base, and the solid from which they were computed."""
 
 import math
 from collections.abc import Callable
@@ -17,23 +17,23 @@ from rocking.portable import applied, dot, norm
 
 @dataclass(frozen=True, eq=False)
 class Matter:
-    """Solid in the axes of a body, created at first access: few impact models need it."""
+    """Solid in the axes of a body. The solid is created at first access, because few impact models need it."""
 
     make: Callable[[], Solid]  # returns the solid
     shift: FloatArray  # origin of the body axes in the coordinates of the solid [m]; shape (3,)
 
     @cached_property
     def placed(self) -> tuple[Solid, FloatArray]:
-        """The solid, and the origin of its own frame in axes of the body [m]."""
+        """The solid, and the origin of the frame of the solid in axes of the body [m]."""
         solid = self.make()
         return solid, solid.origin - self.shift
 
     def __call__(self) -> tuple[Solid, FloatArray]:
-        """Return `placed`, the form for impacts."""
+        """Return `placed`, in the form that impacts need."""
         return self.placed
 
 
-# functions of the module can be pickled
+# only functions at module level can be pickled
 def _box(width: float, depth: float, height: float, density: float) -> Solid:
     return Solid(Part(box(width, depth, height), density))
 
@@ -62,11 +62,11 @@ class SpatialBody:
     mass : float
         Mass [kg].
     centre : array_like, shape (3,)
-        Centre of mass; z is its height over the base [m].
+        Centre of mass [m]; z is the height over the base.
     inertia : array_like, shape (3, 3)
         Inertia tensor about the centre of mass, in body axes [kg m2].
     base : array_like, shape (k, 2), or float
-        Vertices of the convex support polygon, counter-clockwise as seen from above [m]; or the radius of a round base
+        Vertices of the convex support polygon [m], counter-clockwise as seen from above; or radius of a round base
         about the origin [m].
 
     Attributes
@@ -79,7 +79,7 @@ class SpatialBody:
     InvalidValueError
         If a value is not finite, or the inertia is not physical.
     GeometryError
-        If the polygon is not convex and counter-clockwise, or the centre of mass is not above the base.
+        If the polygon is not convex and counter-clockwise, or if the centre of mass is not above the base.
 
     Examples
     --------
@@ -191,7 +191,7 @@ class SpatialBody:
         return spatial._with_matter(Matter(partial(_same, body), origin)) if spread else spatial
 
     def _with_matter(self, matter: Matter) -> "SpatialBody":
-        # not an argument: a solid with another mass and inertia would give wrong energies
+        # not an argument of the constructor, because a solid with another mass or inertia would give wrong energies
         object.__setattr__(self, "matter", matter)
         return self
 
@@ -222,7 +222,7 @@ class SpatialBody:
 
     @cached_property
     def radius(self) -> float:
-        """Radius of a round base; of a polygon, the largest distance of a vertex from the origin [m]."""
+        """Radius of a round base, or largest distance of a vertex of a polygon from the origin [m]."""
         return float(np.hypot(*np.atleast_2d(self.base).T).max()) if not self.round else float(self.base)
 
     @cached_property
@@ -234,7 +234,7 @@ class SpatialBody:
 
     @cached_property
     def edges(self) -> FloatArray:
-        """Unit vectors along the edges, from each vertex to the next one, shape (k, 3) [-]."""
+        """Unit vectors along the edges, from every vertex to the next vertex, shape (k, 3) [-]."""
         along = np.roll(self.vertices, -1, axis=0) - self.vertices
         return np.asarray(along / np.linalg.norm(along, axis=1)[:, None])
 
@@ -280,7 +280,7 @@ class SpatialBody:
         return np.asarray(self.inertia + self.mass * (dot(arm, arm) * np.eye(3) - np.outer(arm, arm)))  # Eq. 83
 
     def kinetic(self, point: FloatArray, velocity: FloatArray) -> float:
-        """Return the kinetic energy of the body that turns about a point at rest.
+        """Return the kinetic energy of the body when it turns about a point at rest.
 
         Parameters
         ----------
@@ -297,7 +297,7 @@ class SpatialBody:
         return 0.5 * dot(velocity, applied(self.inertia_about(point), velocity))  # Eq. 84
 
     def frequency(self, gravity: float) -> float:
-        """Return the frequency parameter of the body about its nearest edge, p = sqrt(m g R / I) there.
+        """Return the frequency parameter of the body, p = sqrt(m g R / I) about an edge.
 
         Parameters
         ----------
@@ -307,7 +307,7 @@ class SpatialBody:
         Returns
         -------
         float
-            p, the smallest over all edges [rad/s].
+            p, the smallest value over all edges [rad/s].
         """
         if self.round:
             points, axes = np.array([[-self.radius, 0.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])
@@ -332,7 +332,7 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
 
 
 def checked_inertia(values: Any) -> FloatArray:
-    """Return an inertia tensor after the check that it is physical."""
+    """Return an inertia tensor. Raise an error if it is not physical."""
     tensor = checks.finite("inertia", values, "kg m2", (3, 3))
     scale = float(np.abs(tensor).max())
     moments = np.linalg.eigvalsh(tensor)

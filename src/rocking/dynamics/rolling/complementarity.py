@@ -1,4 +1,4 @@
-"""Contact sets after an impact or under forces, by complementarity over the few contact sets of a convex base."""
+"""Contact set after an impact or under forces, by complementarity over the few contact sets of a convex base."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -22,11 +22,11 @@ UP = np.array([0.0, 0.0, 1.0])
 class ContactSet:
     """Points in contact with the ground."""
 
-    mode: ContactMode  # the regime
+    mode: ContactMode  # mode of the contact
     points: tuple[int, ...]  # indices of the vertices in contact; empty for round bases
     pivot: FloatArray  # point in contact, in body axes [m]; shape (3,)
     axis: FloatArray | None = None  # unit vector along an edge in contact, in body axes [-]; shape (3,)
-    length: float = 0.0  # length of that edge [m]
+    length: float = 0.0  # length of the edge [m]
 
 
 def face(body: SpatialBody) -> ContactSet:
@@ -48,26 +48,27 @@ def vertex(body: SpatialBody, index: int) -> ContactSet:
 
 
 def rim(body: SpatialBody, direction: FloatArray) -> ContactSet:
-    """Return the contact on a point of a round base, for rotation about it: the start of rolling from flat."""
+    """Return the contact on a point of a round base, for rotation about this point at the start of rolling."""
     unit = direction / norm(direction)
     return ContactSet(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
 def rolling(contact: ContactSet) -> ContactSet:
-    """Return rolling contact that starts at the point of a contact."""
+    """Return the rolling contact that starts at the point of a contact."""
     return replace(contact, mode=ContactMode.ROLLING)
 
 
 def supports(
     body: SpatialBody, contact: ContactSet, force: FloatArray, moment: FloatArray, up: FloatArray
 ) -> FloatArray:
-    """Return the contact forces; all are >= 0 if no force is tensile."""
-    # Horizontal forces are free without slip; the vertical forces remain. With M the moment about the pivot and Z
-    # upwards, Z x M = sum N_i r_i over the points of contact: an edge has the two forces at its ends, and a face the
-    # moments of the vertical forces about each edge, over its distance scale. force, moment:
-    # force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses; up: vertical in body
-    # axes [-]. Returns vertical force at a vertex; at both ends of an edge; for a face N times the distance of its
-    # centre of pressure from each edge over the size of the body [N].
+    """Return the contact forces. All values are >= 0 if no force is tensile."""
+    # Without slip, horizontal forces have no limit, so that only vertical forces matter. With M the moment about the
+    # pivot and Z upwards, Z x M = sum N_i r_i over the points of contact. An edge has the two forces at its ends, and a
+    # face has the moments of the vertical forces about its edges, divided by the size of the body.
+    # force, moment: force of the ground and its moment about the pivot, in body axes [N], [N m], or impulses
+    # up: vertical in body axes [-]
+    # Returns the vertical force at a vertex, the forces at both ends of an edge, or for a face N times the distance of
+    # the centre of pressure from every edge over the size of the body [N].
     normal = dot(force, up)
     if contact.axis is not None:
         second = dot(cross(up, moment), contact.axis) / contact.length  # Eq. 92
@@ -90,10 +91,13 @@ def touching_point(body: SpatialBody, contact: ContactSet, up: FloatArray) -> Fl
 
 
 def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
-    """Return the rise of the centre of mass above rest [m]; pivot: a point on the ground, in body axes [m]."""
+    """Return the rise of the centre of mass above its position at rest [m].
+
+    `pivot` is a point on the ground, in body axes [m].
+    """
     arm = body.centre - pivot
     level2 = float(up[0] ** 2 + up[1] ** 2)
-    # 1 - cos(tilt) without cancellation
+    # 1 - cos(tilt), computed without cancellation
     sunk = level2 / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - float(up[2])
     return float(dot(up[:2], arm[:2]) - sunk * arm[2])  # Eq. 86
 
@@ -108,12 +112,12 @@ class SpatialState:
     pivot: FloatArray  # a point at rest on the ground [m]; shape (3,)
     velocity: FloatArray  # angular velocity [rad/s]; shape (3,)
     up: FloatArray  # vertical [-]; shape (3,)
-    field: FloatArray  # gravity less the acceleration of the ground [m/s2]; shape (3,)
-    # of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m]; shape (3,)
+    field: FloatArray  # gravity minus the acceleration of the ground [m/s2]; shape (3,)
+    # for a body on an edge, the vector from the pivot to the other end of the edge [m]; zero on a vertex; shape (3,)
     along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
     def impact(self, body: SpatialBody, contact: ContactSet) -> SpatialImpact:
-        """Return the impact on a contact; its step is from the nearest point at rest."""
+        """Return the impact on a contact. The step of the impact starts at the nearest point at rest."""
         onto = Corner(contact.pivot) if contact.axis is None else Edge(contact.pivot, contact.axis)
         length, pivot = float((self.along * self.along).sum()), self.pivot
         if length > 0.0:
@@ -132,7 +136,7 @@ class SpatialState:
 
 @dataclass(frozen=True, eq=False)
 class Continuation:
-    """Contact and velocity after an impact or a choice by forces."""
+    """Contact and velocity after an impact, or after a choice by forces."""
 
     contact: ContactSet
     velocity: FloatArray  # angular velocity, in body axes [rad/s]; shape (3,)
@@ -174,7 +178,7 @@ def of_impact(
 def of_forces(
     body: SpatialBody, state: SpatialState, touching: tuple[int, ...], preferred: ContactSet | None = None
 ) -> list[Continuation]:
-    """Return the contact sets consistent with forces that are not tensile, a preferred one first."""
+    """Return the contact sets whose forces are not tensile, a preferred contact set first."""
     continuations: list[Continuation] = []
     scale, contacts = norm(state.field), list(candidates(body, touching))
     if preferred is not None:
@@ -194,7 +198,7 @@ def of_forces(
 
 def impulses(body: SpatialBody, state: SpatialState, contact: ContactSet, velocity: FloatArray) -> FloatArray:
     """Return the impulses of the ground in an impact, in the form of `supports` [N s]."""
-    # velocity: after the impact, in body axes
+    # velocity: angular velocity after the impact, in body axes
     new = body.centre - contact.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
     moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90
@@ -205,7 +209,7 @@ def forces(
     body: SpatialBody, contact: ContactSet, velocity: FloatArray, up: FloatArray, field: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return angular acceleration in body axes [rad/s2] and supports [N]."""
-    # field: gravity less the ground's acceleration [m/s2]
+    # field: gravity minus the acceleration of the ground [m/s2]
     arm, inertia = body.centre - contact.pivot, body.inertia_about(contact.pivot)
     rate: FloatArray
     gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)

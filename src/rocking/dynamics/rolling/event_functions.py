@@ -1,4 +1,4 @@
-"""Events that end a step: a gap closes, a round base rolls or lies flat, a contact is released."""
+"""Events that end a step: a gap closes, a round base starts to roll or becomes flat, a contact is released."""
 
 import math
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from rocking.outcome import ContactMode
 from rocking.portable import applied, convolved, inverse, norm, times
 from rocking.portable import dot as dot_of
 
-NOTHING = 1e-13  # ratio to the largest coefficient below which a coefficient is rounding
+NOTHING = 1e-13  # a coefficient counts as rounding below this ratio to the largest coefficient
 
 
 def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> float | None:
-    """Return the first x from 0 to 1 at which a series becomes negative; None if it does not."""
+    """Return the first x from 0 to 1 at which a series becomes negative; None if the series does not."""
     terms = series.tolist()
     if started:
         small = NOTHING * max(map(abs, terms))
@@ -42,7 +42,7 @@ def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> floa
 
 
 def cauchy(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the product of two series, up to the order of the first."""
+    """Return the product of two series, up to the order of the first series."""
     return convolved(left, right[: len(left)])[: len(left)]
 
 
@@ -52,7 +52,7 @@ def dot(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def square_root(square: FloatArray) -> FloatArray:
-    """Return the square root of a series that starts above zero."""
+    """Return the square root of a series with a positive first term."""
     root = [math.sqrt(square[0])]
     for k, term in enumerate(square.tolist()[1:], 1):
         root.append((term - sum(map(mul, root[1:k], root[k - 1 : 0 : -1]))) / (2.0 * root[0]))
@@ -60,32 +60,32 @@ def square_root(square: FloatArray) -> FloatArray:
 
 
 def padded(series: FloatArray, count: int) -> FloatArray:
-    """Return a series cut or padded to a length."""
+    """Return a series, cut or padded with zeros to a length."""
     return np.pad(series, (0, max(0, count - len(series))))[:count]
 
 
-SLOW_OPENING = 1e-9  # acceleration of a gap over gravity that counts as zero, as in the choice of contacts
+SLOW_OPENING = 1e-9  # smaller accelerations of a gap over gravity count as zero, as in the choice of contacts
 START_ROLLING, STOP_ROLLING = 1e-11, 1e-13  # sines of the tilt at which a round base starts and ends rolling
 LANDING, FLAT = 1e-3, 1e-6
-"""Sines of the tilt: at which the passage of a falling rim is predicted, and below which the passage is a landing."""
+"""Sines of the tilt: the passage of a falling rim is predicted at the first; below the second, it is a landing."""
 NEARLY_FLAT = 0.01
-"""Fraction of the slenderness angle below which a round base keeps contact; see `nearly_flat`."""
+"""A round base keeps contact below this fraction of the slenderness angle, see `nearly_flat`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """Series of a step; the unit of time is the step."""
+    """Series of a step. The unit of time is the step."""
 
     length: float  # duration [s]
     velocities: FloatArray  # angular velocity in body axes [rad/s]; shape (order + 1, 3)
     up: FloatArray  # vertical in body axes [-]; shape (order + 1, 3)
-    # gravity less the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
+    # gravity minus the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
     field: FloatArray
-    heading: FloatArray  # direction of the edge in contact on the ground; zero without an edge [-]; shape (3,)
+    heading: FloatArray  # direction of the edge in contact, on the ground [-]; zero without an edge; shape (3,)
 
 
 def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
-    """Return the vertices with gaps that may close: both neighbours of a vertex, or the farthest from an edge."""
+    """Return the vertices whose gaps may close: both neighbours of a vertex, or the vertex farthest from an edge."""
     count = len(body.vertices)
     if contact.mode is ContactMode.VERTEX and contact.points:
         return ((contact.points[0] - 1) % count, (contact.points[0] + 1) % count)
@@ -98,7 +98,7 @@ def watched(body: SpatialBody, contact: ContactSet) -> tuple[int, ...]:
 def first_contact(
     body: SpatialBody, contact: ContactSet, step: Step, touching: tuple[int, ...]
 ) -> tuple[float, int] | None:
-    """Return the first closing of a gap, as time over the step, and its vertex; None without one."""
+    """Return time over the step and vertex of the first closing of a gap; None if no gap closes."""
     contacts: list[tuple[float, int]] = []
     floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
     for index in watched(body, contact):
@@ -110,10 +110,10 @@ def first_contact(
 
 
 def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
-    """Return True if the tilt of a round base, by up [-], is so small that loss of contact is negligible.
+    """Return True if the tilt of a round base is so small that loss of contact is negligible. `up` gives the tilt.
 
-    A spin about the axis can accelerate the rim downwards by more than gravity for milliseconds. The contact then
-    persists without work, and the history contains its duration.
+    A spin about the axis can accelerate the rim downwards by more than gravity for milliseconds. The model then keeps
+    the contact, which does no work, and the history contains the duration of this state.
 
     >>> bottle = SpatialBody.cylinder(0.5, 2.0)
     >>> [nearly_flat(bottle, np.array([sine, 0.0, 1.0])) for sine in (1e-3, 1e-2)]
@@ -123,10 +123,10 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
 
 
 def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
-    """Return the direction of fall of a rim that lands flat; None for a rim that rolls past.
+    """Return the direction of fall of a rim that lands flat; None for a rim that rolls on.
 
-    A rigid rim that passes the flat position closely rolls on without loss, and only an exact passage is an impact.
-    Real bases are not flat to 1e-6: a closer passage is an impact of the full base.
+    A rigid rim that passes close to the flat position rolls on without loss. Only an exact passage would be an impact.
+    Real bases are flat only to about 1e-6, so that a closer passage is treated as an impact of the full base.
     """
     falling = cross(up, velocity)[:2]
     past = abs(float(up[0] * falling[1] - up[1] * falling[0]))  # Eq. 327
@@ -134,27 +134,28 @@ def lands_flat(up: FloatArray, velocity: FloatArray) -> FloatArray | None:
 
 
 def rim_events(body: SpatialBody, contact: ContactSet, step: Step, *, landing: bool = False) -> float | None:
-    """Return the time over the step at which a round base starts to roll, passes `LANDING`, or lies flat."""
+    """Return the time over the step at which a round base starts to roll, passes `LANDING`, or becomes flat."""
     if contact.mode is ContactMode.ROLLING:
         direction = step.up[0, :2]
         size = norm(direction)
         sine = applied(step.up[:, :2], direction) / size
         sine[0] -= LANDING if size > LANDING * (1.0 + 1e-6) else STOP_ROLLING
         return first_zero(sine, started=False)
-    tilt_sine = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # sine of the tilt away from the point
+    tilt_sine = applied(step.up[:, :2], contact.pivot[:2]) / -body.radius  # of the tilt away from the contact point
     flat, steep = tilt_sine.copy(), -tilt_sine
     steep[0] += 2.0 * LANDING if landing else START_ROLLING
-    # after uplift from rest the tilt grows with the cube of time: lower powers are rounding
+    # after uplift from rest, the tilt grows with the cube of time, so that lower powers are rounding errors
     floor = 0.25 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2 / body.radius
     zeros = [first_zero(flat, started=abs(tilt_sine[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]
     return min((at for at in zeros if at is not None), default=None)
 
 
 def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[float, int] | None:
-    """Return the time over the step of the first release, and the index of the released end; None without one."""
+    """Return time over the step and index of the end of the first release; None if there is no release."""
     # An end of an edge is released if its force is tensile and its gap opens. If the gap does not open (friction at
-    # that end keeps it closed, so that neither the edge nor its other end alone is consistent), the edge stays, and the
-    # tensile force appears in `end_forces`: a real corner slips. The index is -1 for the release of all contact.
+    # this end keeps the gap closed, so that neither the edge nor its other end alone is consistent), the edge stays in
+    # contact. The tensile force is then visible in `end_forces`; a real corner would slip. The index is -1 if all
+    # contact is released.
     normal = _normal(body, contact, step)
     lost = first_zero(normal, started=False)
     releases = [] if lost is None else [(lost, -1)]
@@ -170,13 +171,13 @@ def first_release(body: SpatialBody, contact: ContactSet, step: Step) -> tuple[f
 
 
 def end_forces(body: SpatialBody, contact: ContactSet, step: Step, at: float) -> tuple[float, float]:
-    """Return vertical forces per unit mass at both ends of an edge; a negative force is tensile [N/kg]."""
+    """Return the vertical forces per unit mass at both ends of an edge [N/kg]. A negative force is tensile."""
     second = value(_second(body, contact, step).tolist(), at)
     return value(_normal(body, contact, step).tolist(), at) - second, second
 
 
 def _opens(force: FloatArray, opening: FloatArray) -> float | None:
-    """Return the first time at which a force is tensile while its gap opens; None without one."""
+    """Return the first time at which a force is tensile and its gap opens; None if there is none."""
     at = first_zero(force, started=False)
     if at is None:
         return None
@@ -245,11 +246,12 @@ _WHOLE = 1.0 - 1e-12
 def next_uplift(
     body: SpatialBody, ground: SpatialGround, rotation: FloatArray, gravity: float, position: tuple[int, float]
 ) -> tuple[int, float, tuple[int, ...]] | None:
-    """Return stretch, time within it, and edges of the next uplift; None without uplift."""
-    # The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0
-    # for every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0. gravity:
-    # acceleration of gravity [m/s2]. The time is in units of the stretch. The edges are those that the centre of
-    # pressure crosses; empty if it jumps out of the base, and for a round base.
+    """Return the next uplift: stretch, time within the stretch, and edges; None without uplift."""
+    # The centre of pressure is at c - h a / (g + a_z). It is inside if (c - v_i) . n_i (g + a_z) - h n_i . a >= 0 for
+    # every edge; these are polynomials of time. For a round base, b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0.
+    # gravity: acceleration of gravity [m/s2]
+    # The time is in units of the stretch. The result contains the edges that the centre of pressure crosses. It
+    # contains no edges if the centre of pressure jumps out of the base, and for a round base.
     stretch, tau = position
     if stretch >= ground.count:
         return None
@@ -264,7 +266,7 @@ def next_uplift(
 
 
 def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> ContactSet | None:
-    """Return the contact of a body after uplift from rest; None if its force is tensile."""
+    """Return the contact of a body after uplift from rest; None if the contact force is tensile."""
     if body.round:
         pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]
         return complementarity.rim(body, pressure) if state.field[2] < 0.0 else None
@@ -288,7 +290,7 @@ def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, g
         tipping = times(body.inward, level)
         return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)  # Eq. 94
     values = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
-    values[:, 1, : weight.shape[1]] = weight * body.size  # the contact force is compressive
+    values[:, 1, : weight.shape[1]] = weight * body.size  # positive if the contact force is compressive
     for k, w in enumerate(weight):
         values[k, 0] = body.radius**2 * convolved(w, w)
         for axis in range(2):
@@ -298,14 +300,14 @@ def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, g
 
 
 def _within(holds: FloatArray, tau: float, same: float) -> tuple[float, tuple[int, ...]] | None:
-    """Return the first uplift in a stretch and its edges; no edges if uplift is immediate."""
+    """Return the first uplift in a stretch and its edges. There are no edges if the uplift is immediate."""
     rows = [shifted(row.tolist(), tau, 1.0 - tau) if tau > 0.0 else row.tolist() for row in holds]
     if min(row[0] for row in rows) < -same:
         return tau, ()
     falls: list[tuple[float, int]] = []
     for index, row in enumerate(rows):
         at = first_fall(row) if row[0] > 0.0 else (0.0 if _falls_at_once(row) else None)
-        if at is not None and at < _WHOLE:  # the end belongs to the next stretch
+        if at is not None and at < _WHOLE:  # the end of a stretch belongs to the next stretch
             falls.append((at, index))
     if not falls:
         return None

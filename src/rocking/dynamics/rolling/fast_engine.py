@@ -1,4 +1,4 @@
-"""The compiled engine in space: tables of bodies, motions and laws, and its results by name."""
+"""The compiled 3D engine: tables of bodies, motions and laws, and results by name."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from rocking.restitution.space.calibrated import calibrated_position
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 
 PIECE = 1 << 15
-"""Histories per call of the engine, so that only the memory for results grows with their number."""
+"""Histories per call of the engine. With pieces, only the memory for results increases with the number of histories."""
 
 MOST_CORNERS = 64  # largest number of vertices of a base in the compiled engine
 
@@ -29,15 +29,18 @@ STEP = np.dtype([
     ("time", "f8"), ("kind", "f8"), ("contact", "f8"), ("number", "f8"), ("before", "f8"), ("after", "f8"),
     ("rotation", "f8", (3, 3)), ("velocity", "f8", (3,)),
 ])  # fmt: skip
-"""Fields: [s]; -1 for the end of a step, else uplift 0, impact 1, change 2, rest 3; code of the contact; number of its
-edge or vertex; kinetic energies [J]; body axes to axes of the ground [-]; angular velocity in body axes [rad/s]."""
+"""Fields of a step.
+
+Time [s]; kind: -1 end of a step, 0 uplift, 1 impact, 2 change, 3 rest; code of the contact; number of the edge or
+vertex; kinetic energies [J]; rotation from body axes to axes of the ground [-]; angular velocity in body axes [rad/s].
+"""
 
 Bodies = Sequence[SpatialBody | None]
 Results = dict[str, np.ndarray]
 Progress = Callable[[int], None] | None
 
 _FIXED = 2
-_MOMENTS = 117  # of a vertex or an edge for what ked-3d-point needs: 9, 27 and 81
+_MOMENTS = 117  # number of moments per vertex or edge for ked-3d-point: 9 + 27 + 81
 _ROUNDING = 1e-9
 _COMPILED = CompiledEngine(
     "rocking.dynamics._spatial",
@@ -57,7 +60,7 @@ empty_tables, columns_by_name = _COMPILED.empty_tables, _COMPILED.columns_by_nam
 class BatchLaw:
     """Impact law in the form of the compiled engine."""
 
-    law: SpatialImpactLaw | None  # law of the reference engine; None if it depends on the body
+    law: SpatialImpactLaw | None  # law of the reference engine; None if the law depends on the body
     label: str  # name or coefficient
     code: int  # code in the compiled engine
     coefficient: float = 0.0  # r of a fixed coefficient, otherwise 0 [-]
@@ -82,7 +85,7 @@ def batch_law(restitution: Any) -> BatchLaw:
 
 @dataclass(frozen=True, eq=False)
 class RowTable:
-    """Rows of a batch: all combinations of bodies, motions, scales, restitutions and starts."""
+    """Rows of a batch, for all combinations of bodies, motions, scales, restitutions and starts."""
 
     shape: tuple[int, int, int, int, int]  # numbers of bodies, motions, scales, restitutions and starts
     scales: FloatArray  # factors on the motions [-]
@@ -95,7 +98,7 @@ class RowTable:
 
     def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:
         """Return rows (n, 10) of coefficient, scale, horizon, attitude and angular velocity, and indices (n, 3)."""
-        # the indices are body, motion and code of the law; an invalid start is NaN
+        # the indices are body, motion and code of the law; the numbers of an invalid start are NaN
         body, motion, scale, law, start = np.unravel_index(np.arange(first, last), self.shape)
         no_start = np.full(7, np.nan)
         states = [np.concatenate([s.quaternion, s.body_velocity]) if s.valid else no_start for s in self.starts]
@@ -139,7 +142,7 @@ def steps_of(
     start: SpatialStart | None = None,
     settings: SpaceBatchSettings | None = None,
 ) -> np.ndarray:
-    """Return the steps of a history, with fields of `STEP`, identical to those of a batch in the compiled engine."""
+    """Return the steps of a history in the compiled engine, with fields of `STEP`. A batch has identical steps."""
     settings = settings or SpaceBatchSettings()
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
@@ -170,8 +173,9 @@ def _limits(settings: SpaceBatchSettings) -> dict[str, Any]:
 
 def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, FloatArray]:
     """Return tables of bodies."""
-    # Mass, frequency, size, lift, radius, centre, inertia; NaN without a body (shape (n, 17)). First vertex and
-    # number of vertices, zero for a round base (shape (n, 2)). Vertices of all bodies [m] (shape (m, 2)).
+    # Table 1: mass, frequency, size, lift, radius, centre, inertia; NaN without a body (shape (n, 17)).
+    # Table 2: first vertex and number of vertices, zero for a round base (shape (n, 2)).
+    # Table 3: vertices of all bodies [m] (shape (m, 2)).
     numbers, corners = np.full((len(bodies), 17), np.nan), np.zeros((len(bodies), 2), np.int64)
     points: list[FloatArray] = []
     vertex_count = 0
@@ -194,8 +198,8 @@ def _body_table(bodies: Bodies, gravity: float) -> tuple[FloatArray, IntArray, F
 
 
 def _moment_table(bodies: Bodies) -> FloatArray:
-    """Return 117 moments for ked-3d-point per vertex, then per edge."""
-    # NaN without a distribution of mass [kg, kg m, kg m2]
+    """Return 117 moments for ked-3d-point per vertex, followed by 117 moments per edge."""
+    # units kg, kg m, kg m2; NaN without a distribution of mass
     if any(body is not None and body.round for body in bodies):
         raise InvalidValueError(
             'ked-3d-point does not apply to a round base in a batch; use ked-3d, or engine="reference"'
@@ -222,10 +226,11 @@ def _moments(body: SpatialBody) -> FloatArray:
 
 
 def _position_table(bodies: Bodies, codes: set[int]) -> tuple[IntArray, FloatArray]:
-    """Return tables of the impulse position for a landing of the full base, for ked-3d and calibrated-3d."""
-    # First interval and number of intervals for both models (shape (n, 4)); zero for a model without rows, and for
-    # ked-3d without a distribution of mass. First and last azimuth of an interval [rad], and the coefficients of k over
-    # it [-] (shape (m, 3 + HIGHEST)).
+    """Return tables of the impulse position of a landing of the full base, for ked-3d and calibrated-3d."""
+    # Table 1: first interval and number of intervals for both models (shape (n, 4)); zero for a model without rows, and
+    # for ked-3d without a distribution of mass.
+    # Table 2: first and last azimuth of an interval [rad], and the coefficients of k over the interval [-]
+    # (shape (m, 3 + HIGHEST)).
     ranges = np.zeros((len(bodies), 4), np.int64)
     rows: list[list[float]] = []
     for index, body in enumerate(bodies):
@@ -244,8 +249,8 @@ def _position_table(bodies: Bodies, codes: set[int]) -> tuple[IntArray, FloatArr
 
 def _motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
     """Return tables of motions."""
-    # Common degree, 1 or 7. First time, first acceleration, number of stretches (shape (n, 3)). Ends of the
-    # stretches of all motions [s]. Accelerations by motion, stretch, power and axis [m/s2].
+    # 1: common degree, 1 or 7. 2: first time, first acceleration, number of stretches (shape (n, 3)). 3: ends of the
+    # stretches of all motions [s]. 4: accelerations by motion, stretch, power and axis [m/s2].
     highest = max(ground.coefficients.shape[2] for ground in grounds) - 1
     if highest > 7:
         raise InvalidValueError(

@@ -19,10 +19,10 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SpatialGround:
-    """Accelerations of the ground along x, y and z, from time zero on; at rest after the last stretch."""
+    """Accelerations of the ground along x, y and z from time zero. The ground is at rest after the last stretch."""
 
-    times: FloatArray  # ends of the stretches; the first one is zero [s]; shape (n + 1,)
-    # accelerations over each stretch by power; the unit of time is the stretch [m/s2]; shape (n, 3, degree + 1)
+    times: FloatArray  # ends of the stretches [s], starting with zero; shape (n + 1,)
+    # accelerations over every stretch by power [m/s2]; the unit of time is the stretch; shape (n, 3, degree + 1)
     coefficients: FloatArray
 
     @property
@@ -35,7 +35,7 @@ class SpatialGround:
         return float(self.times[-1])
 
     def segment(self, stretch: int, start: float, length: float) -> FloatArray:
-        """Return accelerations by power over a segment of a stretch, which is the unit of time [m/s2]."""
+        """Return accelerations by power over a segment of a stretch [m/s2]. The segment is the unit of time."""
         if stretch >= self.count:
             return np.zeros((3, 1))
         duration = self.times[stretch + 1] - self.times[stretch]
@@ -45,7 +45,7 @@ class SpatialGround:
         return np.array([shifted(row.tolist(), offset, width) for row in self.coefficients[stretch]])
 
     def at(self, time: FloatArray) -> FloatArray:
-        """Return the accelerations at times [s]; at a jump, the value after it [m/s2], shape (n, 3)."""
+        """Return the accelerations at times [s], shape (n, 3) [m/s2]. At a jump, the value after the jump."""
         inside = (time >= 0.0) & (time < self.end)
         k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(self.count - 1, 0))
         if not self.count:
@@ -58,8 +58,8 @@ class SpatialGround:
 def ground_of(
     x: Component = None, y: Component = None, vertical: Component = None, *, until: float = np.inf, scale: float = 1.0
 ) -> SpatialGround:
-    """Return up to three motions [m/s2] on common stretches; None for a component at rest."""
-    # until: end of the ground motion, if before the end of the records [s]
+    """Return up to three motions [m/s2] on common stretches. None means a component at rest."""
+    # until: end of the ground motion [s], if earlier than the end of the records
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]
     if not ends:

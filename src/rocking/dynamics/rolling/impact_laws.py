@@ -1,4 +1,4 @@
-"""Angular velocity after an impact in space: the interface, and its restitution models."""
+"""Angular velocity after a 3D impact: the interface, and its restitution models."""
 
 import math
 import numbers
@@ -18,9 +18,9 @@ from rocking.restitution.space.impact import NO_MATTER
 
 @runtime_checkable
 class SpatialImpactLaw(Protocol):
-    """Interface of the restitution in space: the engine chooses the contact, the law returns the velocity after impact.
+    """Interface of the 3D restitution. The engine chooses the contact, and the law returns the velocity after impact.
 
-    Any object with these two members is accepted.
+    Any object with the two members `label` and `velocity_after` is accepted.
     """
 
     @property
@@ -36,19 +36,20 @@ class SpatialImpactLaw(Protocol):
         body : SpatialBody
             The body.
         impact : SpatialImpact
-            Angular velocity and pivot before, the corner or edge in contact after, and the vertical, in body axes.
+            Angular velocity and pivot before the impact, corner or edge in contact after the impact, and the vertical,
+            in body axes.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity after, in body axes; along the edge for an impact on an edge [rad/s].
+            Angular velocity after the impact in body axes [rad/s]. It is along the edge for an impact on an edge.
         """
         ...
 
 
 @dataclass(frozen=True)
 class ModelLaw:
-    """A model of `rocking.restitution.space` as the law of a history."""
+    """A model of `rocking.restitution.space` as the impact law of a history."""
 
     model: SpatialModel
 
@@ -66,10 +67,11 @@ PLASTIC = SpatialHousner()
 
 
 class FixedSpatial:
-    """Fixed coefficient: the direction of the projection with ``|w+| = r |w-|``, as in the plane.
+    """Fixed coefficient: the velocity has the direction of the projection, and ``|w+| = r |w-|`` as for plane bodies.
 
     The law never creates energy: it limits the energy of a body that lands on its longer lever. A vertex that only
-    grazes the ground loses the same fraction, unlike a real impact; use the law for rotation about edges.
+    grazes the ground loses the same fraction of velocity, unlike in a real impact. Therefore, use this law for rotation
+    about edges.
     """
 
     def __init__(self, coefficient: float) -> None:
@@ -91,7 +93,7 @@ class FixedSpatial:
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:
-    """Return the impact law of a name, a coefficient or a law."""
+    """Return the impact law for the name of a model, a coefficient or a law."""
     if isinstance(restitution, (str, SpatialModel)):
         model = spatial_model(restitution)
         if model.needs_solid and body is not None and body.matter is None:

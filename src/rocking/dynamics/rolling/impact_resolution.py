@@ -21,12 +21,12 @@ from rocking.dynamics.rolling.impact_laws import SpatialImpactLaw
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
-CLOSED = 1e-12  # gap over the size of a body that counts as closed
+CLOSED = 1e-12  # a smaller gap over the size of a body counts as closed
 
 
 def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:
     """Return the contact and velocity after an impact on a set of vertices."""
-    # if all contacts are tensile (a fast grazing vertex sticks under tension only), the one with the smallest tension
+    # if all contacts are tensile (a fast grazing vertex sticks only under tension), choose the smallest tension
     continuations = of_impact(body, state, touching, law)
     return continuations[0] if continuations else _min_tension(body, state, touching)
 
@@ -41,29 +41,29 @@ def _min_tension(body: SpatialBody, state: SpatialState, touching: tuple[int, ..
         push = impulses(body, state, contact, velocity)
         if best is None or push.min() > best.supports.min():
             best = Continuation(contact, velocity, push)
-    assert best is not None  # an edge or a face opens no gap
+    assert best is not None  # an edge or a face always qualifies, because no other gap closes
     return best
 
 
 def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
-    """Return the contact after impacts that accumulate at one time: the largest set of touching points."""
-    # A body that turns about the vertical on one corner while the next corner chatters comes to rest on both: without
-    # slip this is the limit. The impulses show the tension: a real corner slips. The result is an edge or a face after
-    # a plastic impact.
+    """Return the contact after an accumulation of impacts at one time: the largest set of touching points."""
+    # A body may turn about the vertical on one corner while the next corner chatters. Without slip, the limit is rest
+    # on both corners. The impulses then contain the tension; a real corner would slip. The result is an edge or a face
+    # after a plastic impact.
     contact = next(candidates(body, touching))
     velocity = state.plastic(body, contact)
     return Continuation(contact, velocity, impulses(body, state, contact, velocity))
 
 
 def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
-    """Return a round base at rest on its face, since rolling never ends; None if it would lift at once."""
+    """Return a round base at rest on its face, because rolling never ends; None if the base would lift at once."""
     flat, still = complementarity.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
     return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
 
 def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
-    """Return the contact of a round base that lands flat, its far side or its face, and the velocity after."""
+    """Return the contact of a round base that lands flat (its far side or its face), and the velocity after landing."""
     far = complementarity.rim(body, -state.pivot[:2])
     push = impulses(body, state, far, state.plastic(body, far))
     velocity = law.velocity_after(body, state.impact(body, far))
@@ -92,8 +92,8 @@ def settled(
 
 
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[ContactSet, tuple[int, ...]]:
-    """Return the contact of initial conditions, and the touching points: the lowest points stay in contact."""
-    # the face for a body at rest
+    """Return contact and touching points for initial conditions. The lowest points stay in contact."""
+    # a body at rest stands on its face
     if body.round:
         return _started_round(body, velocity, up), ()
     height = applied(body.vertices, up)

@@ -1,4 +1,4 @@
-"""Bodies in space that rock about edges and vertices or roll on a rim, and do not slip."""
+"""3D bodies that rock about edges and vertices or roll on a rim, and do not slip."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from rocking.dynamics.settings import Settings
 
 
 class SpaceRocking(SpatialMechanics):
-    """Rocking and rolling of a body in space."""
+    """Rocking and rolling of a 3D body."""
 
     name, title, subject = "space", "a body in space", "a body in space without friction"
     settings = SpaceSettings

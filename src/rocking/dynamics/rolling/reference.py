@@ -1,4 +1,4 @@
-"""The reference engine in space: Taylor steps, events located to rounding, contact by complementarity."""
+"""The 3D reference engine: Taylor steps, event times exact to rounding, contact by complementarity."""
 
 import math
 from collections.abc import Iterable
@@ -28,14 +28,14 @@ from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
-_PATIENCE, _MAX_LATE_STEPS = 300.0, 10_000  # largest time over 1 / p, and number of steps, after the end
+_PATIENCE, _MAX_LATE_STEPS = 300.0, 10_000  # limits after the end of a history: time over 1 / p, and number of steps
 
 
-Ending = tuple[Outcome, Status] | None  # end of a history; None before
+Ending = tuple[Outcome, Status] | None  # end of a history; None before the end
 
 
 class SpatialReference:
-    """Engine of one history."""
+    """Reference engine of one history."""
 
     def __init__(
         self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: SpaceSettings
@@ -50,16 +50,16 @@ class SpatialReference:
         self.time, self.stretch = 0.0, 0
         self.ground_point = np.zeros(2)
         self.touching: tuple[int, ...] = ()
-        self.at_once, self.moment = 0, -1.0  # consecutive events at one time
-        self.late = 0  # steps after the end
+        self.at_once, self.moment = 0, -1.0  # number of consecutive events at one time, and this time
+        self.late = 0  # number of steps after the end
         self.landing = False  # True while a round base falls flat
-        self.sticks = False  # True after accumulated impacts on this edge: neither end is released
+        self.sticks = False  # True after an accumulation of impacts on this edge; its ends are then not released
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
     def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
         """Return the history from an attitude on the ground."""
-        # horizon: duration, extended while the outcome is open [s]
+        # horizon: duration [s]; extended if the outcome is not yet determined
         self.horizon = horizon
         self.integration_state = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
@@ -72,7 +72,7 @@ class SpatialReference:
     def _start(self) -> None:
         contact, touching = started(self.body, self.velocity, self._up)
         self.contact = contact
-        # the upright base has its origin at that of the ground; the body is tilted from this position
+        # the body is tilted from the upright position, in which the origins of base and ground coincide
         self.ground_point = applied(attitude.matrix(attitude.flat(self.quaternion)), contact.pivot)[:2]
         if contact.mode is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
@@ -85,7 +85,7 @@ class SpatialReference:
             self._note(SpatialEventKind.UPLIFT, 0.0, self._kinetic())
 
     def _rest(self) -> Ending:
-        """Rest until the next uplift, or to the end."""
+        """Keep the body at rest until the next uplift, or to the end."""
         self.velocity = np.zeros(3)
         rotation = attitude.matrix(self.quaternion)
         tau = 0.0
@@ -108,7 +108,7 @@ class SpatialReference:
         return self._guard()
 
     def _move(self) -> Ending:
-        """Advance to the end of the step, or to the first event before it."""
+        """Advance to the end of the step, or to an earlier event."""
         step, piece, is_last = self._step()
         self.late += self._final is not False
         if step is None or piece is None:
@@ -128,7 +128,7 @@ class SpatialReference:
             [1.0, *(e[0] for e in (landing, release) if e is not None), *([] if rim_event is None else [rim_event])]
         )
         self._arrive(piece, arrival, step.up[:, 2], is_last=is_last and arrival == 1.0)
-        if self._up[2] <= 0.0:  # the body lies before any other event
+        if self._up[2] <= 0.0:  # the body has fallen before any other event
             return self._ended()
         if landing is not None and landing[0] == arrival:
             return self._impact(landing[1])
@@ -139,7 +139,7 @@ class SpatialReference:
         return self._stepped(step, arrival, held=is_held)
 
     def _stepped(self, step: Step, at: float, *, held: bool) -> Ending:
-        """Check the state at the end of a step without event."""
+        """Check the state at the end of a step without an event."""
         pulls = self.contact.mode is ContactMode.EDGE
         pulls = pulls and min(event_functions.end_forces(self.body, self.contact, step, at)) < -self.pull
         self.integration_state.held += step.length if pulls or held else 0.0
@@ -156,7 +156,7 @@ class SpatialReference:
         rate = self.p + norm(self.velocity)
         if self.contact.mode is ContactMode.ROLLING:
             up = self._up
-            # at most half of the fall to flat, where the contact moves around the rim fast
+            # at most half of the fall to the flat position, near which the contact moves fast around the rim
             rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
         length, is_last = self.settings.longest_step / rate, False
         if self.stretch < self.ground.count:
@@ -247,7 +247,7 @@ class SpatialReference:
         self.landing = False
         state = self._state()
         if rolls:
-            self.contact = complementarity.rim(self.body, state.pivot[:2])  # nearly flat: the point of contact is fixed
+            self.contact = complementarity.rim(self.body, state.pivot[:2])  # nearly flat base: fixed contact point
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
@@ -255,7 +255,7 @@ class SpatialReference:
     def _land(
         self, choice: Continuation, touching: tuple[int, ...], height: float = 0.0, *, piled: bool = False
     ) -> Ending:
-        """Continue after an impact; height: potential energy lost in lying flat [J]."""
+        """Continue after an impact. `height` is the potential energy lost when the base becomes flat [J]."""
         before = self._kinetic() + (self._potential() if self.contact.mode is ContactMode.ROLLING else height)
         self._stand(choice.contact)
         self.velocity = choice.velocity
@@ -288,7 +288,7 @@ class SpatialReference:
         self.moment = self.time
         if self.at_once > _STUCK or len(self.integration_state.events) > self.settings.most_events:
             return Outcome.FAILED, Status.TOO_MANY_EVENTS
-        # a base with many vertices may have no step without impact: the outcome is checked here too
+        # a base with many vertices may have no step without impact; therefore, the outcome is also checked here
         if self._final is False or self.contact.mode is ContactMode.REST:
             return None
         return self._ended()
@@ -319,7 +319,7 @@ class SpatialReference:
 
     @property
     def _final(self) -> bool | None:
-        """True after the end of the motion; None after the longest extension."""
+        """True after the end of the motion; None after the longest allowed extension."""
         end = max(self.horizon, self.ground.end)
         if self.time > end + _PATIENCE / self.p or self.late > _MAX_LATE_STEPS:
             return None
@@ -340,5 +340,5 @@ class SpatialReference:
 
     @property
     def _weak(self) -> bool:
-        """True if the energy is negligible; the absolute value excludes a falling body."""
+        """True if the energy is negligible. The absolute value is used, so that a falling body is excluded."""
         return self._kinetic() + abs(self._potential()) < self.weak

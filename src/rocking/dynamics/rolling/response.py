@@ -1,4 +1,4 @@
-"""Response of a body in space: attitude, contact, impacts, energy, outcome, direction."""
+"""Response of a 3D body: attitude, contact, impacts, energy, outcome, direction."""
 
 import math
 from dataclasses import dataclass, replace
@@ -39,13 +39,18 @@ SPATIAL_IMPACT = np.dtype([
     ("time", "f8"), ("energy_before", "f8"), ("energy_after", "f8"), ("impulse", "f8"), ("pull", "f8"),
     ("contact", "U8"), ("vertices", "U64"),
 ])  # fmt: skip
-"""Fields of `SpatialResponse.impacts`: [s], [J], [J], vertical impulse [N s], largest tensile impulse without slip
-[N s], contact after, and its vertices."""
+"""Fields of `SpatialResponse.impacts`.
+
+Time [s], kinetic energy before and after [J], vertical impulse [N s], largest tensile impulse without slip [N s],
+contact after the impact, and vertices of the contact.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SpatialResponse(ResponseBase):
-    """Response of a body in space without friction; costly quantities are computed at first access.
+    """Response of a 3D body without friction.
+
+    Quantities that take long to compute are computed at first access.
 
     Parameters
     ----------
@@ -58,15 +63,15 @@ class SpatialResponse(ResponseBase):
     settings : SpaceSettings
         Settings of the integration.
     time : ndarray
-        Times of the samples, up to the end or until the body lies [s].
+        Times of the samples, up to the end or until the body has fallen [s].
     trajectory : SpatialTrajectory
         Result of the engine.
     end : float
-        End of the response; the engine may continue beyond it to decide the outcome [s].
+        End of the response [s]. The engine may continue after this time to determine the outcome.
     components : tuple
         Motions along x, y and upwards; None for a component at rest.
     ends_early : bool
-        True if the response ends 15 / p after the motion because no impact lost energy in that time.
+        True if the response ends 15 / p after the motion because impacts lost no energy in this time.
     scale : float
         Factor on the motion [-].
     """
@@ -130,7 +135,7 @@ class SpatialResponse(ResponseBase):
 
     @cached_property
     def intervals(self) -> list[tuple[float, float, ContactMode, tuple[int, ...]]]:
-        """Intervals of one contact: start and end [s], regime, and vertices in contact."""
+        """Intervals with constant contact: start and end [s], regime, and vertices in contact."""
         rows: list[tuple[float, float, ContactMode, tuple[int, ...]]] = []
         for piece in self.trajectory.pieces:
             if rows and piece.start >= self.end:
@@ -158,17 +163,17 @@ class SpatialResponse(ResponseBase):
 
     @property
     def peak_tilt(self) -> float:
-        """Largest tilt, also between the samples; a quarter turn after overturning [rad]."""
+        """Largest tilt, including times between the samples; a quarter turn after overturning [rad]."""
         return self.trajectory.peak_tilt
 
     @cached_property
     def overturning_direction(self) -> float:
-        """Direction of overturning, from x towards y; NaN without overturning [rad]."""
+        """Direction of overturning, from x towards y [rad]; NaN without overturning."""
         return self.trajectory.direction
 
     @property
     def overturned_over(self) -> str:
-        """Edge, vertex or rim of overturning as text; empty without overturning."""
+        """Edge, vertex or rim over which the body overturned, as text; empty without overturning."""
         over = self.trajectory.overturned_over
         if over is None or not over.points:
             return "" if over is None else "its rim"
@@ -176,7 +181,7 @@ class SpatialResponse(ResponseBase):
 
     @cached_property
     def still_rocking(self) -> bool:
-        """True if the body has not overturned and still moves at the end; `impacts` excludes later impacts."""
+        """True if the body has not overturned and still moves at the end. `impacts` excludes later impacts."""
         return self.outcome is Outcome.ROCKED and int(self.at(self.end).contact[0]) != ContactMode.REST.code
 
     @property
@@ -223,7 +228,7 @@ class SpatialResponse(ResponseBase):
 
     @cached_property
     def cut_impacts(self) -> int:
-        """Number of impacts at which the model moves the impulse from beyond the new foot to the foot."""
+        """Number of impacts with an impulse position beyond the new foot, which the model moves to the foot."""
         cut = getattr(getattr(self.law, "model", None), "cut", None)
         if cut is None or self.body.matter is None:
             return 0
@@ -233,7 +238,7 @@ class SpatialResponse(ResponseBase):
                 break
             if event.kind is not SpatialEventKind.IMPACT:
                 continue
-            if self.body.round:  # perpendicular to the axis of rotation
+            if self.body.round:  # direction perpendicular to the axis of rotation
                 before = self.at(np.nextafter(event.time, 0.0))
                 spin = applied(before.rotation[0].T, before.angular_velocity[0])
                 step = self.body.radius / norm(spin[:2]) * np.array([spin[1], -spin[0], 0.0])
@@ -257,19 +262,20 @@ class SpatialResponse(ResponseBase):
     def energy(self) -> ResponseEnergy:
         """Kinetic and potential energy, work of the ground and losses at the samples [J].
 
-        The work of the ground is the integral of -m a_g . v_C, by Gauss quadrature on every step of the engine; the
-        losses are those of the impacts. No term is computed from the balance, so that the balance is a check.
+        The work of the ground is the integral of -m a_g . v_C, by Gauss quadrature over every step of the engine. The
+        losses are the losses of the impacts. No term is computed from the energy balance, so that the balance is a
+        check.
         """
         impacts = self.trajectory.impacts
         lost = np.concatenate([[0.0], np.cumsum([event.before - event.after for event in impacts])])
         lost = lost[np.searchsorted([event.time for event in impacts], self.time, side="right")]
         potential = self.body.mass * self.settings.gravity * self.states.rise
-        # an impact at the start comes before the first sample
+        # an impact at the start is before the first sample
         return ResponseEnergy(self.time, self.states.kinetic, potential, self._work, lost - lost[0])
 
     @property
     def _work(self) -> FloatArray:
-        """Work of the ground up to each sample [J]."""
+        """Work of the ground up to every sample [J]."""
         work, total, body = np.zeros(self.time.size), 0.0, self.body
         for piece in self.trajectory.pieces:
             first, last = np.searchsorted(self.time, [piece.start, piece.end], side="left")
@@ -304,7 +310,7 @@ class SpatialResponse(ResponseBase):
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or outside the response by more than rounding.
+            If a time is not finite, or is outside the response by more than rounding.
         """
         times = np.atleast_1d(self._times_within(time, self.trajectory.pieces[-1].end))
         return states_of(self.body, self.trajectory, times)
@@ -384,16 +390,16 @@ def response_in_space(
     scale: float = 1.0,
     duration: float | None = None,
 ) -> SpatialResponse:
-    """Return the response of a body in space without friction; on ground at rest without components."""
-    # duration [s]: by default the motion and 15 / p after it; while the body still rocks with losses, until it rests or
-    # lies, at most 300 / p after the motion
+    """Return the response of a 3D body without friction. Without components, the ground is at rest."""
+    # duration [s]: by default to 15 / p after the motion; if the body still rocks with losses, until it rests or
+    # has fallen, at most to 300 / p after the motion
     spatial_body = SpatialBody.of(body)
     scale = checks.within("scale", scale, -1e6, 1e6)
     start.check_grounded()
     start = started(start, spatial_body.frequency(conventions.g))
     p, motions = spatial_body.frequency(settings.gravity), [motion for motion in components if motion is not None]
     if motions and not all(hasattr(motion, "duration") for motion in motions):
-        ground_of(*components)  # an error that names the invalid component
+        ground_of(*components)  # raises an error with the name of the invalid component
     default_length = max(motion.duration for motion in motions) + _AFTER / p if motions else _LONG / p
     length = default_length if duration is None else checks.positive("duration", duration, "s")
     ground = ground_of(*components, until=length if motions else np.inf, scale=scale)
@@ -424,12 +430,12 @@ def _rocks(history: SpatialTrajectory) -> bool:
 
 
 def _loses_energy(history: SpatialTrajectory, since: float) -> bool:
-    """Return True if an impact after a time loses energy; otherwise a rolling rim never comes to rest."""
+    """Return True if an impact after a time loses energy. Without such a loss, a rolling rim never comes to rest."""
     return any(event.after < event.before for event in history.impacts if event.time > since)
 
 
 def started(start: SpatialStart, pace: float) -> SpatialStart:
-    """Return a start after checks of its ranges; pace: frequency parameter, or sqrt(g / size) [1/s]."""
+    """Return a start after checking its ranges. `pace` is the frequency parameter, or sqrt(g / size) [1/s]."""
     max_velocity = 100.0 * pace
     tilt = checks.within("tilt", start.tilt, 0.0, 0.5 * math.pi, unit="rad", open_high=True, hint="in radians")
     azimuth, yaw = (checks.number(name, getattr(start, name), "rad") for name in ("azimuth", "yaw"))

@@ -1,7 +1,7 @@
 """Taylor steps of a body that turns about a fixed point or edge, and of a round base that rolls on its rim.
 
-In body axes every term is a product of series with the angular velocity; a rolling rim needs one linear solution per
-order. The order of additions is fixed, without BLAS, so that results are equal on all processors.
+In body axes, every term is a product of a series and the angular velocity. A rolling rim needs one linear solution per
+order. Additions have a fixed order and do not use BLAS, so that results are equal on all processors.
 """
 
 from collections.abc import Iterable, Sequence
@@ -17,34 +17,34 @@ from rocking.portable import applied, dot, inverse, norm, powers
 
 
 def cross_of(products: Sequence[Sequence[float]]) -> list[float]:
-    """Return the vector product of two vectors, or a term of its series, from the products of their components."""
+    """Return the vector product of two vectors, or a term of its series, from products of their components."""
     (_, xy, xz), (yx, _, yz), (zx, zy, _) = products
     return [yz - zy, zx - xz, xy - yx]
 
 
 def turned(products: Sequence[Sequence[float]], factor: float) -> list[float]:
-    """Return a term of q (0, w) / 2, the rate of a quaternion."""
+    """Return a term of the rate of a quaternion, q (0, w) / 2."""
     (sx, sy, sz), (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = products
     half = 0.5 * factor
     return [-half * (xx + yy + zz), half * (sx + yz - zy), half * (sy + zx - xz), half * (sz + xy - yx)]  # Eq. 22
 
 
 def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
-    """Return the vertical, G and its derivatives in body axes at the start of a step."""
-    # they rotate backwards, v' = v x w, and each derivative of G contains that of the lower one
+    """Return the vertical, the field G and the derivatives of G in body axes at the start of a step."""
+    # these vectors rotate backwards, v' = v x w; a derivative of G contains the next lower derivative
     back, factorials = matrix(quaternion).T, np.multiply.accumulate([1.0, *range(1, field.shape[1])])
     vectors = [back[:, 2], *[applied(back, g) for g in (field * factorials).T]]
     return [float(x) for vector in vectors for x in vector.tolist()]
 
 
 class PivotFlow:
-    """Motion about a fixed point of the body [m], or about a horizontal axis through this point, in body axes."""
+    """Motion about a fixed point of the body [m], or about a horizontal axis through this point; in body axes."""
 
     def __init__(self, body: SpatialBody, pivot: FloatArray, axis: FloatArray | None = None) -> None:
         inertia = body.inertia_about(pivot)
         about = None if axis is None else np.outer(axis, axis) / dot(axis, applied(inertia, axis))
         self.mobility = inverse(inertia) if about is None else about
-        self.gyroscopic = inertia  # the angular momentum of w x I w
+        self.gyroscopic = inertia  # inertia for the term w x I w
         self.arm = body.mass * (body.centre - pivot)
 
     def series(
@@ -58,7 +58,7 @@ class PivotFlow:
             rows[k] = [*w, *[sum(map(mul, row, w)) for row in inertia], *state]
             if k == order:
                 break
-            # term k of the products with w of I w, q, the vertical, G and its derivatives
+            # term k of the products of w with I w, q, the vertical, G and the derivatives of G
             products = np.add.reduce(rows[: k + 1, 3:, None] * rows[k::-1, None, :3], axis=0).tolist()
             (gx, gy, gz), (fx, fy, fz), factor = cross_of(products[:3]), state[7:10], length / (k + 1)
             torque = [gx + y * fz - z * fy, gy + z * fx - x * fz, gz + x * fy - y * fx]  # Eq. 22
@@ -74,9 +74,9 @@ class PivotFlow:
 
 
 def terms_needed(rate: float, most: int) -> int:
-    """Return the number of terms above rounding of an exponential series.
+    """Return the number of terms of an exponential series that are above rounding.
 
-    rate: rate of change times the length of the step [-].
+    `rate` is the rate of change times the length of the step [-].
 
     >>> terms_needed(0.01, 30), terms_needed(1.0, 30)
     (8, 20)
@@ -89,7 +89,7 @@ def terms_needed(rate: float, most: int) -> int:
 
 
 def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float, tolerance: float) -> float:
-    """Return the fraction of a step, 0 (not finite) to 1, over which the last two terms stay below a tolerance."""
+    """Return the fraction of a step over which the last two terms are below a tolerance (0 if not finite)."""
     if not (np.isfinite(quaternions).all() and np.isfinite(velocities).all()):
         return 0.0
     fraction, last = 1.0, len(quaternions) - 1
@@ -109,7 +109,7 @@ def value(series: FloatArray, at: float) -> FloatArray:
 
 
 def stretched(series: FloatArray, fraction: float) -> FloatArray:
-    """Return series over a fraction of their unit of time as series over that fraction."""
+    """Return series over a fraction of their unit of time, with this fraction as the new unit."""
     return series if fraction == 1.0 else series * powers(fraction, len(series))[:, None]
 
 
@@ -122,7 +122,7 @@ def _term(left: Terms, right: Terms, k: int) -> float:
 
 
 def _back(vector: list[Terms], k: int) -> list[Terms]:
-    """Return the coefficients of each component from the power k downwards."""
+    """Return the coefficients of every component, from power k down to power 0."""
     return [series[k::-1] for series in vector]
 
 
@@ -142,7 +142,7 @@ def _add(series: list[Terms], terms: Iterable[float]) -> None:
 
 
 class _Series:
-    """Series of one step, one list per component, extended order by order."""
+    """Series of one step: one list per component, extended one order at a time."""
 
     def __init__(self, state: tuple[FloatArray, FloatArray, FloatArray], field: FloatArray) -> None:
         def empty(count: int) -> list[Terms]:
@@ -173,7 +173,7 @@ class RollingFlow:
         field: FloatArray,
         order: int,
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return the Taylor series of a step: attitude, velocity, vertical, and place of contact on the ground (2,)."""
+        """Return the Taylor series of a step: attitude, velocity, vertical, and contact point on the ground (2,)."""
         s = _Series(state, field)
         for k in range(order):
             self._contact(s, k)
@@ -244,7 +244,7 @@ class RollingFlow:
             _add(row, [a + mass * b for a, b in zip(base, steiner, strict=True)])
         if k == 0:
             self.solve = inverse(np.array(s.inertia)[:, :, 0]).tolist()
-        # coupling of earlier accelerations with the variable inertia
+        # coupling of lower-order accelerations with the variable inertia
         earlier = _back(s.spin, k)
         coupling = [
             sum(map(mul, a[1:], u)) + sum(map(mul, b[1:], v)) + sum(map(mul, c[1:], w))

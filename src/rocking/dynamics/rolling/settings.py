@@ -1,4 +1,4 @@
-"""Settings of the integration of a body in space without slip, for one history or many."""
+"""Settings of the integration of a 3D body without slip, for one history or many."""
 
 from dataclasses import dataclass
 
@@ -7,17 +7,17 @@ from rocking.dynamics.settings import SHORTEST_STEP, Settings, counted, ranged
 
 @dataclass(frozen=True)
 class SpaceSettings(Settings):
-    """Settings of the integration of one history of a body in space without `friction`.
+    """Settings of the integration of one history of a 3D body without `friction`.
 
     Parameters
     ----------
     gravity, most_events
-        As for all mechanics, `Settings`.
+        See `Settings`; the same for all mechanics.
     rest_speed : float
-        Speed over sqrt(g R); a vertex that opens more slowly and would close at once stays in contact. Its square is
-        the energy over that of overturning at which a body comes to rest [-].
+        Speed over sqrt(g R) [-]. A vertex that opens more slowly and would close at once stays in contact. The body
+        comes to rest if the ratio of its energy to the energy of overturning is below the square of this speed.
     longest_step : float
-        Longest Taylor step as p times time [-].
+        Longest Taylor step, as the product of p and time [-].
     order : int
         Highest order of the Taylor series, from 2 to 40.
     tolerance : float
@@ -33,16 +33,16 @@ class SpaceSettings(Settings):
 
 @dataclass(frozen=True)
 class SpaceBatchSettings(Settings):
-    """Settings of the integration of many histories of bodies in space without `friction`.
+    """Settings of the integration of many histories of 3D bodies without `friction`.
 
     Parameters
     ----------
     gravity, most_events, rest_speed
-        As for one history, `SpaceSettings`.
+        See `SpaceSettings`; the same as for one history.
     longest_step : float
-        Longest Taylor step as p + ``|angular velocity|`` times time [-].
+        Longest Taylor step, as the product of p + ``|angular velocity|`` and time [-].
     tolerance : float
-        As for one history, `SpaceSettings` [-].
+        See `SpaceSettings`; the same as for one history [-].
     """
 
     most_events: int = counted(100_000, 1, 10_000_000)

@@ -1,4 +1,4 @@
-"""Histories as polynomials between events, states at any time, and the record of a history."""
+"""Histories as polynomials between events, states at any time, and record of a history."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -18,7 +18,7 @@ from rocking.portable import applied, dot, powers, times
 
 
 class SpatialEventKind(Enum):
-    """Kind of an event in space."""
+    """Kind of an event of a 3D body."""
 
     UPLIFT = "lifted from rest"
     IMPACT = "impact"
@@ -35,7 +35,7 @@ class SpatialEvent:
     contact: ContactSet  # contact after the event
     before: float  # kinetic energy before and after [J]
     after: float
-    # vertical impulses of an impact: at the vertex, at both ends of the edge, or in the form of `supports` [N s]
+    # vertical impulses of an impact [N s]: at the vertex, at both ends of the edge, or in the form of `supports`
     impulses: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
@@ -43,14 +43,15 @@ class SpatialEvent:
 class StepPiece:
     """Step of the engine."""
 
-    start: float  # start, and unit of time of the series [s]
+    # start of the step, and unit of time of the series [s]
+    start: float
     length: float
-    until: float  # end in that unit [-]
+    until: float  # end of the step in this unit [-]
     # quaternions, velocities: attitude [-] and angular velocity in body axes [rad/s], coefficients by power; shape
     # (order + 1, 4)
     quaternions: FloatArray
     velocities: FloatArray
-    places: FloatArray  # position of the pivot or contact on the ground, coefficients by power [m]; shape (n, 2)
+    places: FloatArray  # position of the pivot or contact on the ground [m], coefficients by power; shape (n, 2)
     contact: ContactSet
 
     @property
@@ -77,11 +78,11 @@ class SpatialTrajectory:
     # largest angle between the axis of the body and the vertical [rad], and its time [s]
     peak_tilt: float
     peak_time: float
-    # last passage of the centre of mass over the contact; NaN without overturning [s]
+    # last passage of the centre of mass over the contact [s]; NaN without overturning
     overturning_time: float
     overturned_over: ContactSet | None  # edge or vertex of overturning
-    # total time with a tensile force at an end of an edge that friction keeps closed (a real end slips), or at a nearly
-    # flat rim (a real rim hops) [s]
+    # total time [s] with a tensile force, at an end of an edge that friction keeps closed (a real end slips) or at a
+    # nearly flat rim (a real rim hops)
     held: float
     engine: str  # engine and method
 
@@ -127,7 +128,7 @@ class States:
 
     @property
     def min_gap(self) -> FloatArray:
-        """Height of the lowest vertex or point of the rim over the ground; negative for penetration [m]."""
+        """Height of the lowest vertex or point of the rim over the ground [m]; negative for penetration."""
         up = self.rotation[:, 2]
         if self.body.round:
             lowest = -self.body.radius * np.sqrt(np.square(up[:, :2]).sum(axis=1))
@@ -149,14 +150,14 @@ class States:
 
     @property
     def rise(self) -> FloatArray:
-        """Rise of the centre of mass above rest [m]."""
+        """Rise of the centre of mass above its position at rest [m]."""
         up, arm = self.rotation[:, 2], self.body.centre - self.pivot
         sunk = 2.0 * np.square(self.quaternion[:, 1:3]).sum(axis=1)  # 1 - cos(tilt)
         return np.asarray((up[:, :2] * arm[:, :2]).sum(axis=1) - sunk * arm[:, 2])  # Eq. 86
 
 
 def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray) -> States:
-    """Return the states of a history; at an impact, after it."""
+    """Return the states of a history at times. At an impact, the state after the impact."""
     pieces = trajectory.pieces
     starts = np.array([piece.start for piece in pieces])
     indices = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(pieces) - 1)
@@ -176,7 +177,7 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
 
 
 def pivots(body: SpatialBody, piece: StepPiece, quaternions: FloatArray) -> FloatArray:
-    """Return points in contact in body axes [m]: the pivot, or the lowest points of a rolling rim."""
+    """Return the contact points in body axes [m]: the pivot, or the lowest points of a rolling rim."""
     if piece.contact.mode is not ContactMode.ROLLING:
         return np.broadcast_to(piece.contact.pivot, (len(quaternions), 3))
     level = attitude.matrix(quaternions)[:, 2, :2]
@@ -203,7 +204,7 @@ class IntegrationState:
         self, piece: StepPiece, until: float, up: FloatArray, pivot: FloatArray, vertical: FloatArray | None = None
     ) -> None:
         """Add a step that ends at the fraction `until` of its length."""
-        # vertical: series of the cosine of the tilt, None for a body at rest
+        # vertical: series of the cosine of the tilt; None for a body at rest
         if until > 0.0 or not self.pieces:
             self.pieces.append(replace(piece, until=until))
         if vertical is None:
@@ -217,7 +218,7 @@ class IntegrationState:
     def ended(
         self, time: float, quaternion: FloatArray, velocity: FloatArray, pivot: FloatArray, final: bool | None
     ) -> tuple[Outcome, Status] | None:
-        """Return outcome and status of a body that lies or cannot overturn any more; None otherwise."""
+        """Return outcome and status of a body that has fallen or cannot overturn any more; None otherwise."""
         up = attitude.matrix(quaternion)[2]
         if up[2] <= 0.0:
             self.over_time = time if math.isnan(self.over_time) else self.over_time
@@ -232,7 +233,7 @@ class IntegrationState:
         return None
 
     def outcome_of_flight(self, pivot: FloatArray, up: FloatArray) -> Outcome:
-        """Return the outcome of a loss of contact: overturning if the centre of mass is beyond the support."""
+        """Return the outcome after a loss of contact: overturning if the centre of mass is beyond the support."""
         return Outcome.OVERTURNED if _beyond_contact(self.body, up, pivot) > 0.0 else Outcome.FAILED
 
     def trajectory(self, outcome: Outcome, status: Status) -> SpatialTrajectory:
@@ -276,5 +277,5 @@ class IntegrationState:
 def _beyond_contact(body: SpatialBody, up: FloatArray, pivot: FloatArray) -> float:
     """Return a value > 0 if the centre of mass is beyond the contact in the direction of tilt [m]."""
     arm = body.centre - pivot
-    # horizontal parts of arm and axis: a . b - (a . Z)(b . Z)
+    # product of the horizontal parts of arm and axis: a . b - (a . Z)(b . Z)
     return float(arm[2] - dot(up, arm) * up[2])  # Eq. 87
