@@ -386,8 +386,7 @@ _DECISIONS = (
     Quantity("probability_high", "1", "probability of overturning in the highest fifth"),
     Quantity("pairs", "1", "number of pairs of histories under each motion"),
     Quantity("pairs_rocking", "1", "number of pairs with rocking"),
-    Quantity("pairs_apart", "1", "number of pairs with different outcomes, or peaks that differ by more than 1 %"),
-    Quantity("relative_change", "1", "relative change of the peak over that of the motion, median"),
+    Quantity("pairs_apart", "1", "number of pairs with different outcomes"),
     Quantity("motions", "1", "number of motions"),
     Quantity("record_index", "1", "index of the record of each motion"),
     Quantity("uplift_factors", "1", "scale factor of each motion at uplift", label="uplift factor"),
@@ -486,6 +485,9 @@ _RESPONSE = (
         "energy_closure", "1", "energy balance error over the largest energy", label="energy balance error",
         digits=".1e",
     ),
+    Quantity("growth_rate", "1/s", "logarithm of the largest growth of a difference since the start, over its time"),
+    Quantity("growth_time", "s", "time of the largest growth of a difference since the start"),
+    Quantity("relative_change", "1", "relative change of the peak rotation over that of the motion"),
     Quantity(
         "error_estimate", "rad", "largest change of the rotation with half the time step; infinite if the outcome "
         "changes", label="numerical error", digits=".1e",
@@ -694,13 +696,13 @@ _PARTS = """
     better_by bodies body by_data_set called_safe cases cells_per_basin claim claims code_methods_outside
     coefficients columns_not_read comparison comparisons components concerns contributions converged crossing_curves
     crossings curves decides definition designs died directions doubts edges ends envelope errata event evidence
-    examples facets file file_unit files finding findings first_corner folder forced from growth hazard headline
+    examples facets file file_unit files finding findings first_corner folder forced from hazard headline
     hierarchy identities ignored im im_description inputs intensity interfaces intervals inventory is_complete islands
     judged_by
     label laboratories language last_state league left_out_groups level likelihood likelihood_scale lowest
     lowest_uplift mean messages method methods mirrored model_error models motion motions_apart new not_assessed
-    not_objects not_read not_sampled note notes objects one_by_one other_models outside overturned_cells overturning
-    passed_over
+    not_objects not_read not_sampled note notes objects one_by_one other_models outcome_pairs outside
+    overturned_cells overturning passed_over
     passes plan plane_is_weakest poses prediction progress reason reasons records refused reliability remedies
     resolved restitution_drawn restraint_events restraint_laws restraints results
     rigid rings scores section sense sensitivity sentence sentences sets sides

@@ -252,10 +252,8 @@ def test_the_boundary_of_overturning_by_restitution_and_frequency(engine):
     assert -by["frequency"] / 3.0 / by_amplitude == pytest.approx(0.2495290741040314, rel=1e-12)
 
 
-@pytest.mark.verifies(
-    "second engine", "twins of the engine with friction, as for the growth of predictions", within="1e-4"
-)
-def test_twins_of_predictions_measure_the_same_growth():
+@pytest.mark.verifies("second engine", "twins of the engine with friction", within="1e-4")
+def test_twins_with_friction_measure_the_same_change():
     """The relative change of a rotation by a change of 1e-6 in scale, through impacts with large friction."""
     motion, coefficients = formula(0.05, 3.0), {"left": 0.8, "right": 0.85}
     options = {"rotation": 0.1, "duration": 3.0}
@@ -268,19 +266,50 @@ def test_twins_of_predictions_measure_the_same_growth():
     assert own == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-4)
 
 
-@pytest.mark.verifies("second engine", "pairs of `predict` whose motions differ by 1e-6", within="1e-3")
+@pytest.mark.verifies("second engine", "peaks of the engine with friction whose motions differ by 1e-6", within="1e-3")
 @pytest.mark.parametrize("strength", [1.6, 2.5])
-def test_the_relative_change_of_a_prediction_is_the_tangent_by_amplitude(strength):
-    """Of one body in all samples the median change of the peak over that of the motion; control: by the frequency."""
+def test_the_relative_change_of_the_peak(strength):
+    """The change of the peak over that of the motion, of a body from rest; control: by the frequency."""
     body, time = rk.Block(width=5.0, height=20.0), np.arange(0.0, 8.0, 0.002)
     waves = sum(np.sin(2.0 * np.pi * (0.5 + 0.4 * i) * time + i * i) for i in range(4))
     motion, coefficients = rk.GroundMotion(strength * 1.3734 * waves, 0.002), {"left": 0.9, "right": 0.9}
-    certain = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "polarity": 1.0, "model_error": "off"}
-    options = {"restitution": coefficients, "friction": 10.0, "count": 4, "contributions": False}
-    growth = rk.predict(body, motion, **options, **certain).growth
     response = rk.simulate(body, motion, coefficients)
-    peak, by = np.argmax(np.abs(response.rotation)), response.tangent().by_parameter
-    changes = {name: abs(values[peak, 0] / response.rotation[peak]) for name, values in by.items()}
+    options = {"friction": 10.0}
+    peaks = [rk.simulate(body, motion, coefficients, scale=1.0 + d, **options).peak_rotation for d in (1e-6, -1e-6)]
+    twins = abs(peaks[0] - peaks[1]) / (2e-6 * response.peak_rotation)
+    tangent = response.tangent()
+    answer = tangent.answer()
     assert len(response.impacts) > 30
-    assert growth.median == pytest.approx(changes["amplitude"], rel=1e-3)  # the peak of the tangent is that of a sample
-    assert abs(changes["frequency"] / growth.median - 1.0) > 0.05
+    assert answer["relative_change"] == pytest.approx(twins, rel=1e-3)  # the peak of the tangent is that of a sample
+    peak = np.argmax(np.abs(response.rotation))
+    by_frequency = abs(tangent.by_parameter["frequency"][peak, 0] / response.rotation[peak])
+    assert abs(by_frequency / twins - 1.0) > 0.05
+    assert "growth_rate" not in answer  # at rest no difference of the start remains
+
+
+@pytest.mark.verifies("computed anew", "central differences", within="1e-4")
+@pytest.mark.parametrize("engine", ENGINES)
+def test_growth_of_the_answer(engine):
+    """The largest growth of a released body, its time and rate; without a motion no change of the peak by it."""
+
+    p = BLOCK.frequency_parameter
+
+    def free(rotation, velocity=0.0):
+        options = {"angular_velocity": velocity * p, "rest_speed": 0.0, "duration": 4.0, "engine": engine}
+        return rk.free_rocking(BLOCK, rotation=rotation, restitution=0.9, **options)
+
+    response = free(0.1)
+    answer = response.tangent().answer()
+    at, d = np.searchsorted(response.time, answer["growth_time"]), 1e-7
+    twins = [(free(0.1 + d), free(0.1 - d)), (free(0.1, d), free(0.1, -d))]
+    columns = [
+        [(high.rotation[at] - low.rotation[at]), (high.angular_velocity[at] - low.angular_velocity[at]) / p]
+        for high, low in twins
+    ]
+    growth = np.linalg.norm(np.array(columns) / (2.0 * d), 2)
+    assert growth > 3.0
+    assert np.exp(answer["growth_rate"] * answer["growth_time"]) == pytest.approx(growth, rel=1e-4)
+    assert "relative_change" not in answer
+    fallen = rk.simulate(BLOCK, rk.pulses.sine(9.0, 1.0), 0.9)
+    assert fallen.outcome.name == "OVERTURNED"
+    assert not fallen.tangent().answer().values  # from rest, and a fallen body has no peak

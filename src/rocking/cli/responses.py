@@ -31,7 +31,7 @@ _RESTRAINTS = (
 )  # fmt: skip
 _DETAILS = (
     "gravity", "friction_of_motion", "friction_of_impacts", "least_force", "energy_lost", "lost_in_friction",
-    "energy_closure", "engine",
+    "energy_closure", "engine", "growth_rate", "growth_time", "relative_change",
 )  # fmt: skip
 _OF_STANDING = {"peak_rotation", "peak_ratio", "peak_tilt"}
 _TABLES = {
@@ -107,6 +107,8 @@ class ResponseAnswer:
             still = [0.0] * len(problem.axes)
             more |= {"start_height": problem.start_height, "start_velocity": list(problem.start_velocity) or still}
         answer: Answer = self.response.answer(**self._friction)
+        if self.details and self.problem.mechanics.is_compared:
+            more |= self.response.tangent().answer().values
         others = self.others.items()
         more["other_models"] = {
             name: {"error": response} if isinstance(response, str) else _facts(response) for name, response in others

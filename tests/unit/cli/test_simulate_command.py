@@ -278,3 +278,16 @@ def test_details_of_a_question_file(printed):
     assert "--details" in page
     assert "velocity before [rad/s]" in details
     assert "velocity before [rad/s]" not in page
+
+
+def test_details_contain_the_growth_of_small_differences(answered):
+    """Of the tangent, with --details only; none with sliding."""
+    released = (*SIZE, "--initial-rotation", "0.5")
+    names = ("growth_rate", "growth_time", "relative_change")
+    tangent = rk.free_rocking(BLOCK, 0.5 * BLOCK.slenderness_angle).tangent()
+    details = answered(*released, "--details")
+    assert np.exp(details["growth_rate"] * details["growth_time"]) == pytest.approx(tangent.growth[1:].max(), rel=1e-9)
+    assert (details["units"]["growth_rate"], details["units"]["growth_time"]) == ("1/s", "s")
+    assert not set(answered(*released)) & set(names)
+    assert not set(answered(*SIZE, PULSE, "--friction", "0.4", "--details")) & set(names)
+    assert set(answered(*SIZE, PULSE, "--details")) & set(names) == {"relative_change"}  # starts at rest

@@ -8,7 +8,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body, Solid
 from rocking.conventions import FloatArray
-from rocking.decision.prediction.forecast import Chance, EndsOfRange, Growth, Prediction
+from rocking.decision.prediction.forecast import Chance, EndsOfRange, OutcomePairs, Prediction
 from rocking.decision.prediction.mechanics import MEASURED, SampledBodies, motion_sequence
 from rocking.decision.prediction.model_error import MODEL_ERROR
 from rocking.dynamics.mechanics import mechanics_for
@@ -25,8 +25,7 @@ SLIDING_BEYOND = 0.01
 
 PAIRS = 16
 CHANGE = 1e-6
-REPRODUCED = 0.01
-"""Pairs of histories under each motion, their relative difference in scale, and tolerance of their peaks [-]."""
+"""Pairs of histories under each motion, and their relative difference in scale [-]."""
 
 FIFTH = 0.2
 FEWEST = 4
@@ -153,7 +152,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
     design = SaltelliDesign(half_count, mechanics.widths, checks.whole("seed", seed))
     points = design.points[: 2 * half_count]
     results = _counted(mechanics, points, min_sliding, threads, progress)
-    sampled = {name: values[: 2 * half_count] for name, values in results.items() if name != "peak"}
+    sampled = {name: values[: 2 * half_count] for name, values in results.items()}
     overturned = sampled["overturning"]
     if np.isnan(results["overturning"]).all():
         raise InvalidValueError("no history has a result; check the scale of the motion and its unit (m/s2)")
@@ -186,7 +185,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
         chances={name: _chance(values, design.seed) for name, values in sampled.items()},
         contributions=shares,
         ends=_ends(mechanics, points, overturned),
-        growth=_growth(results, len(points), mechanics.names),
+        outcome_pairs=_outcome_pairs(results, len(points), mechanics.names),
         outcomes=np.unique(histories[~np.isnan(histories)]).size,
         count=2 * half_count,
         histories=histories.size,
@@ -262,11 +261,11 @@ def _counted(
     """Return outcomes, shape (bodies, motions): all sample points, then the repeated points at a changed scale."""
     repeated = points[:pairs]
     factor = np.concatenate([np.ones(len(points)), np.full(len(repeated), 1.0 + CHANGE)])
-    columns: dict[str, list[FloatArray]] = {name: [] for name in ("uplift", "sliding", "overturning", "peak")}
+    columns: dict[str, list[FloatArray]] = {name: [] for name in ("uplift", "sliding", "overturning")}
     for motion in range(len(mechanics.names)):
         outcomes = mechanics.run(np.vstack([points, repeated]), motion, factor, threads)
         slid = np.where(np.isnan(outcomes.sliding), np.nan, outcomes.sliding >= min_sliding)
-        for name, values in zip(columns, (outcomes.uplift, slid, outcomes.overturning, outcomes.peak), strict=True):
+        for name, values in zip(columns, (outcomes.uplift, slid, outcomes.overturning), strict=True):
             columns[name].append(values)
         if progress is not None:
             progress(factor.size)
@@ -333,19 +332,11 @@ def _mean(occurred: FloatArray) -> float:
     return float(valid.mean()) if valid.size else np.nan
 
 
-def _growth(results: Mapping[str, FloatArray], count: int, names: Sequence[str]) -> Growth:
-    """Return the effect of a relative change of 1e-6 on histories with rocking."""
-    pairs = len(results["peak"]) - count
-    (peak, uplift, overturned), (peak_scaled, _, overturned_scaled) = (
-        [results[name][rows] for name in ("peak", "uplift", "overturning")]
-        for rows in (slice(pairs), slice(count, None))
-    )
-    rocks = (uplift == 1.0) & np.isfinite(overturned) & np.isfinite(overturned_scaled)
-    largest = np.maximum(np.maximum(peak, peak_scaled), 1e-300)
-    difference = np.where(rocks, np.abs(peak - peak_scaled) / largest, 0.0)
-    not_overturned = rocks & (overturned == 0.0) & (overturned_scaled == 0.0)
-    diverged = rocks & ((overturned != overturned_scaled) | (not_overturned & (difference > REPRODUCED)))
-    growth = difference[not_overturned] / CHANGE
-    diverged_motions = tuple(name for name, is_diverged in zip(names, diverged.any(axis=0), strict=True) if is_diverged)
-    median = float(np.median(growth)) if growth.size else np.nan
-    return Growth(pairs, int(rocks.sum()), int(diverged.sum()), diverged_motions, len(names), median)
+def _outcome_pairs(results: Mapping[str, FloatArray], count: int, names: Sequence[str]) -> OutcomePairs:
+    """Return the effect of a relative change of 1e-6 on the outcomes of histories with rocking."""
+    overturned, pairs = results["overturning"], len(results["overturning"]) - count
+    first, second = overturned[:pairs], overturned[count:]
+    rocks = (results["uplift"][:pairs] == 1.0) & np.isfinite(first) & np.isfinite(second)
+    apart = rocks & (first != second)
+    motions = tuple(name for name, is_apart in zip(names, apart.any(axis=0), strict=True) if is_apart)
+    return OutcomePairs(pairs, int(rocks.sum()), int(apart.sum()), motions, len(names))

@@ -27,14 +27,13 @@ _LIKELY = {
     "sliding": "Sliding by {distance:g} mm or more is {likelihood} {condition}: {probability}.",
     "overturning": "Overturning is {likelihood} {condition}, for the sampled inputs: {probability}.",
 }
-_PREDICTABLE = (
-    "Each response can be predicted. Of {rocking} pairs of histories with a difference of one part in a million in "
-    "scale, 0 have different outcomes or peaks that differ by more than 1 %."
+_ALIKE = (
+    "Of {rocking} pairs of histories with a difference of one part in a million in scale, 0 have different outcomes."
 )
-_UNPREDICTABLE = (
-    "Under {motions} of {total} motions the response cannot be predicted, but its distribution can. Of {rocking} pairs "
-    "of histories with a difference of one part in a million in scale, {pairs} have different outcomes or peaks that "
-    "differ by more than 1 %."
+_APART = (
+    "Under {motions} of {total} motions the outcome of a single history cannot be predicted, but its probability can. "
+    "Of {rocking} pairs of histories with a difference of one part in a million in scale, {pairs} have different "
+    "outcomes."
 )
 _COMPARED = (
     "With another restitution model and {count} of the {total} samples of the other inputs, overturning has "
@@ -83,25 +82,24 @@ class EndsOfRange:
 
 
 @dataclass(frozen=True)
-class Growth:
-    """Growth of a small difference: pairs of histories whose motions differ by one part in a million."""
+class OutcomePairs:
+    """Pairs of histories whose motions differ by one part in a million."""
 
     pairs: int  # number of pairs under each motion
     rocking: int  # number of pairs with rocking, of all motions
-    lost: int  # number of these with different outcomes, or peaks that differ by more than 1 %
-    motions_lost: tuple[str, ...]  # motions with such pairs
+    apart: int  # number of these with different outcomes
+    motions_apart: tuple[str, ...]  # motions with such pairs
     motions: int  # number of motions
-    median: float  # median ratio of the relative changes of peak and motion; NaN without rocking [-]
 
     @property
     def sentence(self) -> str:
-        """Predictability of responses as a sentence."""
+        """Predictability of outcomes as a sentence."""
         if not self.rocking:
-            return "No pair of histories rocks; no difference between histories grows."
+            return "No pair of histories rocks."
         facts = {
-            "motions": len(self.motions_lost), "total": self.motions, "pairs": self.lost, "rocking": self.rocking,
+            "motions": len(self.motions_apart), "total": self.motions, "pairs": self.apart, "rocking": self.rocking,
         }  # fmt: skip
-        return Message(_UNPREDICTABLE if self.lost else _PREDICTABLE, facts)
+        return Message(_APART if self.apart else _ALIKE, facts)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,8 +126,8 @@ class Prediction(Exported):
         Contribution of each input, and of the motion as `case`, to the variance of overturning; empty if not computed.
     ends : dict of str to EndsOfRange
         Probability of overturning at the ends of each input.
-    growth : Growth
-        Growth of small differences.
+    outcome_pairs : OutcomePairs
+        Outcomes that change with a small difference of the motion.
     outcomes : int
         Number of different outcomes (1 or 2) of all histories, with those of the sensitivity analysis.
     count, histories, failed : int
@@ -154,7 +152,7 @@ class Prediction(Exported):
     chances: Mapping[str, Chance]
     contributions: Mapping[str, VarianceShare]
     ends: Mapping[str, EndsOfRange]
-    growth: Growth
+    outcome_pairs: OutcomePairs
     outcomes: int
     count: int
     histories: int
@@ -257,7 +255,7 @@ class Prediction(Exported):
                 low, high = percent(item.probability_low), percent(item.probability_high)
                 facts = {"input": input_label(name), "low": low, "high": high, "lower": item.low, "higher": item.high}
                 sentences.append(Message(_AT_ENDS_OF_ERROR if name == MODEL_ERROR else _AT_ENDS, facts))
-        sentences.append(self.growth.sentence)
+        sentences.append(self.outcome_pairs.sentence)
         if self.failed:
             text = "{count} of {total} histories have no result and do not count."
             sentences.append(Message(text, {"count": self.failed, "total": self.histories}))
@@ -288,6 +286,7 @@ class Prediction(Exported):
         Answer
             Values by name; NaN without a value.
         """
+        pairs = self.outcome_pairs
         plain = ("verdict", "evidence", "condition", "sliding_beyond", "inputs", "assumed", "not_sampled", "repairs",
                  "decides", "count", "histories", "failed", "seed", "gravity")  # fmt: skip
         return Answer({
@@ -308,10 +307,9 @@ class Prediction(Exported):
                 }
                 for name, item in self.ends.items()
             },
-            "growth": {
-                "pairs": self.growth.pairs, "pairs_rocking": self.growth.rocking, "pairs_apart": self.growth.lost,
-                "motions_apart": self.growth.motions_lost, "motions": self.growth.motions,
-                "relative_change": self.growth.median, "sentence": self.growth.sentence,
+            "outcome_pairs": {
+                "pairs": pairs.pairs, "pairs_rocking": pairs.rocking, "pairs_apart": pairs.apart,
+                "motions_apart": pairs.motions_apart, "motions": pairs.motions, "sentence": pairs.sentence,
             },
         })  # fmt: skip
 

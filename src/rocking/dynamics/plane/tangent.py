@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.answers import Answer
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.plane.equations import EventKind, angular_acceleration
@@ -25,8 +26,8 @@ class Tangent:
 
     Parameters
     ----------
-    time : ndarray
-        Times of the samples [s], shape (samples,).
+    time, rotation : ndarray
+        Times [s] and rotations [rad] of the samples, shape (samples,).
     by_start : ndarray
         Derivatives of rotation [rad] and angular velocity [rad/s] by those at the start, shape (samples, 2, 2).
     by_parameter : dict of str to ndarray
@@ -40,6 +41,7 @@ class Tangent:
     """
 
     time: FloatArray
+    rotation: FloatArray
     by_start: FloatArray
     by_parameter: dict[str, FloatArray]
     determinants: FloatArray
@@ -58,6 +60,30 @@ class Tangent:
         """Logarithm of the growth over the time [1/s], shape (samples,): NaN at time 0, minus infinity after a rest."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.log(self.growth) / self.time)
+
+    @property
+    def relative_change(self) -> float:
+        """Relative change of the peak rotation over that of the motion [-]; NaN if the peak is at the start or end."""
+        peak = int(np.argmax(np.abs(self.rotation)))
+        is_inside = 0 < peak < self.rotation.size - 1
+        return float(abs(self.by_parameter["amplitude"][peak, 0] / self.rotation[peak])) if is_inside else np.nan
+
+    def answer(self) -> Answer:
+        """Return the growth of small differences.
+
+        Returns
+        -------
+        Answer
+            Rate and time of the largest growth since the start, without them for a start at rest; relative change of
+            the peak, without it for free rocking or a body that overturns.
+        """
+        values: dict[str, float] = {}
+        last = 1 + int(np.argmax(self.growth[1:])) if self.time.size > 1 else 0
+        if last and self.growth[last] > 0.0:
+            values |= {"growth_rate": self.growth_rate[last], "growth_time": self.time[last]}
+        if self.relative_change > 0.0:
+            values["relative_change"] = self.relative_change
+        return Answer(values)
 
 
 def tangent_of(response: "Response") -> Tangent:
@@ -89,7 +115,8 @@ def tangent_of(response: "Response") -> Tangent:
         matrices[k] = matrix
     at = matrices[np.searchsorted(nodes, response.time)]
     by_parameter = {name: at[:, :, 2 + column] for column, name in enumerate(PARAMETERS)}
-    return Tangent(response.time, at[:, :, :2], by_parameter, determinants, parameters.right.frequency_parameter)
+    p = parameters.right.frequency_parameter
+    return Tangent(response.time, response.rotation, at[:, :, :2], by_parameter, determinants, p)
 
 
 def _acceleration(response: "Response", sign: int, push: float, lift: float) -> float:

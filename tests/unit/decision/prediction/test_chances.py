@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import beta, binom, norm
 
 import rocking as rk
-from rocking.decision.prediction._predict import _chance, _growth
+from rocking.decision.prediction._predict import _chance, _outcome_pairs
 from rocking.decision.prediction.likelihood import TERMS, likelihood, scale_words
 from rocking.decision.prediction.mechanics import Uncertain
 from rocking.decision.prediction.plane import SampledInPlane, contact_settings
@@ -101,43 +101,32 @@ def test_an_interval_over_motions_has_the_quantiles_of_a_binomial():
 
 
 def test_pairs_that_rock_are_counted_and_compared():
-    """Pairs at rest, growing 3 and 5 times, over 1 % apart, of two outcomes, both overturning, and without a result.
+    """Pairs at rest, of one outcome, of two outcomes, both overturning, and without a result.
 
-    Under a second motion all are at rest; one body more has no pair.
+    Under a second motion all are at rest; a body more has no pair.
     """
     nan = math.nan
-    rows = {  # peak and its pair's, uplift, overturning and its pair's; one row a body, under both motions
-        "at rest": ((0.0, 0.0), 0.0, (0.0, 0.0)),
-        "growing thrice": ((0.1, 0.1 / (1.0 - 3e-6)), 1.0, (0.0, 0.0)),
-        "growing five times": ((0.2, 0.2 / (1.0 - 5e-6)), 1.0, (0.0, 0.0)),
-        "apart": ((0.1, 0.1 / (1.0 - 0.02)), 1.0, (0.0, 0.0)),
-        "ending otherwise": ((0.3, 1.5), 1.0, (0.0, 1.0)),
-        "both overturning": ((1.5, 1.5 / (1.0 - 0.5)), 1.0, (1.0, 1.0)),
-        "without a result": ((0.1, nan), 1.0, (0.0, nan)),
+    rows = {  # uplift, overturning of a history and of its pair
+        "at rest": (0.0, 0.0, 0.0),
+        "standing": (1.0, 0.0, 0.0),
+        "second overturns": (1.0, 0.0, 1.0),
+        "first overturns": (1.0, 1.0, 0.0),
+        "both overturning": (1.0, 1.0, 1.0),
+        "without a result": (1.0, 0.0, nan),
     }
 
-    def grown(*names):
-        """One motion with these pairs, and a second one under which all bodies are at rest."""
-        pairs = [rows[name] for name in names]
-        first = {
-            "peak": [peaks[0] for peaks, _, _ in pairs],
-            "uplift": [rose for _, rose, _ in pairs],
-            "overturning": [fell[0] for _, _, fell in pairs],
-        }
-        again = {
-            "peak": [peaks[1] for peaks, _, _ in pairs],
-            "uplift": first["uplift"],
-            "overturning": [fell[1] for _, _, fell in pairs],
-        }
-        found = {key: np.column_stack([[*first[key], 0.0, *again[key]], np.zeros(2 * len(pairs) + 1)]) for key in first}
-        return _growth(found, len(pairs) + 1, ("strong", "weak"))
+    def counted(*names):
+        """Return the pairs under one motion with these rows, and under a second one with all bodies at rest."""
+        uplift, first, second = np.array([rows[name] for name in names]).T
+        columns = {"uplift": [*uplift, 0.0, *uplift], "overturning": [*first, 0.0, *second]}
+        results = {key: np.column_stack([values, np.zeros(len(values))]) for key, values in columns.items()}
+        return _outcome_pairs(results, len(names) + 1, ("strong", "weak"))
 
-    calm = grown("at rest", "growing thrice", "growing five times", "both overturning", "without a result")
-    assert (calm.pairs, calm.rocking, calm.lost, calm.motions_lost, calm.motions) == (5, 3, 0, (), 2)
-    assert calm.median == pytest.approx(4.0, rel=1e-6)  # of those that stay standing
-    wild = grown("at rest", "growing thrice", "apart", "ending otherwise")
-    assert (wild.rocking, wild.lost, wild.motions_lost) == (3, 2, ("strong",))
-    assert math.isnan(grown("at rest", "both overturning").median)
+    calm = counted("at rest", "standing", "standing", "both overturning", "without a result")
+    assert (calm.pairs, calm.rocking, calm.apart, calm.motions_apart, calm.motions) == (5, 3, 0, (), 2)
+    wild = counted("at rest", "standing", "second overturns", "first overturns")
+    assert (wild.rocking, wild.apart, wild.motions_apart) == (3, 2, ("strong",))
+    assert calm.sentence != wild.sentence != counted("at rest").sentence
 
 
 KNOWN = {

@@ -163,12 +163,12 @@ def test_spread_between_motions():
 
 
 @pytest.mark.slow
-def test_small_differences_grow_under_a_long_motion_and_not_under_a_pulse():
-    small = predict(BLOCK, rk.pulses.sine(2.6, 0.6), count=16, contributions=False).growth
+def test_outcomes_change_with_small_differences_under_a_long_motion_and_not_under_a_pulse():
+    small = predict(BLOCK, rk.pulses.sine(2.6, 0.6), count=16, contributions=False).outcome_pairs
     motions = SyntheticSet("firm-ground", 2, 1, pga=5.0)
-    long = predict(rk.Block(width=0.2, height=0.8), motions, count=16, contributions=False).growth
-    assert small.lost == 0
-    assert long.lost > 0
+    long = predict(rk.Block(width=0.2, height=0.8), motions, count=16, contributions=False).outcome_pairs
+    assert small.apart == 0
+    assert long.apart > 0
     assert long.sentence != small.sentence
 
 
