@@ -1,4 +1,4 @@
-"""How certain is a result, and what to do: predictions, assessments, inventories, code methods, retrofit measures."""
+"""Decisions about bodies: predictions, assessments, inventories, code methods and retrofit measures."""
 
 from lazy_loader import attach_stub
 

@@ -25,17 +25,17 @@ from rocking.studies.histories import Histories, Product, results_of
 from rocking.studies.motion_sets import MotionList
 
 POINTS, REACH, MARGIN_BISECTIONS = 64, 50.0, 6
-"""Search of the smallest overturning factor: number of levels, highest level over uplift, number of bisections."""
+"""Search of the smallest overturning factor: number of levels, highest level / uplift, number of bisections."""
 
 
 @dataclass(frozen=True, eq=False)
 class Margins:
-    """Histories of one body under all motions, for both polarities if these differ."""
+    """Histories of one body under all motions, for both polarities if the polarities differ."""
 
     min_factors_by_polarity: FloatArray  # smallest overturning factor, by polarity and motion [-]
     overturned_by_polarity: FloatArray  # 1 if overturned, NaN without a result, by polarity, motion and level
-    factors: FloatArray  # by motion and level [-]
-    label: str  # of the restitution
+    factors: FloatArray  # scale factors, by motion and level [-]
+    label: str  # label of the restitution
 
     @classmethod
     def of(
@@ -63,12 +63,12 @@ class Margins:
 
     @property
     def overturned(self) -> FloatArray:
-        """1 if overturned in one of both polarities, by motion and level; NaN without a result."""
+        """1 with overturning in at least one polarity, by motion and level; NaN without a result."""
         return np.asarray(np.maximum.reduce(self.overturned_by_polarity))
 
 
 def polarities(body: Body, motions: Any, restitution: Any) -> list[tuple[Body, Any, Any]]:
-    """Return a body with its motions and restitution, and mirrored if that differs."""
+    """Return a body with its motions and restitution, and also the mirrored body if it differs."""
     swapped, differ = restitution, not body.is_symmetric
     if isinstance(restitution, Mapping) and {"left", "right"} <= set(restitution):
         swapped = {"left": restitution["right"], "right": restitution["left"]}
@@ -100,8 +100,8 @@ def find_min_factors(
 ) -> FloatArray:
     """Return the smallest overturning factor of each row; infinite if none, NaN without a result.
 
-    grid: increasing factors of each row; overturned: function of row indices and factors; batch: number of factors
-    computed together for the rows without overturning.
+    `grid` contains increasing factors of each row. `overturned` is a function of row indices and factors. `batch` is
+    the number of factors that are computed together for the rows without overturning.
     """
     count, points = grid.shape
     fallen = np.zeros(grid.shape)
@@ -130,10 +130,10 @@ def find_min_factors(
 CALIBRATED = "calibrated"
 
 STEPS, BISECTIONS = 32, 5
-"""Number of changes up to the change without uplift, and number of bisections."""
+"""Number of tested changes up to the change without uplift, and number of bisections."""
 
 FACTOR_RATIOS = np.array([0.6, 0.7, 0.8, 0.9, 1.0])
-"""Ratios of the factor for the check of each change, before the margin of the result is computed."""
+"""Fractions of the factor for a first check of each change, before the margin of the result is computed."""
 
 PERIODS, DAMPING = np.round(np.geomspace(0.5, 6.0, 40), 2), 0.1
 """Candidate isolators: periods with three digits [s], and damping ratio [-]."""
@@ -168,7 +168,7 @@ def rounded_up(value: float) -> float:
 class LengthChange:
     """Required change of a length."""
 
-    # smallest change above which no computed history overturns, in whole millimetres; 0 if none is needed [m]
+    # smallest change above which no computed history overturns, in whole millimetres; 0 if no change is needed [m]
     length_no_overturning: float
     length_no_uplift: float  # change without uplift, in closed form [m]
     reason: str = ""  # reason of a missing search; empty after a search
@@ -185,8 +185,8 @@ class Remedies:
     # wider, lower: extension of the base on each side, and lowering of the centre of mass
     wider: LengthChange
     lower: LengthChange
-    # smallest isolator period above which no uplift occurs [s], and the isolator displacement [m]; None if none up to
-    # 6 s
+    # smallest isolator period above which no uplift occurs [s], and the isolator displacement [m]; None if uplift
+    # occurs at all periods up to 6 s
     isolation: tuple[float, float] | None
 
     def answer(self) -> Answer:
@@ -212,7 +212,7 @@ class Remedies:
 
 
 def accelerations_of(motion: GroundMotion) -> tuple[FloatArray, FloatArray]:
-    """Return the absolute horizontal acceleration, for both polarities, and the upward acceleration."""
+    """Return the absolute horizontal acceleration, which covers both polarities, and the upward acceleration."""
     across = np.abs(motion.acceleration)
     return across, np.zeros_like(across) if motion.vertical is None else np.asarray(motion.vertical)
 
@@ -242,7 +242,7 @@ def tension(body: Body, motion: GroundMotion, factor: float, gravity: float) -> 
 def lengths_without_uplift(
     body: Body, motions: Sequence[GroundMotion], factor: float, gravity: float
 ) -> tuple[float, float]:
-    """Return the extension of each side, and the lowering of the centre, without uplift [m]; infinite if none."""
+    """Return the extension of each side, and the lowering of the centre, without uplift [m]; infinite if impossible."""
     sides = [body.side(foot, gravity) for foot in FEET]
     narrow, height = min(side.half_width for side in sides), sides[0].centre_height
     ratio = 0.0
@@ -259,14 +259,14 @@ def remedies(
     body: Body, motions: Sequence[GroundMotion], margin: float, gravity: float,
     restitutions: Mapping[str, Any], *, falls: bool,
 ) -> Remedies:  # fmt: skip
-    """Return the measures; restitutions: by name; falls: True if a motion scaled by the margin overturns the body."""
+    """Return the measures for restitutions by name; `falls` is True if a motion times the margin overturns the body."""
     tensions = [tension(body, motion, margin, gravity) for motion in motions]
     out, down = lengths_without_uplift(body, motions, margin, gravity)
     shear = margin * body.mass * max(float(accelerations_of(motion)[0].max()) for motion in motions)
     changes = {}
     for name, no_uplift in (("out", out), ("down", down)):
         try:
-            with warnings.catch_warnings():  # warnings on trial bodies do not concern the user
+            with warnings.catch_warnings():  # warnings about trial bodies are not for the user
                 warnings.simplefilter("ignore", PlausibilityWarning)
                 landings = Landings(body, restitutions) if falls else None
                 length = (
@@ -314,9 +314,9 @@ def changed(body: Body, ballast: bool = False, /, *, out: float = 0.0, down: flo
 
 
 class Landings:
-    """Coefficients of a changed body: those of the body, shifted by the change that the restitution model gives.
+    """Coefficients of a changed body: coefficients of the body plus the change that the restitution model gives.
 
-    The changed body is a block with a different mass distribution; without a change it has the body's coefficients.
+    The changed body is a block with a different mass distribution. Without a change, the coefficients are equal.
     """
 
     def __init__(self, body: Body, restitutions: Mapping[str, Any]) -> None:
@@ -336,7 +336,7 @@ class Landings:
 
     @staticmethod
     def _pair(restitution: Any, body: Body) -> Mapping[Foot, float]:
-        """Return the coefficients of a model; if it gives none, the energy bounds."""
+        """Return the coefficients of a model, or the energy bounds if the model gives no coefficients."""
         try:
             return coefficients_of(restitution, body)[0]
         except InvalidValueError:
@@ -349,7 +349,7 @@ def _min_length(
 ) -> float:  # fmt: skip
     """Return the smallest change above which no computed body overturns, up to the change without uplift [m].
 
-    The change is a whole number of millimetres; the margin of the changed body is above the required one.
+    The change is a whole number of millimetres. The margin of the changed body is above the required margin.
     """
     if not np.isfinite(no_uplift):
         raise GeometryError("the vertical motion exceeds gravity: only anchors prevent uplift")
@@ -390,7 +390,7 @@ def overturns(
 ) -> BoolArray:
     """Return True for bodies that overturn under any motion up to a factor, any restitution and polarity."""
     rows, owner = [], []
-    with warnings.catch_warnings():  # warnings on trial bodies, which may be wide, do not concern the user
+    with warnings.catch_warnings():  # warnings about trial bodies, which may be wide, are not for the user
         warnings.simplefilter("ignore", PlausibilityWarning)
         for k, body in enumerate(bodies):
             for pair in landings.of(body):

@@ -1,4 +1,4 @@
-"""Claims of the paper's sections 3 and 4 with verdicts and numbers; this module contains those of 3.1 and 4."""
+"""Claims of sections 3 and 4 of the paper with verdicts and numbers; this module contains sections 3.1 and 4."""
 
 from functools import partial
 
@@ -38,7 +38,7 @@ def claims() -> tuple[Claim, ...]:
     >>> sorted({claim.verdict for claim in claims()})
     ['does not hold', 'holds', 'holds in part', 'not resolved', 'not testable']
     """
-    in_order = sorted(JUDGES, key=lambda entry: entry[0].split()[-1])  # a claim of sections 3.2 and 4 is sorted under 4
+    in_order = sorted(JUDGES, key=lambda entry: entry[0].split()[-1])  # sort "3.2 and 4" under 4
     return tuple(Claim(section, quote, *judge(), test) for section, quote, test, judge in in_order)
 
 

@@ -60,9 +60,9 @@ def interval_for(
 
 
 def _misfit(model: RestitutionModel, data: DataSet) -> tuple[float, float]:
-    """Return the scatter of the measurements around a model, from stored values of unfitted models."""
+    """Return the scatter of the measurements around a model; for unfitted models from stored values."""
     first, *misfit = _kept_misfits(data).get(model.label, (math.nan,))
-    # one prediction detects another model with the same label
+    # one prediction is compared, which detects another model with the same label
     if abs(first - model.of_slenderness(data.slenderness[:1])[0]) < 1e-12:
         return misfit[0], misfit[1]
     return _fitted(model.of_slenderness(data.slenderness).tobytes(), data)
@@ -91,13 +91,13 @@ CALIBRATED = Calibrated.name
 class CoefficientRow:
     """Result of one model for one body."""
 
-    name: str  # of the model with its parameters, or "calibrated"
-    title: str  # the model in one line
+    name: str  # name of the model with its parameters, or "calibrated"
+    title: str  # description of the model in one line
     coefficient: float  # theta_dot_after / theta_dot_before [-]
     low: float  # low, high: 95 % interval for a single measured body, from the residuals on the measurements [-]
     high: float
     implication: Implication  # impulse position, friction, energy loss
-    warnings: tuple[str, ...]  # limitations of the number
+    warnings: tuple[str, ...]  # limitations of the coefficient
 
     @property
     def half_interval(self) -> float:
@@ -166,7 +166,7 @@ def _row(body: Body, foot: Foot, row_model: RestitutionModel) -> CoefficientRow:
 
 
 def outside_evidence(body: Body, foot: Foot = "right") -> str:
-    """Return a warning for a body outside the measured range of slenderness; empty inside."""
+    """Return a warning for a body outside the measured range of slenderness; empty inside this range."""
     low, high = CALIBRATED_RANGE
     ratio = body.side(foot).slenderness_ratio
     if low <= ratio <= high:

@@ -13,10 +13,10 @@ from rocking.restitution import Housner, Ked
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """A printed statement that recomputing does not confirm, or confirms against doubt."""
+    """A printed statement that recomputation does not confirm, or confirms in spite of a doubt."""
 
     name: str
-    statement: str  # result of recomputing
+    statement: str  # result of the recomputation
     evidence: str  # the numbers
     is_confirmed: bool  # True if the data confirm the erratum
 
@@ -154,7 +154,7 @@ def _missing_blocks(tables: dict[str, DataSet]) -> tuple[str, bool]:
 def _run_together(tables: dict[str, DataSet]) -> tuple[str, bool]:
     group = tables["M"]
     row = group.labels.index("M7")
-    # masses of a group are proportional to slenderness, which shows the end of the number
+    # masses of a group are proportional to slenderness, which gives the number of digits of the mass
     others = np.arange(len(group)) != row
     per_ratio = float(np.median(group.mass[others] / group.slenderness[others]))
     expected = per_ratio * float(group.slenderness[row])
@@ -181,7 +181,7 @@ def _closer_in_half(tables: dict[str, DataSet]) -> tuple[str, bool]:
 
 
 def closer_rows(data: DataSet) -> list[bool]:
-    """Return one flag per row: True if KED is closer to the measurement than Housner."""
+    """Return one flag per row: True if KED is closer to the measurement than Housner's model."""
     ked = np.abs(Ked().of_slenderness(data.slenderness) - data.coefficient)
     housner = np.abs(Housner().of_slenderness(data.slenderness) - data.coefficient)
     return [bool(closer) for closer in ked < housner]
@@ -218,7 +218,7 @@ class TableRow:
 
 
 def agreement(rows: Sequence[TableRow]) -> str:
-    """Return the numbers of printed values that agree, and that cannot be recomputed, as text."""
+    """Return the number of printed values that agree, and the number that cannot be recomputed, as text."""
     entries = [entry for row in rows for entry in row.entries.values()]
     agreeing = f"{sum(entry.agrees for entry in entries)} of {len(entries)} printed values agree in all digits"
     missing = sum("measured" not in row.entries for row in rows)

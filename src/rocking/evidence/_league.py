@@ -38,7 +38,7 @@ class Contender:
 
     name: str  # name in the league
     parameters: tuple[str, ...]  # names of the fitted parameters; empty for an unfitted model
-    # function: from a `DataSet` and row selections, one least-squares model of r per selection
+    # function of a `DataSet` and row selections; the result is one least-squares model of r per selection
     fit: Callable[[DataSet, Sequence[BoolArray]], list[RestitutionModel]]
 
 
@@ -69,7 +69,8 @@ def family(
 ) -> Contender:
     """Return a contender with one fitted parameter, and optionally an interface factor.
 
-    make: model of a parameter value; coefficients: those of impacts for a column of values, one row per value.
+    `make` gives the model for a parameter value. `coefficients` gives the coefficients of impacts for a column of
+    values, one row per value.
     """
 
     def fit(data: DataSet, rows: Sequence[BoolArray]) -> list[RestitutionModel]:
@@ -77,7 +78,7 @@ def family(
         geometry = ImpactGeometry.of_slenderness(data.slenderness)
 
         def factors(values: FloatArray, which: IntArray) -> tuple[list[float], list[float]]:
-            """Return the interface factors and the misfits at values of the parameter, each for its rows."""
+            """Return the interface factors and the misfits at values of the parameter, each value for its own rows."""
             every = np.maximum(coefficients(geometry, values[:, None]), 0.0)
             pairs = [(r[rows[i]], data.coefficient[rows[i]]) for r, i in zip(every, which.tolist(), strict=True)]
             best = [_best_eta(r, measured) if eta else 1.0 for r, measured in pairs]
@@ -100,7 +101,7 @@ def family(
 
 
 def contact_bed(*, eta: bool) -> Contender:
-    """Return the contact bed with fitted points and hardness, default damping, and optionally a factor."""
+    """Return the contact bed with fitted number of points and hardness, default damping, and optionally a factor."""
     default_damping = ContactBedModel().damping
 
     def family_with(points: int) -> Contender:
@@ -161,20 +162,20 @@ _PUBLISHED = (
 class LeagueRow:
     """Errors of one contender on measurements."""
 
-    name: str  # in the league
-    model: RestitutionModel  # model with fitted values, if any
+    name: str  # name in the league
+    model: RestitutionModel  # model, with its fitted values
     parameters: tuple[str, ...]  # names of the fitted parameters
     rmse: float  # rmse, bias: of r, model minus experiment [-]
     bias: float
     rmse_low: float  # rmse_low, rmse_high: 95 % bootstrap interval, specimens resampled within their data sets [-]
     rmse_high: float
-    correlation: float  # Pearson's [-]
-    concordance: float  # Lin's [-]
+    correlation: float  # Pearson's correlation [-]
+    concordance: float  # Lin's concordance [-]
     loss_rmse: float  # loss_rmse, log_loss_rmse: errors of the energy loss 1 - r^2, absolute and logarithmic [-]
     log_loss_rmse: float
-    leave_one_out: float  # RMSE of predictions by fits without the row [-]
-    leave_group_out: float  # RMSE of predictions by fits without the data set of the row [-]
-    bic: float  # BIC of the likelihood with rounding, with a scatter that grows with the loss; lower is better
+    leave_one_out: float  # RMSE of predictions for rows that are omitted from the fit [-]
+    leave_group_out: float  # RMSE of predictions for data sets that are omitted from the fit [-]
+    bic: float  # BIC of the likelihood with rounding and a scatter that grows with the energy loss; lower is better
     by_group: dict[str, float]  # RMSE by data set [-]
     by_band: dict[str, float]  # RMSE by slenderness band [-]
     # 95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved if it includes zero
@@ -193,7 +194,7 @@ class LeagueRow:
 
 
 def league(extra: Sequence[RestitutionModel] = (), measurements: DataSet | None = None) -> tuple[LeagueRow, ...]:
-    """Return the league table, best RMSE of r first.
+    """Return the league table, sorted by the RMSE of r.
 
     Parameters
     ----------

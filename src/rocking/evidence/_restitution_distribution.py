@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _POINTS = 1025
 _GRID = 2001
-_STRIDE = 50  # stride of the points for the search of the used part of the grid
+_STRIDE = 50  # stride of the points in the search for the used range of the grid
 _ROUNDS = 3
 _PIECE = 64
 
@@ -36,14 +36,14 @@ _PIECE = 64
 class RestitutionDistribution:
     """Posterior predictive distribution of the coefficient of restitution of one body.
 
-    It contains the uncertainty of the parameters of the calibrated model and the scatter of bodies. It is the
-    distribution of r under the condition 0 <= r <= bound, where the bound excludes a gain of energy. The truncated
-    probability is stored.
+    The distribution contains the uncertainty of the parameters of the calibrated model and the scatter of bodies. Its
+    condition is 0 <= r <= bound; the bound excludes a gain of energy. The truncated probability is stored.
 
     Parameters
     ----------
     tables : dict of str to ndarray
-        Coefficients at equally spaced probabilities from 0 to 1, the ends a quarter of a step inside, by foot [-].
+        Coefficients by foot, at equally spaced probabilities from 0 to 1; the end points are a quarter of a step
+        inside [-].
     cut : dict of str to float
         Truncated probability outside [0, bound], by foot [-].
     bounds : dict of str to float
@@ -131,7 +131,7 @@ class RestitutionDistribution:
     def per_history(self, seed: int) -> "SampledRestitution":
         """Return a restitution with one sampled coefficient per history.
 
-        Both feet have the same probability: a high coefficient on one foot means a high one on the other.
+        Both feet have the same probability: a high coefficient on one foot means a high coefficient on the other foot.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ def restitution_distribution(
 
 @lru_cache(maxsize=64)
 def _truncated(posterior: Calibration, geometry: tuple[float, ...], bound: float) -> tuple[FloatArray, float]:
-    """Return the quantiles under the condition 0 <= r <= bound, and the probability outside."""
+    """Return the quantiles under the condition 0 <= r <= bound, and the probability outside this range."""
     eta, k, s, gamma = posterior.samples.T
     mean = np.clip(eta * shifted(ImpactGeometry(*map(np.asarray, geometry)), k), 0.0, bound)
     sd = scatter(mean, s, gamma)
@@ -242,7 +242,7 @@ def _quantiles(mean: FloatArray, sd: FloatArray, low: float, high: float) -> Flo
 
 
 def _below(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Return the cumulative distribution of the mixture, computed in pieces that fit the cache."""
+    """Return the cumulative distribution of the mixture, computed in pieces that fit into the cache."""
     from scipy.special import ndtr
 
     pieces = np.split(at, range(_PIECE, at.size, _PIECE))
@@ -250,6 +250,6 @@ def _below(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
 
 
 def _density(at: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Return the density of the mixture, computed in pieces that fit the cache."""
+    """Return the density of the mixture, computed in pieces that fit into the cache."""
     pieces = ((piece[:, np.newaxis] - mean) / sd for piece in np.split(at, range(_PIECE, at.size, _PIECE)))
     return np.concatenate([(np.exp(-0.5 * z**2) / sd).mean(axis=1) for z in pieces]) / math.sqrt(2.0 * math.pi)

@@ -1,4 +1,4 @@
-"""Explanations of the differences between measured groups by the contact bed: fits and conclusions."""
+"""Explanations by the contact bed of the differences between measured groups: fits and conclusions."""
 
 import math
 from collections.abc import Sequence
@@ -21,10 +21,10 @@ _FIRST, _POLISHED, _AGAIN = 300, 1500, 100
 
 BLOCKS = ("S", "M", "L")
 DAMPED = (1.0, DAMPING[1])
-"""Range of fitted damping ratios [-]; below 1, hops remain, and the stated error is close to the scatter."""
+"""Range of fitted damping ratios [-]. Below 1, hops remain, and the stated error is close to the scatter."""
 
 
-_DAMPING, _HARDNESS, _FACTOR, _SHARE = (slice(first, first + 4) for first in (0, 4, 8, 12))  # of each group
+_DAMPING, _HARDNESS, _FACTOR, _SHARE = (slice(first, first + 4) for first in (0, 4, 8, 12))  # columns per group
 _TAPE, _UNEVEN = 16, 17
 _WITHOUT = (math.nan,) * 8 + (1.0,) * 8 + (0.0, 0.0)
 
@@ -36,7 +36,7 @@ class FittedNumber:
     name: str  # name
     start: float  # initial value of the fit
     bounds: tuple[float, float]  # range
-    sets: slice  # columns of `coefficients` with this value
+    sets: slice  # columns of the argument of `coefficients` with this value
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class Physics:
     """One explanation, as a family of predictions."""
 
     name: str  # short name
-    sentence: str  # statement of the explanation
+    sentence: str  # explanation as a sentence
     parameters: tuple[FittedNumber, ...]  # the fitted numbers, without the number of points
 
     def columns(self, behind: int) -> IntArray:
-        """Return the position of each number of `coefficients`: index of a parameter, or after them, without effect."""
+        """Return the index of the parameter in each column of `coefficients`; a larger index has no effect."""
         columns = behind + np.arange(len(_WITHOUT))
         for number, parameter in enumerate(self.parameters):
             columns[parameter.sets] = number
@@ -63,7 +63,7 @@ def coefficients(numbers: FloatArray, data: DataSet, points: IntArray | int) -> 
     """Return coefficients of rows, of shape (..., rows), for numbers of shape (..., 18) [-].
 
     The columns are damping ratio, hardness, interface factor and fraction of the base, each for Table 1, S, M and L.
-    The last two are the additional energy loss times mass [kg], and the shift of the impulse times the relative width.
+    The last two columns are the additional energy loss times mass [kg], and the impulse shift times the relative width.
     """
     group = data.group_number
     cell, across, along = bed_table().bed(points, numbers[..., _DAMPING], numbers[..., _HARDNESS])
@@ -78,21 +78,21 @@ def coefficients(numbers: FloatArray, data: DataSet, points: IntArray | int) -> 
 def bed_coefficients(
     slenderness: FloatArray, points: int, damping: float, hardness: float, share: float = 1.0, shift: float = 0.0
 ) -> FloatArray:
-    """Return the bed's coefficients of rectangles of slenderness h/b with a bed in the middle of the base [-]."""
-    # share: fraction of the base width with the bed [-]; shift: added to the impulse position [-]
+    """Return the coefficients of rectangles of slenderness h/b with a bed in the middle of the base [-]."""
+    # share: fraction of the base width with the bed [-]; shift: addition to the impulse position [-]
     return _on_bed(slenderness, bed_table().bed(points, damping, hardness), np.asarray(share), np.asarray(shift))
 
 
 def _on_bed(slenderness: FloatArray, bed: Bed, share: FloatArray, shift: FloatArray) -> FloatArray:
     gyration = ImpactGeometry.of_slenderness(slenderness).base_gyration
     kappa = bed_table().position(bed, 1.0 / (1.0 + gyration / share**2), 0.0)
-    # the impulse is between the middle and the foot
+    # the impulse acts between the middle and the foot
     arm = np.minimum(np.maximum(kappa + shift, 0.0), 1.0) * share
     return np.asarray((gyration - arm * share) / (gyration + arm * share))  # Eq. 3
 
 
 def relative_width(data: DataSet) -> FloatArray:
-    """Return widths of the blocks over that of a 1 kg cube, from masses: (mass / slenderness)^(1/3)."""
+    """Return ratios of the widths of blocks to the width of a 1 kg cube, from masses: (mass / slenderness)^(1/3)."""
     # The paper contains no widths. Blocks of one material with depth proportional to width have this scale, and only
     # its ratios are used. Table 1 contains no masses: an infinite width there removes the effect of unevenness.
     width = np.cbrt(data.mass / data.slenderness)
@@ -152,11 +152,11 @@ class BedFit:
     physics: Physics  # the explanation
     points: int  # maximum likelihood number of contact points of the table [-]
     values: dict[str, float]  # maximum likelihood parameters
-    floor: float  # floor, slope: scatter around the prediction, as `likelihood.scatter` [-]
+    floor: float  # floor, slope: scatter around the prediction, as in `likelihood.scatter` [-]
     slope: float
-    log_likelihood: float  # of the printed digits
-    bic: float  # -2 ln L + p ln n, p counting the parameters, the number of points and the two of the scatter
-    rmse: float  # of r [-]
+    log_likelihood: float  # logarithm of the likelihood of the printed digits
+    bic: float  # -2 ln L + p ln n; p includes the parameters, the number of points and two parameters of the scatter
+    rmse: float  # RMSE of r [-]
     predicted: FloatArray  # coefficients [-]
 
     @property
@@ -166,7 +166,7 @@ class BedFit:
 
     @property
     def at_a_limit(self) -> tuple[str, ...]:
-        """Parameters at the end of their range."""
+        """Names of the parameters at an end of their range."""
         ranges = {
             parameter.name: (self.values[parameter.name], *parameter.bounds) for parameter in self.physics.parameters
         }
@@ -193,17 +193,17 @@ def bed_fits(
     ended = _most_likely(searches, rows, _FIRST)
     families = [ended[first : first + len(points)] for first in range(0, len(ended), len(points))]
     best = [max(family, key=lambda search: search.log_likelihood) for family in families]
-    for _ in range(2):  # restart of simplices that collapsed at a bound
+    for _ in range(2):  # the second search restarts simplices that collapsed at a bound
         best = _most_likely(best, rows, _POLISHED)
     return tuple(sorted((_fit(search, rows) for search in best), key=lambda fit: fit.bic))
 
 
 def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
-    """Return the logarithm of the probability of each printed number by fits without it, shape (fits, rows)."""
+    """Return ln of the probability of each printed number, from fits without this number; shape (fits, rows)."""
     rows = data or all_measurements()
     searches = [
         _BedSearch(fit.physics, fit.points, np.array([*fit.values.values(), math.log(fit.floor), fit.slope]), unseen)
-        for fit in fits  # their points are kept
+        for fit in fits  # the numbers of points are kept
         for unseen in range(len(rows))
     ]
     unseen = [search.log_likelihood_unseen for search in _most_likely(searches, rows, _AGAIN)]
@@ -212,14 +212,14 @@ def left_out(fits: Sequence[BedFit], data: DataSet | None = None) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class _BedSearch:
-    """Initial or final state of a search for the maximum likelihood parameters of an explanation."""
+    """State of a search for the maximum likelihood parameters of an explanation."""
 
     physics: Physics
     points: int
-    at: FloatArray  # the parameters, and floor (its logarithm) and slope of the scatter
-    unseen: int | None = None  # left-out row
+    at: FloatArray  # parameters, logarithm of the floor of the scatter, and slope of the scatter
+    unseen: int | None = None  # index of the omitted row
     log_likelihood: float = math.nan
-    log_likelihood_unseen: float = math.nan  # of that row
+    log_likelihood_unseen: float = math.nan  # log likelihood of the omitted row
 
 
 def _fit(search: _BedSearch, data: DataSet) -> BedFit:
@@ -284,10 +284,10 @@ UNRESOLVED = 2.0  # difference in BIC below which two explanations are not disti
 class Ranked:
     """An explanation and its scores."""
 
-    fit: BedFit  # at its most likely parameters
-    scores: FloatArray  # logarithmic scores of the measurements, each left out [-]
-    behind: float  # BIC minus the lowest [-]
-    # gain, gain_error: sum of scores minus that of one common bed, and its standard error over the measurements [-]
+    fit: BedFit  # explanation at its most likely parameters
+    scores: FloatArray  # logarithmic scores of the measurements, each omitted from its fit [-]
+    behind: float  # BIC minus the lowest BIC [-]
+    # gain: sum of scores minus that of one common bed; gain_error: its standard error over the measurements [-]
     gain: float
     gain_error: float
 
@@ -309,17 +309,17 @@ class Explanation:
 
     @property
     def plain(self) -> Ranked:
-        """One common bed: the explanation without an effect of mass."""
+        """Explanation by one common bed, without an effect of mass."""
         return next(item for item in self.ranked if item.name == "one bed")
 
     @property
     def unresolved(self) -> tuple[str, ...]:
-        """Names of the explanations not distinguishable from the best one by BIC."""
+        """Names of the explanations whose BIC is not distinguishable from that of the best explanation."""
         return tuple(item.name for item in self.ranked if item.behind < UNRESOLVED)
 
     @property
     def better_unseen(self) -> tuple[str, ...]:
-        """Names of explanations that predict left-out measurements better than one bed, by two standard errors."""
+        """Names of explanations that predict omitted measurements better than one bed, by two standard errors."""
         return tuple(item.name for item in self.ranked if item.gain > 2.0 * item.gain_error > 0.0)
 
     @property

@@ -1,7 +1,7 @@
 """The calibrated default: an interface factor times the shifted impulse, inferred from the 39 measurements.
 
-Model and priors are in docs/theory/evidence.md. On the 39 measurements, a scatter that grows with the loss has a lower
-BIC than a constant scatter by 20 (277 and 297), so its power is inferred too.
+Model and priors are in docs/theory/evidence.md. The scatter grows with a power of the energy loss. On the 39
+measurements, its BIC is 20 lower than that of a constant scatter (277 and 297), so the power is inferred too.
 """
 
 import hashlib
@@ -23,10 +23,10 @@ from rocking.restitution._implied import energy_bound
 from rocking.restitution.calibrated import NAMES, kept, scatter
 from rocking.restitution.shifted_impulse import shifted
 
-CALIBRATED_RANGE = (1.5, 9.75)  # measured range of h/b; outside, an interval is an extrapolation
+CALIBRATED_RANGE = (1.5, 9.75)  # measured range of h/b; outside this range, an interval is an extrapolation
 LEVEL = 0.95
 KEPT = Path(__file__).parent / "data" / "calibration.npz"
-"""Stored posterior and misfits of all models, written by `make calibration`; not used for other measurements."""
+"""Stored posterior and misfits of all models, written by `make calibration`; only for the published measurements."""
 
 _ETA = np.linspace(0.9655, 0.9999, 32)
 _K = np.linspace(0.30, 0.80, 26)
@@ -56,7 +56,7 @@ class PredictedCoefficient:
     coefficient: FloatArray  # expected coefficient [-]
     low: FloatArray  # low, high: ends of the interval for a single measured body [-]
     high: FloatArray
-    standard_deviation: FloatArray  # of a single measured body [-]
+    standard_deviation: FloatArray  # standard deviation for a single measured body [-]
     level: float = LEVEL  # probability of the interval [-]
 
 
@@ -193,7 +193,7 @@ def calibrate() -> Calibration:
 
 
 def fingerprint(data: DataSet, *more: str) -> str:
-    """Return the hash of the inputs of a posterior: measurements, grid, number of samples, and more."""
+    """Return the hash of the inputs of a posterior, such as measurements, grid and number of samples."""
     arrays = (data.slenderness, data.low, data.high, _ETA, _K, _LOG_S, _GAMMA)
     text = [[f"{value:.12g}" for value in values.tolist()] for values in arrays]
     return hashlib.sha256(repr((text, _SAMPLES, *more)).encode()).hexdigest()
@@ -236,11 +236,11 @@ class PosteriorGrid:
     log_prior: FloatArray  # logarithm of the prior; shape (a, b, 1, 1)
     terms: FloatArray  # logarithm of the likelihood of each row; shape (a, b, c, d, n)
     mean: FloatArray  # predicted coefficients [-]; shape (a, b, 1, 1, n)
-    sd: FloatArray  # their scatter [-]; shape (a, b, c, d, n)
+    sd: FloatArray  # scatter of the coefficients [-]; shape (a, b, c, d, n)
 
 
 def posterior_grid(data: DataSet) -> PosteriorGrid:
-    """Return likelihood by row and prior on the grid; rows can be left out without a new evaluation."""
+    """Return the likelihood of each row and the prior on the grid; rows can be omitted without a new evaluation."""
     base = shifted(ImpactGeometry.of_slenderness(data.slenderness), _K[:, None])
     mean = (_ETA[:, None, None] * base)[:, :, None, None, :]
     sd = np.exp(_LOG_S)[:, None, None] * scatter(mean, 1.0, 1.0) ** _GAMMA[:, None]
@@ -251,15 +251,15 @@ def posterior_grid(data: DataSet) -> PosteriorGrid:
 
 
 def log_prior(nodes: Nodes) -> FloatArray:
-    """Return the logarithm of the prior on nodes, but for a constant; shape (a, b, 1, 1)."""
+    """Return the logarithm of the prior on nodes, without its constant; shape (a, b, 1, 1)."""
     eta: FloatArray = 0.5 * np.log1p(-nodes.eta) + 97.5 * np.log(nodes.eta)  # Eq. 135
     k: FloatArray = -0.5 * ((nodes.k - 0.6) / 0.12) ** 2  # Eq. 135
     return eta[:, None, None, None] + k[None, :, None, None]
 
 
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
-    """Return quantiles of a marginal posterior at some probabilities [-] between the nodes of its grid."""
-    # the logarithm of the density is a cubic spline through the nodes, of fourth order in their distance
+    """Return quantiles of a marginal posterior at given probabilities [-], interpolated between grid nodes."""
+    # the logarithm of the density is a cubic spline through the nodes, with an error of fourth order in their distance
     from scipy.interpolate import CubicSpline
 
     even = np.allclose(np.diff(grid, 2), 0.0, atol=1e-9 * abs(grid[-1]))
@@ -287,14 +287,14 @@ def geometry_of(body: Body | Any, foot: Foot) -> tuple[ImpactGeometry, FloatArra
 
 
 def summarised(weight: FloatArray, nodes: Nodes = NODES) -> Calibration:
-    """Return the calibration of weights on nodes."""
+    """Return the calibration from weights on nodes."""
     grids = (nodes.eta, nodes.k, np.exp(nodes.log_s), nodes.gamma)
     axes = range(weight.ndim)
     marginals = {
         name: (grid, weight.sum(axis=tuple(j for j in axes if j != i)))
         for i, (name, grid) in enumerate(zip(NAMES, grids, strict=True))
     }
-    # systematic resampling: equally likely points without random numbers
+    # systematic resampling gives equally likely points without random numbers
     steps = np.cumsum(weight.ravel())
     positions = np.searchsorted(steps, (np.arange(_SAMPLES) + 0.5) / _SAMPLES * steps[-1])
     indices = np.unravel_index(np.minimum(positions, steps.size - 1), weight.shape)
@@ -310,10 +310,10 @@ def _facts(grid: FloatArray, weight: FloatArray) -> dict[str, float]:
 
 
 def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float) -> FloatArray:
-    """Return a quantile of mixtures of normals, one per column, by bracketed Newton iteration; weight: a column."""
+    """Return a quantile of mixtures of normals, one per column, by bracketed Newton iteration; `weight` is a column."""
     low, high = (mean - 8.0 * sd).min(axis=0), (mean + 8.0 * sd).max(axis=0)
     value = (weight * mean).sum(axis=0)
-    active = np.arange(value.size)  # columns without convergence
+    active = np.arange(value.size)  # columns that have not converged
     for _ in range(100):
         current, spread = value[active], sd[:, active]
         z = (current - mean[:, active]) / spread
@@ -322,7 +322,7 @@ def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float
         slope = (weight * np.exp(-0.5 * z * z) / spread).sum(axis=0) / math.sqrt(2.0 * math.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = excess / slope
-        # near the root, rounding may give a step out of the bracket
+        # near the root, rounding can give a step out of the bracket
         moved = ~(np.abs(step) < 1e-13)
         following = current - step
         inside = ~moved | ((following > low) & (following < high))
@@ -335,11 +335,11 @@ def _quantile(mean: FloatArray, sd: FloatArray, weight: FloatArray, level: float
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """Numbers of left-out measurements inside their intervals."""
+    """Numbers of omitted measurements inside their intervals."""
 
     rows: int  # number of measurements
-    one_by_one: int  # measurements inside the interval of a calibration without them
-    # by data set: number inside and total number, for a calibration without the data set
+    one_by_one: int  # number of measurements inside the interval of a calibration without this measurement
+    # number inside and total number by data set, for a calibration without this data set
     by_group: dict[str, tuple[int, int]]
 
     @property
@@ -356,8 +356,8 @@ class Coverage:
 
 
 def coverage(data: DataSet | None = None) -> Coverage:
-    """Return the coverage of measurements left out of a calibration."""
-    # the posterior without some rows is the posterior divided by their likelihood, so one grid is enough
+    """Return the coverage of measurements that are omitted from a calibration."""
+    # the posterior without some rows is the posterior divided by the likelihood of these rows, so one grid is enough
     data = all_measurements() if data is None else data
     grid = posterior_grid(data)
     log_posterior = grid.log_prior + grid.terms.sum(axis=-1)

@@ -23,7 +23,7 @@ from rocking.evidence.comparison import (
 from rocking.evidence.measurements import DataSet, blocks, datasets
 from rocking.restitution import Housner, Ked, RestitutionModel
 
-Judge = Callable[[], tuple[str, str]]  # returns a verdict, and the numbers
+Judge = Callable[[], tuple[str, str]]  # function that returns a verdict and the numbers
 JUDGES: list[tuple[str, str, str, Judge]] = []  # section, quote, test and judging function of each claim
 
 HOLDS, IN_PART, FAILS, UNTESTABLE = "holds", "holds in part", "does not hold", "not testable"
@@ -37,14 +37,14 @@ VERDICTS = {
     UNRESOLVED: "are not distinguishable with so few blocks",
     UNTESTABLE: "are not testable",
 }
-"""Verdicts, with the verb for several claims."""
+"""Verdicts, with their verb in the plural."""
 
 
 @dataclass(frozen=True, slots=True)
 class Claim:
     """A claim of the paper, with the verdict from the published measurements."""
 
-    section: str  # of the paper
+    section: str  # section of the paper
     quote: str  # the claim, in the paper's words or close to them
     verdict: str  # "holds", "holds in part", "does not hold", "not resolved" or "not testable"
     evidence: str  # the numbers
@@ -74,12 +74,12 @@ def truth(name: str) -> tuple[DataSet, FloatArray, FloatArray]:
 
 
 def verdict_of(holds: bool) -> str:
-    """Return the verdict on a claim that holds or does not hold."""
+    """Return the verdict on a claim that either holds or does not hold."""
     return HOLDS if holds else FAILS
 
 
 def all_or_open(*differences: Difference) -> str:
-    """Return the verdict on a claim of several positive differences; it fails if one is negative."""
+    """Return the verdict on a claim of several positive differences; the claim fails if one difference is negative."""
     return resolved(min(difference.sign for difference in differences))
 
 

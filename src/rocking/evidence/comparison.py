@@ -16,7 +16,7 @@ from rocking.restitution import RestitutionModel
 
 _RESAMPLES = 4000
 _SEED = 20240710
-FEWEST = 5  # minimum number of specimens; four agree by chance with probability 1/8
+FEWEST = 5  # minimum number of specimens; four specimens agree by chance with probability 1/8
 
 MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "r": lambda r: r,
@@ -36,7 +36,7 @@ class Difference:
 
     @classmethod
     def of(cls, values: FloatArray) -> "Difference":
-        """Return the difference from its value and those of the resamples."""
+        """Return the difference with its interval, from its value and the values of the resamples."""
         return cls(float(values[0]), *np.quantile(values[1:], [0.025, 0.975]).tolist())
 
     @property
@@ -50,7 +50,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Difference):
-    """Error of one model minus that of another, with a paired bootstrap interval; infinite for few specimens."""
+    """Error of a model minus error of another model; the paired bootstrap interval is infinite for few specimens."""
 
     first: float  # first, second: root mean square errors [-]
     second: float
@@ -70,7 +70,7 @@ class Comparison(Difference):
 
 
 def compare(data: DataSet, first: FloatArray, second: FloatArray, measure: str = "r") -> Comparison:
-    """Compare the predictions of two models; an exchange of the models changes only signs."""
+    """Compare the predictions of two models. An exchange of the models changes only the signs."""
     transform = MEASURES[measure]
     with np.errstate(divide="ignore"):
         squares = [(transform(np.asarray(r)) - transform(data.coefficient)) ** 2 for r in (first, second)]
@@ -111,12 +111,12 @@ def errors_of_groups(
 
 def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:
     """Return root mean squares of the resamples."""
-    # a sum, not a matrix product, for equal results on all processors
+    # a sum in place of a matrix product gives equal results on all processors
     return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))  # Eq. 139
 
 
 def drawn(data: DataSet) -> FloatArray:
-    """Return the multiplicity of each row in each resample; specimens are resampled within data sets, fixed seed."""
+    """Return the multiplicity of each row in each resample of specimens within data sets, with a fixed seed."""
     return _drawn(data.group, data.labels)
 
 
@@ -142,7 +142,7 @@ def bias(model: FloatArray, measured: FloatArray) -> float:
 
 
 def correlation(model: FloatArray, measured: FloatArray) -> float:
-    """Pearson's correlation coefficient, blind to bias and scale; NaN if the model is constant."""
+    """Pearson's correlation coefficient, independent of bias and scale; NaN if the model is constant."""
     dm, de = model - model.mean(), measured - measured.mean()
     scale = float(np.sqrt((dm @ dm) * (de @ de)))
     return float(dm @ de) / scale if scale > 0.0 else float("nan")
@@ -164,7 +164,7 @@ def _ranks(values: FloatArray) -> FloatArray:
 
 
 def concordance(model: FloatArray, measured: FloatArray) -> float:
-    """Lin's concordance (Biometrics 45, 1989): correlation with penalties for bias and scale."""
+    """Lin's concordance (Biometrics 45, 1989), a correlation with penalties for bias and scale."""
     covariance = float(np.mean((model - model.mean()) * (measured - measured.mean())))
     return 2.0 * covariance / float(model.var() + measured.var() + (model.mean() - measured.mean()) ** 2)
 
@@ -175,18 +175,18 @@ def loss_rmse(model: FloatArray, measured: FloatArray) -> float:
 
 
 def log_loss_rmse(model: FloatArray, measured: FloatArray) -> float:
-    """Root mean square of ln((1 - r_model^2) / (1 - r_measured^2)): relative error of the loss, .1 is about 10 %."""
+    """Root mean square of ln((1 - r_model^2) / (1 - r_measured^2)), about the relative error of the energy loss."""
     with np.errstate(divide="ignore"):
         return rmse(np.log1p(-(model**2)), np.log1p(-(measured**2)))
 
 
 def relative_error(model: FloatArray, measured: FloatArray) -> FloatArray:
-    """Relative error as the paper defines it, |measured - model| / measured [-]."""
+    """Relative error by the definition of the paper, |measured - model| / measured [-]."""
     return np.asarray(np.abs(measured - model) / measured)
 
 
 def zone(error: FloatArray) -> list[str]:
-    """Sort relative errors into the paper's zones: I below 1 %, II to 5 %, III above.
+    """Sort relative errors into the zones of the paper: I below 1 %, II from 1 to 5 %, III above 5 %.
 
     >>> zone(np.array([0.005, 0.03, 0.2]))
     ['I', 'II', 'III']

@@ -1,6 +1,6 @@
 """The comparison of Gaibor and Lopez (2026), arXiv:2606.14288: harmonic rocking by restitution model and slenderness.
 
-The parameters of the paper are not known: those of this module are our own.
+The parameters of the paper are unknown; this module uses its own parameters.
 """
 
 import math
@@ -31,23 +31,24 @@ from rocking.studies.longrun.basins import LOST as OVERTURNED_CELL
 from rocking.studies.longrun.basins import cells
 
 SLENDERNESS, MODELS = (2, 3, 4, 6, 8, 10), ("housner", "ked", "calibrated")
-LOWEST, HIGHEST, TOP_SPEED = 0.2, 6.0, 2.0  # amplitude ratios; speeds of starts over alpha p
+LOWEST, HIGHEST, TOP_SPEED = 0.2, 6.0, 2.0  # range of amplitude ratios; largest start speed / (alpha p)
 BASIN_FREQUENCY, BASIN_AMPLITUDE = 3.0, 1.5
-SMALLEST_PEAK = 0.01  # over alpha, of motions with an exponent: smaller ones are rests with slow last impacts
+# smallest peak / alpha of a motion with an exponent; a smaller motion is rest after slow last impacts
+SMALLEST_PEAK = 0.01
 BIFURCATIONS = ("fold", "pitchfork", "first_doubling", "second_doubling")
-_LIMITS = (0.0, 100.0)  # amplitudes of continuations
+_LIMITS = (0.0, 100.0)  # range of amplitudes in continuations
 
 
 @dataclass(frozen=True)
 class ComparisonEffort:
-    """Numbers of a reproduction: frequency ratios, amplitude steps, starts, amplitudes of a cascade, basin cells."""
+    """Effort of a reproduction: frequency ratios, amplitude steps, starts, amplitudes of a cascade, basin cells."""
 
     frequencies: tuple[float, ...] = (2.0, 5.0)
-    step: float = 0.1  # of amplitudes with several starts
-    step_at_rest: float = 0.04  # of amplitudes with a start at rest
-    starts: int = 4  # phases, and speeds
+    step: float = 0.1  # step of amplitudes with several starts
+    step_at_rest: float = 0.04  # step of amplitudes with a start at rest
+    starts: int = 4  # number of start phases, and of start speeds
     cascade: int = 100
-    cells: int = 50  # phases, and speeds
+    cells: int = 50  # number of phases, and of speeds, of a basin
 
     def amplitudes(self, step: float) -> FloatArray:
         return np.round(np.arange(round(LOWEST / step), round(HIGHEST / step) + 1) * step, 6)
@@ -95,13 +96,13 @@ class HarmonicCase:
     slenderness: int
     model: str
     frequency: float
-    numbers: dict[str, float]  # by the names of `QUANTITIES_OF_CASES`; NaN for none
+    numbers: dict[str, float]  # values by the names of `QUANTITIES_OF_CASES`; NaN without a value
     from_rest: dict[str, float]  # fraction of amplitudes by kind
     is_complex: Any  # amplitudes with an attractor of several periods or chaos
     is_chaotic: Any  # amplitudes with chaos
-    attractors: FloatArray  # amplitude and rotation over alpha, shape (points, 2)
-    exponents: FloatArray  # amplitude and largest exponent over p from rest, shape (amplitudes, 2)
-    cascade: FloatArray  # amplitude, rotation over alpha and largest exponent over p, shape (points, 3)
+    attractors: FloatArray  # amplitude and rotation / alpha, shape (points, 2)
+    exponents: FloatArray  # amplitude and largest exponent / p after a start at rest, shape (amplitudes, 2)
+    cascade: FloatArray  # amplitude, rotation / alpha and largest exponent / p, shape (points, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +130,7 @@ class GaiborReproduction:
         return float((self.basins[slenderness, model] == OVERTURNED_CELL).mean())
 
     def claims(self) -> tuple[Claim, ...]:
-        """Return the statements of the abstract in their senses, with verdicts."""
+        """Return the statements of the abstract in their possible meanings, with verdicts."""
         return (*_onset(self), *_prevalence(self), *_convergence(self))
 
     def answer(self) -> Answer:
@@ -159,7 +160,7 @@ def steps(effort: ComparisonEffort = FAST) -> int:
 
 
 def reproduce(effort: ComparisonEffort = FAST, step: Callable[[str], None] = lambda name: None) -> GaiborReproduction:
-    """Compute the comparison; step: called before each step."""
+    """Compute the comparison; `step` is called before each step."""
     cases, basins = [], {}
     for slenderness in SLENDERNESS:
         for model in MODELS:
@@ -216,14 +217,14 @@ def case(slenderness: int, model: str, frequency: float, effort: ComparisonEffor
 def _diagram(
     system: HarmonicRocking, amplitudes: FloatArray, states: Any, cycles: tuple[int, int], memory: str = "none"
 ) -> dict[str, Any]:
-    """Return the attractors over the amplitude from phases and speeds after an impact."""
+    """Return the attractors over the amplitude, from starts with several phases and speeds after an impact."""
     systems = [system.changed("amplitude", value) for value in amplitudes.tolist()]
     starts = np.tile(start_states(system, states), (len(systems), 1, 1))
     return diagram(systems, starts, memory=memory, cycles=cycles, exponents=True)
 
 
 def _attractors(system: HarmonicRocking, amplitudes: FloatArray, states: Any, cycles: tuple[int, int]) -> Any:
-    """Return diagram, kinds and periods, shape (amplitudes, starts); irregular is chaos, after 2,000 more periods."""
+    """Return diagram, kinds and periods, shape (amplitudes, starts); chaos is irregular after 2,000 more periods."""
     diagram = _diagram(system, amplitudes, states, cycles)
     kind, period = diagram["attractor"].copy(), diagram["periods"].copy()
     doubtful = np.flatnonzero((kind == IRREGULAR).any(axis=1))
@@ -244,7 +245,7 @@ def _points(amplitudes: FloatArray, rotation: FloatArray, is_kept: Any) -> Float
 
 
 def main_branch(system: HarmonicRocking) -> list[Bifurcation]:
-    """Return fold, pitchfork and two period doublings of the symmetric orbit over the amplitude."""
+    """Return the amplitudes of fold, pitchfork and two period doublings of the symmetric orbit."""
     scale = (1.0 + system.frequency_ratio**2) / 5.0
     orbit = symmetric_orbit(system.changed("amplitude", 1.2 * scale))
     fold = continue_orbit(orbit, _LIMITS, increasing=False, stop=_is("fold")).first("fold")
@@ -260,7 +261,7 @@ def _is(kind: str) -> Callable[[Bifurcation], bool]:
 
 
 def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[str, float]]:
-    """Follow the attractor from the second period doubling until it overturns; return points and numbers."""
+    """Follow the attractor from the second period doubling until overturning; return points and numbers."""
     first, second = branch[2:]
     values = second.value + np.linspace(0.0, second.value - first.value, number + 1)[1:]
     orbit = second.orbit
@@ -277,10 +278,10 @@ def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[s
         last = [diagram[name][at, 0, -1] * orbit.system.alpha for name in ("rotation_ratio", "velocity_ratio")]
         time = start_states(orbit.system, [[orbit.phase, 0.0]])[0, 0]
         rows = np.tile([time, last[0], last[1] * p], (16, 1))
-        rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # chaos makes these orbits independent
+        rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # nearly equal starts, which chaos makes independent
         system = orbit.system.changed("amplitude", float(values[at]))
         result = lyapunov_exponents(system, starts=rows, settled=500, kept=1000)
-        if len(result.finite) > 3:  # others overturn later: chaos is a transient
+        if len(result.finite) > 3:  # if fewer orbits remain, the chaos is transient, because orbits overturn later
             exponents = (float(result.values[0] / p), float(result.standard_errors[0] / p))
             break
     names = ("chaos_step", "chaos_width", "largest_exponent", "largest_exponent_error")
@@ -317,8 +318,8 @@ def _onset(result: GaiborReproduction) -> list[Claim]:
 
 
 def _earlier(pairs: Pairs, title: str, values: FloatArray, resolution: float) -> Claim:
-    """Judge whether KED's amplitudes are smaller than Housner's; one step of amplitudes is no difference."""
-    housner, ked = np.nan_to_num(values, nan=1e9)  # NaN: none
+    """Test if the amplitudes are smaller with KED than with Housner's model; one step is no difference."""
+    housner, ked = np.nan_to_num(values, nan=1e9)  # NaN means no event
     gap = (ked - housner) / (1.01 * resolution)
     earlier, later, first = int((gap < -1.0).sum()), int((gap > 1.0).sum()), pairs[0][0]
     texts = [f"{value:.4f}" if value < 1e9 else "none" for value in (ked[0], housner[0])]
@@ -396,7 +397,7 @@ def _convergence(result: GaiborReproduction) -> list[Claim]:
 
 
 def _basin_claim(result: GaiborReproduction, other: str) -> Claim:
-    """Judge whether the difference in overturning cells decreases from its maximum on, within the counting noise."""
+    """Test if the difference in overturning cells decreases after its maximum, within the counting noise."""
     gap, noise = [], []
     for slenderness in SLENDERNESS:
         first, second = (result.basins[slenderness, model] == OVERTURNED_CELL for model in (other, "housner"))

@@ -28,7 +28,7 @@ from rocking.restitution.calibrated import KEPT, kept
 from rocking.restitution.shifted_impulse import shifted
 
 LEVELS = ("laboratory", "interface", "block", "measurement")
-"""Levels of the variance, from the most common rows to single rows."""
+"""Levels of the variance, from groups with the most rows to single rows."""
 
 NODES = Nodes(
     np.linspace(0.9655, 0.9999, 17),
@@ -36,16 +36,16 @@ NODES = Nodes(
     np.linspace(math.log(0.02), math.log(0.80), 12),
     np.linspace(0.20, 1.50, 8),
 )
-"""Coarser than the grid for independent rows; a posterior as wide as a step or more is integrated to 1e-4."""
-_SHARES, _PARTS = 10, 4  # nodes of the variance fraction between groups, and of its subdivision
+"""Grid, coarser than for independent rows. Integrals of a posterior as wide as a step or more have an error of 1e-4."""
+_SHARES, _PARTS = 10, 4  # numbers of nodes of the variance fraction between groups, and of its subdivision
 
 
 @dataclass(frozen=True, eq=False)
 class HierarchicalCalibration(Calibration):
     """Posterior of the calibrated default for a body on a new interface."""
 
-    # expected fractions of the variance of a new measurement: laboratory, interface, block and measurement; without
-    # two groups of a laboratory, or two rows of a block, the first or third is part of the next level [-]
+    # Expected fractions of the variance of a new measurement: laboratory, interface, block and measurement [-]. If no
+    # laboratory has two groups, the first fraction is part of the next level. If no block has two rows, the third is.
     shares: dict[str, float]
 
 
@@ -55,7 +55,7 @@ class LeftOut:
 
     name: str  # group and interface
     measurements: int  # number of measurements
-    inside: int  # measurements within their intervals for a single measured body
+    inside: int  # number of measurements within their intervals for a single measured body
     interval_width: float  # mean width of these intervals [-]
     probability: float  # predicted probability of a lower mean than that of the group [-]
 
@@ -112,7 +112,7 @@ def _calibrated(data: DataSet) -> HierarchicalCalibration:
 
 
 def hierarchy_fingerprint(data: DataSet) -> str:
-    """Return the hash of the inputs of this posterior."""
+    """Return the hash of the inputs of the hierarchical posterior."""
     nodes = [[f"{value:.12g}" for value in axis.tolist()] for axis in vars(NODES).values()]
     return fingerprint(data, repr((tree(data), data.coefficient.tolist(), nodes, _SHARES, _PARTS)))
 
@@ -143,7 +143,7 @@ def left_out_groups(measurements: DataSet | None = None) -> tuple[LeftOut, ...]:
 
 @lru_cache(maxsize=8)
 def unseen(data: DataSet) -> FloatArray:
-    """Return the expected coefficients of all rows, each from a calibration without its group [-]."""
+    """Return the expected coefficients of all rows, each row from a calibration without its group [-]."""
     stored = kept(KEPT)
     if stored["inputs"] == hierarchy_fingerprint(data):
         return np.array(stored["unseen"])
@@ -155,7 +155,7 @@ def unseen(data: DataSet) -> FloatArray:
 
 
 def sentence_of(calibration: HierarchicalCalibration, groups: tuple[LeftOut, ...]) -> str:
-    """Return a sentence on the scatter of new interfaces, and on predictions of left-out groups."""
+    """Return a sentence on the scatter of new interfaces, and on predictions of omitted groups."""
     shares = ", ".join(f"{100.0 * share:.0f} % by {name}" for name, share in calibration.shares.items() if share > 0.0)
     rows, inside = sum(group.measurements for group in groups), sum(group.inside for group in groups)
     width = sum(group.measurements * group.interval_width for group in groups) / rows
@@ -182,7 +182,7 @@ def _groups(data: DataSet) -> list[str]:
 
 
 def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[float, ...]]:
-    """Return the nodes of the variance fractions; levels that no rows distinguish are not divided."""
+    """Return the nodes of the variance fractions. Levels that the rows cannot distinguish are not divided."""
     groups = [group for laboratory in tree.values() for group in laboratory.values()]
     has_groups = any(len(laboratory) > 1 for laboratory in tree.values())
     has_repeats = any(len(rows) > 1 for group in groups for rows in group.values())
@@ -193,7 +193,7 @@ def _shares(tree: dict[str, dict[str, dict[Any, list[int]]]]) -> list[tuple[floa
 
 @dataclass(frozen=True)
 class _Sums:
-    """Sums over rows with a common effect, arrays on the grid of (eta, k, s, gamma)."""
+    """Sums over rows with a common effect, as arrays on the grid of (eta, k, s, gamma)."""
 
     precision: Any = 0.0
     moment: Any = 0.0
@@ -214,19 +214,19 @@ class _Sums:
 
 
 class _Posterior:
-    """The posterior on nodes, by laboratory; groups can be left out without a complete new computation."""
+    """The posterior on nodes, by laboratory; groups can be omitted without a complete new computation."""
 
     def __init__(self, data: DataSet, nodes: Nodes) -> None:
         self.data, self.nodes, self.tree = data, nodes, tree(data)
         self.shares = _shares(self.tree)
         base = shifted(ImpactGeometry.of_slenderness(data.slenderness), nodes.k[:, None])
-        self.mean = np.moveaxis(nodes.eta[:, None, None] * base, -1, 0)[..., None, None]  # row, eta, k, 1, 1
-        self.variance = np.exp(2.0 * nodes.log_s)[:, None]  # s, 1
+        self.mean = np.moveaxis(nodes.eta[:, None, None] * base, -1, 0)[..., None, None]  # axes: row, eta, k, 1, 1
+        self.variance = np.exp(2.0 * nodes.log_s)[:, None]  # axes: s, 1
         self.rounding = (data.high - data.low) ** 2 / 12.0
         self.log_prior = log_prior(nodes)[..., None]
 
     def loading(self, row: int) -> FloatArray:
-        """Return the scatter of a row over s, on the grid of (eta, k, 1, gamma) [-]."""
+        """Return the scatter of a row / s, on the grid of (eta, k, 1, gamma) [-]."""
         return np.asarray(np.maximum(1.0 - self.mean[row], 1e-6) ** self.nodes.gamma)  # Eq. 133
 
     def term(self, groups: dict[str, dict[Any, list[int]]]) -> FloatArray:
@@ -258,7 +258,7 @@ class _Posterior:
         return self.calibration(np.broadcast_to(self.log_prior + sum(map(self.term, self.tree.values())), shape))
 
     def calibration(self, logarithm: FloatArray) -> HierarchicalCalibration:
-        """Return the calibration of a logarithm of weights."""
+        """Return the calibration from logarithms of weights."""
         weight = normalised(logarithm)
         calibration, expected = (
             summarised(weight.sum(axis=-1), self.nodes),
@@ -267,7 +267,7 @@ class _Posterior:
         return HierarchicalCalibration(**vars(calibration), shares=dict(zip(LEVELS, expected.tolist(), strict=True)))
 
     def left_out(self, name: str, blocks: list[list[int]], logarithm: FloatArray) -> LeftOut:
-        """Return a group compared with predictions from the weights of the others, as of a new laboratory."""
+        """Return a group compared with predictions from the other groups; the group counts as a new laboratory."""
         rows = [i for block in blocks for i in block]
         prediction = self.calibration(logarithm).predict(self.data.slenderness[rows])
         measured = self.data.coefficient[rows]
@@ -276,7 +276,7 @@ class _Posterior:
         return LeftOut(name, len(rows), inside, float((prediction.high - prediction.low).mean()), probability)
 
     def _below_mean(self, weight: FloatArray, blocks: list[list[int]]) -> float:
-        """Return the predicted probability of a mean of rows below the measured mean."""
+        """Return the predicted probability that the mean of rows is below the measured mean."""
         from scipy.special import ndtr
 
         rows = [i for block in blocks for i in block]

@@ -44,7 +44,7 @@ class TrackRecord:
     bias: float  # mean of model minus measurement [-]
     rmse: float  # rmse, loss_rmse: root mean square errors of r, and of the energy loss 1 - r^2 [-]
     loss_rmse: float
-    behind: Difference  # rmse minus that of the closest, with its 95 % interval [-]
+    behind: Difference  # RMSE minus the RMSE of the closest model, with its 95 % interval [-]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,11 +55,11 @@ class Judgement:
     description: str  # description of these measurements
     rounding: float  # root mean square of the half widths of rounding [-]
     calibrated: TrackRecord
-    models: tuple[TrackRecord, ...]  # in the order of the models
+    models: tuple[TrackRecord, ...]  # records in the order of the models
 
 
 def judge(models: Sequence[RestitutionModel], ratios: tuple[float, ...], data: DataSet) -> Judgement:
-    """Compare models with measurements for a body; ratios: slenderness of its sides [-]."""
+    """Compare models with measurements for a body; `ratios` are the slenderness ratios of its sides [-]."""
     selected, description = _like(ratios, data)
     rows = data.rows(selected.tolist())
     predicted = [unseen(data)[selected], *(model.of_slenderness(rows.slenderness) for model in models)]

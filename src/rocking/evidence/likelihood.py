@@ -14,15 +14,15 @@ _erfc = np.frompyfunc(math.erfc, 1, 1)
 
 def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
     """Return the logarithm of the probability of a normal value in the interval of rounding."""
-    # ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast
+    # ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))`` in a form that is stable far in the tails; arrays broadcast
     from scipy.special import log_ndtr, ndtr
 
     a, b = (low - mean) / sd, (high - mean) / sd
-    # two ends on one side of zero have full precision in the lower tail
+    # if both ends are on one side of zero, the lower tail has full precision
     flip = a > 0.0
     a, b = np.where(flip, -b, a), np.where(flip, -a, b)
     probability = ndtr(b) - ndtr(a)  # Eq. 134
-    deep = ~(probability > 1e-290)  # the probability underflows, its logarithm does not
+    deep = ~(probability > 1e-290)  # here the probability underflows, but not its logarithm
     if not deep.any():
         return np.log(probability)
     upper, lower = log_ndtr(b[deep]), log_ndtr(a[deep])
@@ -51,5 +51,5 @@ def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
 
 
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
-    """Return BIC of the likelihood with rounding, -2 ln L + (parameters + 2) ln n: two parameters of the scatter."""
+    """Return the BIC of the likelihood with rounding, -2 ln L + (parameters + 2) ln n; 2 for the scatter parameters."""
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138

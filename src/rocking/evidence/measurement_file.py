@@ -25,10 +25,10 @@ from rocking.messages import Range
 
 _LARGEST, _MOST = 16 * 2**20, 100_000  # maximum bytes of a file, maximum number of measurements
 _RATIOS, _USUAL_RATIOS = (0.5, 200.0), (1.0, 30.0)
-"""Allowed and usual range of h/b; below 0.71, a block with Housner's model stops at the first impact [-]."""
+"""Allowed and usual range of h/b [-]. Below 0.71, a block stops at the first impact in Housner's model."""
 
 _DEVIATIONS, _USUAL_DEVIATIONS = (1e-6, 0.29), (1e-4, 0.1)
-"""Allowed and usual range of the standard deviation of r; a uniform distribution on 0 to 1 has 0.29 [-]."""
+"""Allowed and usual range of the standard deviation of r [-]; that of a uniform distribution from 0 to 1 is 0.29."""
 
 Word = Annotated[str, Field(min_length=1, max_length=300)]
 Coefficient = Annotated[float, Field(gt=0.0, le=2.0)]
@@ -80,7 +80,7 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
     (4.0, [0.93, 0.94, 0.95])
     """
 
-    model_config = ConfigDict(defer_build=False)  # the signature is documentation
+    model_config = ConfigDict(defer_build=False)  # built now, because the signature is documentation
 
     source: Word = Field(description="publication or author of the measurement")
     licence: Word = Field(description="licence for use by others, such as CC BY 4.0")
@@ -168,7 +168,7 @@ class Measurement(BlockSides):  # type: ignore[misc]  # made of the fields of a 
 
     @property
     def interval(self) -> tuple[float, float, float]:
-        """Lower end, r, upper end; a standard deviation gives the uniform interval with this deviation [-]."""
+        """Lower end, r, upper end [-]. A standard deviation gives the uniform interval with this deviation."""
         if self.r is not None and self.low is not None and self.high is not None:
             return self.low, self.r, self.high
         series = np.array([self.r] if self.series is None else self.series)
@@ -284,7 +284,7 @@ def _value(key: str, field: str) -> Any:
     try:
         return [float(word) for word in field.split()] if key == "series" else float(field)
     except ValueError:
-        return field  # the model rejects it as not a number
+        return field  # the model rejects the text as not a number
 
 
 _NUMBERS = {"slenderness_ratio", "mass", "r", "series", "uncertainty", "low", "high", *BlockSides.model_fields}

@@ -12,10 +12,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 
-GROUPS = ("table1", "S", "M", "L")  # the independent data sets; Table 2 contains means of Table 1
+GROUPS = ("table1", "S", "M", "L")  # independent data sets, without Table 2, which contains means of Table 1
 
 BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np.inf))
-"""Slenderness bands of the league table: name, lower limit (excluded), upper limit (included)."""
+"""Slenderness bands of the league table: name, exclusive lower limit, inclusive upper limit."""
 
 _COLUMNS = ("slenderness", "coefficient", "low", "high", "mass")
 _WORDS = ("labels", "group", "interface", "laboratory")

@@ -22,7 +22,7 @@ LEGEND = (
     "error: mean and root mean square of r minus the measurement."
 )
 """Columns of the table, except those of r."""
-APART = 3.92  # standard errors between two values; 97.5 % of measurements are then nearer to the correct one
+APART = 3.92  # standard errors between two values, so that 97.5 % of measurements are nearer to the correct value
 
 
 def product(coefficients: Mapping[str, float]) -> float:
@@ -34,9 +34,9 @@ def product(coefficients: Mapping[str, float]) -> float:
 class ModelForBody:
     """A model for one body: coefficients, rank and limitations."""
 
-    name: str  # name, title: name with parameters, and the model in one line
+    name: str  # name: model with its parameters; title: description of the model in one line
     title: str
-    # closest to the measurements, not resolved, further off, does not hold for this body, or not measured
+    # rank: closest to the measurements, not resolved, further off, does not hold for this body, or not measured
     standing: Standing
     # theta_dot_after / theta_dot_before by landing foot or edge; empty if the model does not hold [-]
     coefficients: Mapping[str, float]
@@ -48,7 +48,7 @@ class ModelForBody:
     reasons: tuple[str, ...] = ()  # reasons why the model does not hold for this body
     concerns: tuple[str, ...] = ()  # known defects of the model for this body, with their size
     outcome: Outcome | None = None  # outcome under the motion, if any
-    peak_ratio: float = math.nan  # peak rotation over the slenderness angle of its side, NaN without a motion [-]
+    peak_ratio: float = math.nan  # peak rotation / slenderness angle of its side, NaN without a motion [-]
 
     @property
     def energy_left(self) -> float:
@@ -56,14 +56,14 @@ class ModelForBody:
         return product(self.coefficients) ** 2 if len(self.coefficients) == len(FEET) else math.nan  # Eq. 113
 
     def scatter(self, foot: Foot) -> float:
-        """Return the standard deviation of single measured bodies about the model, landing on a foot [-]."""
-        # the shorter side may be truncated at 0 or at the energy bound
+        """Return the standard deviation of single measured bodies about the model, for landing on a foot [-]."""
+        # the shorter side of the interval may be truncated at 0 or at the energy bound
         r = self.coefficients[foot]
         return max(self.high[foot] - r, r - self.low[foot]) / NORMAL_95
 
     @property
     def impacts_to_half(self) -> float:
-        """Number of impacts that halve the energy and the amplitude of small rotations; 0 if the body stops [-]."""
+        """Number of impacts that halve the energy, and the amplitude of small rotations; 0 if the body stops [-]."""
         kept = self.energy_left
         return 0.0 if kept == 0.0 else math.inf if kept >= 1.0 else 2.0 * math.log(0.5) / math.log(kept)
 
@@ -164,7 +164,7 @@ class Recommendation(Exported):
 
     @property
     def remaining(self) -> tuple[str, ...]:
-        """Names of the models that hold and are not excluded by measurements."""
+        """Names of the models that hold for the body and are not excluded by measurements."""
         return tuple(candidate.name for candidate in self.models if self._remains(candidate))
 
     def _remains(self, candidate: ModelForBody) -> bool:

@@ -156,14 +156,14 @@ def _refusals(candidate: RestitutionModel, body: Body) -> tuple[str, ...]:
             return (str(error),)
         objections += [flag.value for flag in evaluated.flags]
         means = implied(body, evaluated.coefficient, foot=foot)
-        # measured rectangles lose more energy than an impulse on the base explains: the interface factor
+        # the interface factor, because measured rectangles lose more energy than an impulse on the base explains
         beyond = means.within_energy and (_is_rectangle(body) or isinstance(candidate, Interface))
         objections += [] if beyond else [f"on the {foot} foot it {objection}" for objection in means.objections]
     return tuple(dict.fromkeys(objections))
 
 
 def _concerns(restitution: RestitutionModel, body: Body) -> tuple[str, ...]:
-    """Return the dependence of a model on the mass distribution, for a body unlike the measured ones."""
+    """Return the dependence of a model on the mass distribution, for a body that differs from the measured bodies."""
     if restitution.inertia_only or _is_rectangle(body):
         return ()
     differences = []
@@ -199,7 +199,7 @@ def _row(
 
 
 def _is_rectangle(body: Body) -> bool:
-    """Return True for a body like the measured ones: a homogeneous rectangle on its full base, by its moments."""
+    """Return True for a body of the measured type: by its moments, a homogeneous rectangle on its full base."""
     geometry = ImpactGeometry.of_body(body, "right")
     b, h = float(geometry.new_lever), float(geometry.height)
     like = math.isclose(geometry.spread_x, b * b / 3.0, rel_tol=1e-6) and math.isclose(
@@ -235,7 +235,7 @@ def _outside(body: Body, data: DataSet) -> tuple[tuple[str, ...], tuple[str, ...
 def _picked(
     body: Any, rows: list[ModelForBody], judgement: Judgement | None, outside: tuple[str, ...], notes: tuple[str, ...]
 ) -> Recommendation:
-    """Apply the rule: the calibrated default for a single value; if excluded, the closest remaining model."""
+    """Return the model for a single value: the calibrated default, or if excluded, the closest remaining model."""
     undecided = Recommendation(body, tuple(rows), judgement, outside, notes, "", ())
     remains = [row for row in rows if row.name in undecided.remaining]
     holds = [row for row in rows if row.standing is not Standing.EXCLUDED]
@@ -257,7 +257,7 @@ def _moved(recommendation: Recommendation, motion: Any, posterior: Calibration) 
     pairs = [dict(item.coefficients) for item in holds]
     pairs += [dict(zip(FEET, item, strict=True)) for item in drawn.T.tolist()]
     with warnings.catch_warnings():
-        # sampled coefficients may be below all measurements; they are not user input
+        # no warning for sampled coefficients below all measurements, because they are not input of the user
         warnings.simplefilter("ignore", PlausibilityWarning)
         results = simulate_many(body, motion, pairs).squeeze(["body", "motion", "scale"])
     outcomes = [list(Outcome)[code] for code in results["outcome"].values.tolist()]

@@ -15,10 +15,10 @@ def minimise_many(
 ) -> FloatArray:
     """Return the lowest point of each search, shape (searches, n).
 
-    Each search has the steps of ``scipy.optimize.minimize(method="Nelder-Mead", options={"adaptive": True})`` and the
-    same end: a simplex smaller than the tolerance in position and value, or a maximum number of evaluations. Searches
-    with fewer than n variables are padded with zeros. The function has points, shape (points, n), and the index of the
-    search of each point as arguments, and returns values.
+    Each search has the steps of ``scipy.optimize.minimize(method="Nelder-Mead", options={"adaptive": True})`` and an
+    equal criterion for its end: a simplex smaller than the tolerance in position and value, or a maximum number of
+    evaluations. Searches with fewer than n variables are padded with zeros. The arguments of the function are points,
+    shape (points, n), and the index of the search of each point. The function returns values.
     """
     count, width = starts.shape
     simplices = np.repeat(starts[:, None], width + 1, axis=1)
@@ -31,7 +31,7 @@ def minimise_many(
     best = np.empty_like(starts)
     search = np.arange(count)
     while search.size:
-        order = np.argsort(values, axis=1)  # corners beyond the variables of a search are last
+        order = np.argsort(values, axis=1)  # unused corners of a search with fewer variables come last
         simplices = np.take_along_axis(simplices, order[:, :, None], axis=1)
         values = np.take_along_axis(values, order, axis=1)
         has = np.arange(1, width + 1) <= sizes[:, None]
@@ -62,7 +62,7 @@ def _step(
     left -= 1
     lowest, worst = value < values[:, 0], value >= last
     is_kept = ~lowest & (value < second_last)
-    # a second point: beyond the first, between the middle and the first, or before the middle
+    # second point: beyond the first point, between the middle and the first point, or before the middle
     factor = np.where(lowest[:, None], expand, np.where(worst[:, None], -contract, contract))
     second = (1.0 + factor) * middle - factor * highest
     is_tried = ~is_kept & (left > 0)
@@ -94,12 +94,13 @@ def minimise_between(function: Values, bounds: tuple[float, float], count: int, 
     """Return the lowest point of each search between bounds, shape (count,).
 
     Each search has the steps of ``scipy.optimize.minimize_scalar(method="bounded")``: parabolas and golden sections
-    (Brent 1973). The function has points and the index of the search of each point as arguments, and returns values.
+    (Brent 1973). The arguments of the function are points and the index of the search of each point. The function
+    returns values.
     """
     low, high = np.repeat(np.array(bounds)[:, None], count, axis=1)
     lowest = low + _GOLDEN * (high - low)
     value = function(lowest, np.arange(count))
-    points, values = np.tile(lowest, (3, 1)), np.tile(value, (3, 1))  # the lowest point, the second and the third
+    points, values = np.tile(lowest, (3, 1)), np.tile(value, (3, 1))  # the three lowest points and their values
     step, before = np.zeros((2, count))
     while True:
         best, middle = points[0], 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""The user's own evidence: files of measurements in a folder of the user, outside the package; and selections."""
+"""The user's own evidence: files of measurements in a folder of the user, outside the package, and their selection."""
 
 import hashlib
 import os
@@ -11,11 +11,11 @@ from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, dat
 from rocking.tables.table import writing, written_whole
 
 PUBLISHED, OWN = "published", "own"
-"""Names of selections: the 39 coefficients of the package, and all files of the store."""
+"""Names of two selections: the 39 coefficients of the package, and all files of the store."""
 
 
 def data_folder() -> Path:
-    """Return the folder of this user's data, in the system's folder for data; the folder may not exist."""
+    """Return the folder of the user's data, within the system's folder for data. The folder may be absent."""
     if sys.platform == "win32":
         root = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
     else:
@@ -49,7 +49,7 @@ def own_sets() -> list[tuple[Path, DataSet]]:
 
 
 def _once(sets: Sequence[tuple[str, DataSet]]) -> None:
-    """Raise an error for measurements in two sets; the interface is not compared, because its spelling varies."""
+    """Raise an error for a measurement in two sets. The interface is not compared, because its spelling varies."""
     first_source: dict[tuple[object, ...], str] = {}
     for name, data in sets:
         ratios, values = ([f"{value:.9g}" for value in column] for column in (data.slenderness, data.coefficient))
@@ -81,7 +81,7 @@ def add(path: Path) -> tuple[Path, DataSet, bool]:
 
 
 def selected(names: Sequence[str] = ()) -> DataSet:
-    """Return the measurements of a selection: files, published sets, `published`, `own`; empty: the last two."""
+    """Return the measurements of a selection of files, published sets, `published` and `own`; default: the last two."""
     from rocking.evidence.measurement_file import read_measurements
 
     published, sets = {name: datasets()[name] for name in GROUPS}, []

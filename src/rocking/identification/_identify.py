@@ -31,10 +31,10 @@ from rocking.motions.pulse import Motion
 
 Reason = str | Message
 _TREND = Message("use {trend}", {"trend": Option("identify.trend", True)})
-_MIN_FRACTION, _MIN_FRACTION_OF_ALL = 0.66, 0.5  # of the times
+_MIN_FRACTION, _MIN_FRACTION_OF_ALL = 0.66, 0.5  # smallest fraction of the times that must be impacts
 _FADED_AFTER = 1.0  # time after the last audible impact [s]
 _MIN_ADVANTAGE, _MAX_SCATTER, _MIN_P_VALUE, _MIN_EXPLAINED = 5.0, 0.12, 1e-4, 0.9
-_DOUBTED_SIZE, _REFUSED_SIZE = 4.0, 6.0  # standard deviations of p and the slenderness angle
+_DOUBTED_SIZE, _REFUSED_SIZE = 4.0, 6.0  # limits in standard deviations of p and of the slenderness angle
 
 
 def identify(  # noqa: PLR0913 - prior knowledge
@@ -55,14 +55,14 @@ def identify(  # noqa: PLR0913 - prior knowledge
     Parameters
     ----------
     measurement : ImpactTimes or RotationSeries
-        Times of impacts, possibly with missing and false ones; or rotations or angular velocities.
+        Times of impacts, possibly with missing and false impacts; or rotations or angular velocities.
     body : Block, Section or MassPoints, optional
-        The body. Without it the frequency parameter is fitted too, and intervals are wider.
+        The body. Without a body, the frequency parameter is fitted too, and intervals are wider.
     size_error : float
-        Standard deviation of a length of the body, relative [-].
+        Relative standard deviation of a length of the body [-].
     tilt : float or (float, float)
         Standard deviation of the tilt of the floor, or tilt and standard deviation, clockwise; 0 for a level floor.
-        With an unknown tilt, times alone hardly determine the coefficient of each side [rad].
+        If the tilt is unknown, times alone hardly determine the coefficient of each side [rad].
     asymmetry : float
         Standard deviation of the difference of ln r between both feet; 0 for equal coefficients [-].
     trend, damping : bool
@@ -70,15 +70,15 @@ def identify(  # noqa: PLR0913 - prior knowledge
     first : {"left", "right"}
         Foot in contact after the first impact; for times only.
     motion : GroundMotion or Pulse, optional
-        Ground motion of a body at rest before it; rotations are relative to the ground.
+        Ground motion of a body that is at rest before this motion; rotations are relative to the ground.
     clock : float or (float, float)
-        Standard deviation of the lead of the clock of the measurement over the clock of the motion, or the lead and
-        its standard deviation [s].
+        Standard deviation of the time by which the clock of the measurement is ahead of the clock of the motion, or
+        this time and its standard deviation [s].
 
     Returns
     -------
     Identification
-        Coefficients, scatter, impacts, and agreeing models; the reasons, if the measurement is refused.
+        Coefficients, scatter, impacts, and agreeing models; for a refused measurement, the reasons.
 
     Raises
     ------
@@ -256,7 +256,7 @@ def _result(
 
 
 def _impacts(posterior: Posterior, first: Foot) -> tuple[Impact, ...]:
-    """Return the coefficient of each impact with known speeds before and after it."""
+    """Return the coefficient of each impact with known speeds before and after the impact."""
     best = int(np.argmax(posterior.weights))
     path = posterior.model.path(posterior.u[best : best + 1], posterior.scatter[best : best + 1])
     impacts, foot = [], first
@@ -279,7 +279,7 @@ def _grid_interval(posterior: Posterior, values: FloatArray) -> IntervalEstimate
 
 
 def _trend_p_value(posterior: Posterior) -> float:
-    """Return the probability of an equally steady change with the impact number, by Student's t."""
+    """Return the probability of an equal or steadier change of r with the impact number, by Student's t."""
     draws = posterior.average(posterior.u[:, len(SHARED) :] * posterior.scatter[:, None])
     degrees = draws.size - 3
     if degrees < 2 or not np.ptp(draws) > 0.0:
@@ -290,7 +290,7 @@ def _trend_p_value(posterior: Posterior) -> float:
 
 
 def _log_density_at_constant_intervals(intervals: FloatArray) -> float:
-    """Return ln of the density of intervals with normal logarithms about one mean."""
+    """Return ln of the density of intervals whose logarithms are normal with one common mean."""
     ln, n = np.log(intervals), intervals.size
     tau = np.geomspace(1e-3, 1.0, 60)
     square_sum = float(((ln - ln.mean()) ** 2).sum())

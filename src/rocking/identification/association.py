@@ -1,7 +1,7 @@
 """Assignment of measured times to impacts, and the posterior of these impacts.
 
-An extended Kalman filter follows hypotheses from time to time. A beam search keeps the best of them. The slender closed
-form is sufficiently accurate here.
+An extended Kalman filter advances hypotheses from one measured time to the next. A beam search keeps the best
+hypotheses. The closed form for slender bodies is sufficiently accurate here.
 """
 
 from dataclasses import dataclass, replace
@@ -16,37 +16,37 @@ from rocking.identification.posterior import Knowledge, Noise, Posterior, poster
 from rocking.identification.state_space import MEAN, SHARED, SPEED, Clicks, Model
 
 KEPT: Final = 300
-_HEARD, _FALSE_SHARE = 0.9, 0.2  # fraction of audible impacts; fraction of false times
-_BOUNCE, _BOUNCES = 0.045, 6.0  # duration after an impact [s]; rate of clicks within it [1/s]
+_HEARD, _FALSE_SHARE = 0.9, 0.2  # expected fraction of audible impacts; expected fraction of false times
+_BOUNCE, _BOUNCES = 0.045, 6.0  # duration of bounces after an impact [s]; rate of clicks in this duration [1/s]
 _SHORTEST, _MOST_IMPACTS, _GATE = 0.03, 80, 4.5
 _SCATTER = 0.03
-_WORTH = 4.0  # log likelihood ratio of a time
+_WORTH = 4.0  # usual log likelihood ratio of a time that is an impact
 _FIRST, _SECOND = 6, 5
 _LONGEST = 3.5  # p T / 2 of a body close to overturning
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """The times that are impacts."""
+    """A selection of the times that are impacts."""
 
     clicks: IntArray  # indices of the times
-    impacts: IntArray  # numbers from zero; an absent number is a missed impact
-    score: float  # log likelihood ratio to unrelated times
-    bounces: int  # times shortly after impacts
-    within: int  # times from the first to the last impact
+    impacts: IntArray  # impact numbers, which start at zero; a missing number is a missed impact
+    score: float  # log likelihood ratio relative to unrelated times
+    bounces: int  # number of times shortly after impacts
+    within: int  # number of times from the first to the last impact
 
 
 @dataclass(eq=False)
 class _Beam:
-    """Hypotheses in rows, with the state: time, ln y after the last impact, ln r, alternation of ln r, ln p."""
+    """Hypotheses in rows. The state is: time, ln y after the last impact, ln r, alternation of ln r, ln p."""
 
-    mean: FloatArray  # h, 5
-    covariance: FloatArray  # h, 5, 5
-    number: IntArray  # of the last impact
+    mean: FloatArray  # mean of the state, shape (h, 5)
+    covariance: FloatArray  # covariance of the state, shape (h, 5, 5)
+    number: IntArray  # number of the last impact
     last: IntArray  # index of the last matched time
-    missed: IntArray  # missed impacts since then
+    missed: IntArray  # number of missed impacts since the last matched time
     score: FloatArray
-    of_click: IntArray  # h, clicks: number of the impact, -1 none
+    of_click: IntArray  # impact number of each click, -1 for no impact; shape (h, clicks)
     bounces: IntArray
 
     def selected(self, indices: IntArray) -> "_Beam":
@@ -63,8 +63,8 @@ def associate(
     ln_p: tuple[float, float],
     alternation: tuple[float, float],
 ) -> Track | None:
-    """Return the most likely track, or None."""
-    # probabilities: of each time to be an impact [-]; ln_p, alternation: mean and standard deviation
+    """Return the most likely track, or None without a track."""
+    # probabilities: probability that each time is an impact [-]; ln_p, alternation: mean and standard deviation
     generic = np.log(_FALSE_SHARE * times.size / (times[-1] - times[0]))
     gain = (
         np.log(probabilities) - np.log1p(-np.minimum(probabilities, 0.98)) - np.log(0.98 / 0.02)
@@ -86,7 +86,7 @@ def associate(
         spread = np.sqrt(advanced.covariance[:, 0, 0] + noise**2)
         deviations = times - advanced.mean[:, :1]
         since = times[advanced.last][:, None]
-        # the duration of a long half cycle is uncertain, but it is not short
+        # the duration of a long half cycle is uncertain, but not short
         later = times - since > np.maximum(_SHORTEST, 0.5 * (advanced.mean[:, :1] - since))
         rows, click = np.nonzero((np.abs(deviations) < _GATE * spread[:, None]) & later)
         heard = _updated(advanced.selected(rows), times[click], noise)
@@ -98,10 +98,10 @@ def associate(
         heard.of_click[np.arange(click.size), click] = heard.number
         advanced.score += np.log(1.0 - _HEARD)
         advanced.missed = advanced.missed + 1
-        # at most two successive impacts are missed, none of them after the last time
+        # at most two successive impacts can be missed, and no impact after the last time
         silent = advanced.selected(np.flatnonzero((advanced.missed <= 2) & (advanced.mean[:, 0] < times[-1])))
         beam = heard.concatenated(silent)
-        # tracks with equal impact counts end at different times: each skipped time has a cost
+        # tracks with equal impact counts can end at different times, so each skipped time has a cost
         beam = beam.selected(np.argsort(_WORTH * beam.last - beam.score, kind="stable")[:KEPT])
         if not beam.score.size:
             break
@@ -115,10 +115,10 @@ def _started(times: FloatArray, noise: float, ln_p: tuple[float, float], alterna
     """Return a hypothesis for every pair of early times as the first two impacts."""
     pairs = [(i, j) for i in range(_FIRST) for j in range(i + 1, i + _SECOND) if j < times.size]
     first, second = np.array(pairs + pairs).T
-    silent = np.repeat([0, 1], len(pairs))  # missed impacts between them
+    silent = np.repeat([0, 1], len(pairs))  # number of missed impacts between the first two times
     half = 0.5 * np.exp(ln_p[0]) * (times[second] - times[first]) * np.where(silent, 0.47, 1.0)
     y = np.tanh(half)
-    slope = np.where(half > 1e-6, half * (1.0 - y * y) / y, 1.0)  # of ln y over ln(p T)
+    slope = np.where(half > 1e-6, half * (1.0 - y * y) / y, 1.0)  # slope of ln y over ln(p T)
     count, mean = silent.size, np.zeros((silent.size, 5))
     sign = np.where(silent, 1.0, -1.0)
     mean[:, 0], mean[:, 1], mean[:, 4] = times[second], np.log(y) - 0.1 + sign * alternation[0], ln_p[0]
@@ -173,7 +173,8 @@ UNKNOWN_NOISE = Noise(3e-4, 1.2)
 """Prior of the noise of times without a stated standard deviation [s]."""
 
 _USUAL = 0.9
-_FEWEST, _LARGEST_RESIDUAL = 5, 2.2  # remaining times; standardized residual of an impact [-]
+# smallest number of remaining times; largest standardized residual of an impact [-]
+_FEWEST, _LARGEST_RESIDUAL = 5, 2.2
 _NO_IMPACT = float(np.log((1.0 - _HEARD) * _BOUNCES / _HEARD))
 """Prior log odds, per second, of a missed impact and a detected bounce."""
 
@@ -196,7 +197,7 @@ def fit_times(measurement: ImpactTimes, prior: Knowledge) -> tuple[Track, Poster
     fit, observer = _fitted(track, measurement.times, prior, noise, frequency)
     while fit.no_scatter < 0.5 and track.clicks.size > _FEWEST:
         # an apparent scatter of r may come from a bounce in place of a missed impact
-        sizes = np.abs(fit.standardized_residuals(observer))[1:]  # the first time determines the foot: it remains
+        sizes = np.abs(fit.standardized_residuals(observer))[1:]  # without the first time, which determines the foot
         if sizes.max() < _LARGEST_RESIDUAL:
             break
         worst = int(np.argmax(sizes)) + 1
@@ -219,12 +220,12 @@ def _fitted(
 
 
 def speeds_between(times: FloatArray, impacts: IntArray, prior: Knowledge, ln_p: float) -> FloatArray:
-    """Return approximate ln of the speed after each impact except the last; p is equal over both feet."""
+    """Return approximate ln of the speed after each impact except the last; p is assumed equal for both feet."""
     alpha, p = np.array(prior.slenderness_angles), np.exp(ln_p)
     y = np.tanh(np.geomspace(1e-3, 5.0, 400))
     pieces: list[FloatArray] = []
     for time, gap in zip(np.diff(times), np.diff(impacts), strict=True):
-        # the missed impacts between them have about the usual coefficient
+        # missed impacts between two times have about the usual coefficient
         durations = state_space.duration(y * _USUAL ** np.arange(gap)[:, None], np.array(alpha.mean())) / p
         lengths = np.array([np.interp(time, durations.sum(axis=0), row) for row in durations])
         pieces.append(time * lengths / lengths.sum())
@@ -235,7 +236,7 @@ def speeds_between(times: FloatArray, impacts: IntArray, prior: Knowledge, ln_p:
 
 
 def start(model: Model, speeds: FloatArray, scatters: FloatArray) -> FloatArray:
-    """Return unknowns with approximately these speeds, for each scatter."""
+    """Return unknowns that give approximately the speeds, for each scatter."""
     u = np.zeros(model.size)
     changes = np.diff(speeds)
     mean = float(np.median(changes)) if changes.size else float(model.mean[MEAN])

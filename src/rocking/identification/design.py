@@ -14,7 +14,7 @@ from rocking.identification.state_space import MEAN, SHARED, SPEED, START, Click
 def settling_bound(coefficient: float, ratio: float, impacts: int | None = None) -> float:
     """Return the smallest standard deviation of r from times of small impacts, t_inf - D r^n, n = 0..impacts.
 
-    ratio: noise of a time over D. Without `impacts` their number is infinite, and the time of rest is known.
+    `ratio` is the noise of a time / D. Without `impacts`, their number is infinite, and the time of rest is known.
     """
     if impacts is None:
         return float(ratio * (1.0 - coefficient**2) ** 1.5)  # Eq. 276
@@ -24,7 +24,7 @@ def settling_bound(coefficient: float, ratio: float, impacts: int | None = None)
 
 
 def one_impact_bound(frequency_parameter: float, before: float, after: float, noise: float) -> float:
-    """Return the smallest standard deviation of ln r from three times around one impact; p is known."""
+    """Return the smallest standard deviation of ln r from three times around one impact, for a known p."""
     a, b = (frequency_parameter / np.sinh(frequency_parameter * duration) for duration in (after, before))
     return float(noise * np.sqrt(2.0 * (a * a + a * b + b * b)))  # Eq. 277
 

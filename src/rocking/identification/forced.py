@@ -47,18 +47,18 @@ from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 
 _OF_PULSE = 400
-_GUESS = 0.02  # first value of the scatter
+_GUESS = 0.02  # initial value of the scatter
 _MOST_SCATTER, _ADVANTAGE = 0.12, 5.0
 _CLOSE, _DIFFERENCE = 0.1, 1e-4
 _ENDING, _CALM, _FAR = (
     0.5,
     0.02,
     3.0,
-)  # duration [s] and fraction of the peak at the end of a record; standard deviations of a clock
+)  # duration [s] and fraction of the peak at the end of a record; number of standard deviations of a clock
 
 
 def identify_forced(measurement: Any, prior: Knowledge, motion: Any, clock: Any) -> Identification | None:
-    """Return the identification of a series, or None with fewer than three detected impacts."""
+    """Return the identification of a series, or None for fewer than three detected impacts."""
     if not isinstance(measurement, RotationSeries):
         kind = "times of impacts" if isinstance(measurement, ImpactTimes) else type(measurement).__name__
         raise InvalidValueError(
@@ -114,7 +114,7 @@ def _clock_doubts(
 def fit_forced(
     series: RotationSeries, prior: Knowledge, motion: GroundMotion, clock: tuple[float, float]
 ) -> ForcedPosterior | None:
-    """Return the posterior, or None with fewer than three detected impacts."""
+    """Return the posterior, or None for fewer than three detected impacts."""
     problem = forced_start.problem_of(series, prior, motion, clock)
     if clock[1] > forced_start.SURE:
         near = forced_start.best_clock(problem, clock), forced_start.SURE / 3.0
@@ -139,7 +139,7 @@ def fit_forced(
 def answer(
     posterior: ForcedPosterior, friction: IntervalEstimate, sliding_doubts: tuple[str, ...], holding: ForcedPosterior
 ) -> Identification:
-    """Return the identification from a posterior; holding: the posterior without sliding."""
+    """Return the identification from a posterior; `holding` is the posterior without sliding."""
     problem, fit, noise = posterior.problem, posterior.fit, posterior.noise
     prior, body, series = problem.prior, problem.prior.body, problem.series
     assert body is not None

@@ -1,7 +1,7 @@
 """Coefficient of friction from half cycles with sliding: its evidence, with all other unknowns fitted again.
 
-Friction has no moment about the foot, so an impact hardly depends on it. The half cycle after the impact does. Slip is
-therefore followed through impacts.
+Friction has no moment about the foot, so an impact hardly depends on friction. The half cycle after the impact depends
+on friction. Therefore slip is computed through impacts.
 """
 
 import math
@@ -17,20 +17,21 @@ from rocking.identification.forced_model import FRICTION, MEAN, SAME_TIME, SIZE,
 from rocking.identification.forced_posterior import ForcedPosterior
 from rocking.identification.results import LEVELS, IntervalEstimate, estimated
 
-_LIFTS, _MOST = 0.95, 2.0  # range of the coefficient: fraction of the uplift limit; upper end
-_HIGHER, _COARSE = 1.3, 0.06  # first value over the friction demand; largest step of ln of the coefficient
-_FIRST, _GROWS, _LONGEST = 0.4, 1.25, 0.05  # first step over the deviation; ratio of steps; largest step
-_LARGE = 0.1  # scatter
+_LIFTS, _MOST = 0.95, 2.0  # range of the coefficient: lower end / uplift limit; upper end
+_HIGHER, _COARSE = 1.3, 0.06  # first value / friction demand; largest step of ln of the coefficient
+_FIRST, _GROWS, _LONGEST = 0.4, 1.25, 0.05  # first step / standard deviation; ratio of successive steps; largest step
+_LARGE = 0.1  # scatter above which a fit without sliding is poor
 _SAME = 1e-9  # tolerance of ln of the coefficient
-_STEPS = 15  # of a fit near its minimum
-_EXCLUDED, _ROSE = 12.0, 6.0  # largest decrease of ln of the evidence; increase of the objective before another fit
-_UNLIKELY = math.exp(-0.5 * 1.645**2)  # density over its maximum at a one-sided 95 % bound
-_SURE, _PERHAPS = 0.975, 0.25  # probability of sliding
+_STEPS = 15  # largest number of steps of a fit near its minimum
+# largest decrease of ln of the evidence; increase of the objective that requires another fit
+_EXCLUDED, _ROSE = 12.0, 6.0
+_UNLIKELY = math.exp(-0.5 * 1.645**2)  # ratio of the density at a one-sided 95 % bound to its maximum
+_SURE, _PERHAPS = 0.975, 0.25  # probabilities of sliding for a certain and for a possible result
 _ROUNDS = 3
 
 
 def with_sliding(posterior: ForcedPosterior) -> tuple[ForcedPosterior, IntervalEstimate, tuple[str, ...]]:
-    """Return the posterior, with sliding feet if the evidence requires it, the friction, and doubts.
+    """Return the posterior (with sliding feet if the evidence requires sliding), the friction, and doubts.
 
     If friction is not identified, only the lower end of its interval is a number.
     """
@@ -88,16 +89,16 @@ def with_sliding(posterior: ForcedPosterior) -> tuple[ForcedPosterior, IntervalE
 
 
 def sliding(problem: Forced, ln_friction: float, error: float = 0.0) -> Forced:
-    """Return the problem with sliding feet and a known coefficient of friction, or one with an error."""
+    """Return the problem with sliding feet and a coefficient of friction, which is known or has an error."""
     mean, deviation = problem.mean.copy(), problem.deviation.copy()
     mean[FRICTION], deviation[FRICTION] = ln_friction, error
     return replace(problem, slides=True, mean=mean, deviation=deviation)
 
 
 def _from_midpoints(problem: Forced) -> Forced:
-    """Return the problem with half cycles without a first impact shortened to their second half.
+    """Return the problem with shorter half cycles: without a first impact, only the second half is used.
 
-    Sliding feet are at rest by then.
+    Sliding feet are at rest at the start of this half.
     """
     excursions = problem.excursions
     first = np.where(excursions.joined, excursions.first, (excursions.first + excursions.last) // 2)
@@ -122,8 +123,8 @@ def _continued_fits(
 ) -> dict[float, tuple[Fit, float]]:
     """Return fits and ln of their evidence, by ln of a known friction; each fit begins at the previous one.
 
-    noise_and_scatter: of the fits; steps: start, first step, and ratio of successive steps; within: ends, and the
-    largest decrease of ln of the evidence.
+    `noise_and_scatter` are those of the fits. `steps` are the start, the first step, and the ratio of successive steps.
+    `within` are both ends, and the largest decrease of ln of the evidence.
     """
     (noise, scatter), (ln, step, grows), (lowest, highest, excluded) = noise_and_scatter, steps, within
     fits: dict[float, tuple[Fit, float]] = {}
@@ -132,14 +133,14 @@ def _continued_fits(
         at, x = sliding(problem, ln), x.copy()
         x[FRICTION] = ln
         fit = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)
-        if not fit.converged or fit.objective > min_objective + _ROSE:  # impacts may separate half cycles at first
+        if not fit.converged or fit.objective > min_objective + _ROSE:  # separated half cycles
             for softer, same in forced_start.ANNEALED:
                 x = fitted(at, x, noise, softer, same, _STEPS).x
             other = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)
             fit = other if other.objective < fit.objective else fit
         value = -math.inf
         if math.isfinite(fit.objective):
-            with suppress(np.linalg.LinAlgError):  # too few samples determine no state
+            with suppress(np.linalg.LinAlgError):  # too few samples cannot determine a state
                 value = ForcedPosterior(at, fit, noise).ln_evidence
         fits[ln], best, min_objective, x = (fit, value), max(best, value), min(min_objective, fit.objective), fit.x
         ln, step = ln + step, min(max(grows * step, -_COARSE), _COARSE)

@@ -1,4 +1,4 @@
-"""Half cycles of a body under ground motion, many together, each integrated from its own state.
+"""Half cycles of a body under ground motion. Many half cycles are integrated together, each from its own state.
 
 All half cycles are mirrored, so that rotations are positive; the ground acceleration is in m/s2.
 """
@@ -14,22 +14,22 @@ from rocking.dynamics.settings import NEVER_SLIDES
 from rocking.identification.measurement import white_noise
 from rocking.motions.motion import GroundMotion
 
-_LONGEST = 0.03  # largest time step, times p
+_LONGEST = 0.03  # largest time step x p [-]
 Sliding = tuple[FloatArray, FloatArray, FloatArray]
 """Per half cycle: coefficient of friction, start velocity of the foot [m/s], and sine of the tilt of the floor.
 
-Without sliding, a tilted floor changes alpha only; friction acts along the floor.
+Without sliding, a tilted floor only changes alpha. Friction acts along the floor.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class Flights:
-    """Rotations at equal time steps, each from its own start."""
+    """Rotations of half cycles at equal time steps, each half cycle from its own start."""
 
-    step: FloatArray  # k [s]
-    rotation: FloatArray  # n, k [rad]
-    velocity: FloatArray  # n, k [rad/s]
-    slip: FloatArray  # n, k: speed of the foot along the ground [m/s]
+    step: FloatArray  # time step, shape (k,) [s]
+    rotation: FloatArray  # rotation, shape (n, k) [rad]
+    velocity: FloatArray  # angular velocity, shape (n, k) [rad/s]
+    slip: FloatArray  # speed of the foot along the ground, shape (n, k) [m/s]
     engine_input: tuple[FloatArray, FloatArray, FloatArray]  # bodies; a_x and g + a_z at start and end of time steps
 
     @classmethod
@@ -42,7 +42,7 @@ class Flights:
         length: FloatArray,
         sliding: Sliding | None = None,
     ) -> "Flights":
-        """Return the half cycles; state: time [s], rotation, angular velocity; body: alpha [rad], p [rad/s], R [m]."""
+        """Return the half cycles of states (time [s], rotation, velocity) and bodies (alpha, p [rad/s], R [m])."""
         start, first, turning = state
         alpha, p, size = body
         count = max(4, int(np.ceil(float((length * p).max()) / _LONGEST)))
@@ -106,9 +106,9 @@ class Flights:
 
 
 def _within_steps(acceleration: FloatArray, time_step: float, times: FloatArray, step: FloatArray) -> FloatArray:
-    """Return the acceleration at start, middle and end of time steps, a line with its first two moments.
+    """Return the acceleration at start, middle and end of time steps, on a line with equal first two moments.
 
-    The lines between samples have corners. Without this approximation, a method of order 4 would lose two orders.
+    The record has corners at its samples. Without the line, a method of order 4 would have order 2.
     """
     slope = np.diff(acceleration) / time_step
     gained = np.concatenate([[0.0], np.cumsum(0.5 * time_step * (acceleration[1:] + acceleration[:-1]))])
@@ -130,8 +130,9 @@ def struck(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the angular velocity after an impact, and the sliding velocity of the new foot [m/s].
 
-    before, after: angular velocity before the impact, and after it without sliding; slip: velocity of the old foot
-    [m/s]; body: levers of both feet, height, and moment of inertia about the centre over the mass [m, m2].
+    `before` is the angular velocity before the impact, and `after` that after an impact without sliding. `slip` is the
+    velocity of the old foot [m/s]. `body` contains the levers of both feet, the height, and the moment of inertia
+    about the centre / mass [m, m2].
     """
     old, new, height, inertia = body
     ratio, width, foot_inertia = after / before, old + new, inertia + height**2
@@ -145,41 +146,41 @@ def struck(
     return np.where(slides, slid, stuck), np.where(slides, height * (before - slid) - slip + pull * normal, 0.0)
 
 
-_NOISES = 6.0  # smallest rotation over the noise
-_FEWEST = 7  # samples
-_STEEP = 0.6  # smallest ratio of speeds across zero; the body rests between slower ones
+_NOISES = 6.0  # smallest rotation / noise
+_FEWEST = 7  # smallest number of samples
+_STEEP = 0.6  # smallest ratio of speeds after and before zero; the body rests if the ratio is smaller
 
 
 @dataclass(frozen=True, eq=False)
 class Excursions:
-    """Parts of a rotation beyond its noise."""
+    """Intervals in which the rotation exceeds its noise."""
 
-    first: IntArray  # sample
+    first: IntArray  # index of the first sample
     last: IntArray
     sign: FloatArray  # 1 on the right foot, -1 on the left
-    begin: FloatArray  # time of the impact before it, or of its first sample [s]
-    end: FloatArray  # time of the impact after it, or of its last sample [s]
-    joined: BoolArray  # True if an impact connects it to the previous one
+    begin: FloatArray  # time of the impact before the interval, or of its first sample [s]
+    end: FloatArray  # time of the impact after the interval, or of its last sample [s]
+    joined: BoolArray  # True if an impact connects the interval to the previous interval
 
     def subset(self, which: BoolArray) -> "Excursions":
-        """Return some of the parts; a part without its predecessor begins with its own state."""
+        """Return selected intervals; an interval without its predecessor begins with its own state."""
         joined = self.joined & np.concatenate([[False], which[:-1]])
         selected = {name: values[which] for name, values in vars(self).items()}
         return Excursions(**(selected | {"joined": joined[which]}))
 
     def separated(self, which: BoolArray, time: FloatArray) -> "Excursions":
-        """Return the parts, some of them without the connection to their predecessor."""
+        """Return the intervals; selected intervals lose the connection to their predecessor."""
         begin, end = np.where(which, time[self.first], self.begin), self.end.copy()
         end[np.flatnonzero(which) - 1] = time[self.last[np.flatnonzero(which) - 1]]
         return replace(self, begin=begin, end=end, joined=self.joined & ~which)
 
     def is_isolated(self) -> BoolArray:
-        """Return True for parts without a connection to another part."""
+        """Return True for intervals without a connection to another interval."""
         return np.asarray(~(self.joined | np.append(self.joined[1:], False)))
 
 
 def excursions_of(time: FloatArray, rotation: FloatArray, fraction: float) -> Excursions:
-    """Return the parts of a rotation beyond its noise; fraction: smallest rotation over the range."""
+    """Return the intervals in which a rotation exceeds its noise; `fraction` is the smallest rotation / range."""
     min_rotation = max(_NOISES * white_noise(rotation), fraction * float(np.ptp(rotation)))
     side = np.where(np.abs(rotation) > min_rotation, np.sign(rotation), 0.0)
     cuts = np.flatnonzero(np.diff(side) != 0.0) + 1

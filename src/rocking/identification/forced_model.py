@@ -15,32 +15,33 @@ from rocking.identification.posterior import Knowledge
 from rocking.motions.motion import GroundMotion
 
 SHARED = (MEAN, HALF, WIDTH, HEIGHT, TILT, TREND, CLOCK) = tuple(range(7))
-"""As in the state space; ln of widths and heights over their nominal values; lead of the clock [s]."""
-GAIN, OFFSET, DRIFT = 7, 9, 11  # of the rotation; the next index is for the angular velocity
-FRICTION = 13  # ln of the coefficient
+"""Unknowns as in the state space, ln of width and of height / nominal value, and lead of the clock [s]."""
+GAIN, OFFSET, DRIFT = 7, 9, 11  # indices for the rotation; the next index is for the angular velocity
+FRICTION = 13  # index of ln of the coefficient of friction
 SIZE = 14
 KINDS = ("rotation", "angular_velocity")
 
-SAME_TIME = 1e-4  # tolerance of the end of a half cycle at the start of the next one [s]
+SAME_TIME = 1e-4  # tolerance of the time between the end of a half cycle and the start of the next half cycle [s]
 STEP = 1e-6
-_DAMPED, _CLOSE = 1e-3, 5e-3  # largest damping and change of the objective at convergence
+_DAMPED, _CLOSE = 1e-3, 5e-3  # largest damping, and largest change of the objective, at convergence
 _LONGEST = 1.0  # largest change of an unknown per step
 _SETTLED, _CHAIN = 1e-7, 20  # tolerance of start velocities; largest number of iterations
-_MOST, _EDGE = 3000, 1  # compared samples; excluded samples at each end
+_MOST, _EDGE = 3000, 1  # largest number of compared samples; number of excluded samples at each end
 
 
 @dataclass(frozen=True, eq=False)
 class Terms:
-    """Differences and their slopes: of samples, of times of impacts, of ln r from its mean."""
+    """Residuals of samples, of times of impacts, and of ln r relative to its mean, with their slopes."""
 
-    samples: list[tuple[FloatArray, FloatArray]]  # per measured quantity; slopes by shared and own unknowns
+    # residuals and slopes per measured quantity; slopes by shared and own unknowns
+    samples: list[tuple[FloatArray, FloatArray]]
     owners: IntArray  # half cycle of each sample; samples at rest come last
     times: tuple[FloatArray, FloatArray]
     draws: tuple[FloatArray, FloatArray]
-    start_velocities: FloatArray | None = None  # of bodies and feet, if feet slide
+    start_velocities: FloatArray | None = None  # start velocities of bodies and feet, if feet slide
 
     def value(self, noise: FloatArray, scatter: float, same: float | None) -> float:
-        """Return the sum of squares over the variances; without impacts if same is None."""
+        """Return the sum of squares divided by the variances, without impacts if `same` is None."""
         total = sum(float(r @ r) / float(s) ** 2 for (r, _), s in zip(self.samples, noise, strict=True))
         if same is not None:
             total += float(self.times[0] @ self.times[0]) / same**2 + float(self.draws[0] @ self.draws[0]) / scatter**2
@@ -72,8 +73,8 @@ class Forced:
     motion: GroundMotion
     series: RotationSeries
     excursions: Excursions
-    rest_samples: IntArray  # samples at rest
-    mean: FloatArray  # of the shared parameters
+    rest_samples: IntArray  # indices of the samples at rest
+    mean: FloatArray  # mean of the shared parameters
     deviation: FloatArray
     middle: float = 0.0  # ln of the reference speed of a trend
     slides: bool = False  # True if feet may slide
@@ -86,10 +87,10 @@ class Forced:
 
     @cached_property
     def samples(self) -> tuple[IntArray, IntArray]:
-        """Indices of the compared samples, and the half cycle of each."""
+        """Indices of the compared samples, and index of the half cycle of each sample."""
         excursions, time = self.excursions, self.series.time
         first, last = excursions.first + _EDGE, excursions.last - _EDGE
-        if self.series.angular_velocity is None:  # up to the impacts: the noise does not select samples
+        if self.series.angular_velocity is None:  # samples up to the impacts, so that the noise does not select samples
             near = 1.5 * float(np.median(np.diff(time)))
             first = np.where(excursions.joined, np.searchsorted(time, excursions.begin + near), first)
             last = np.where(
@@ -97,18 +98,18 @@ class Forced:
             )
         pieces = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
         stride = max(1, math.ceil(sum(piece.size for piece in pieces) / _MOST))
-        pieces = [piece[:: max(1, min(stride, (piece.size - 1) // 2))] for piece in pieces]  # no half cycle is empty
+        pieces = [piece[:: max(1, min(stride, (piece.size - 1) // 2))] for piece in pieces]  # at least 2 per half cycle
         return np.concatenate(pieces), np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
 
     @cached_property
     def line(self) -> FloatArray:
-        """Time from -1 to 1."""
+        """Time, scaled to the range from -1 to 1."""
         time = self.series.time
         return np.asarray((time - 0.5 * (time[0] + time[-1])) / (0.5 * (time[-1] - time[0])))
 
     @cached_property
     def believed(self) -> list[tuple[float, float]]:
-        """Half width, height of the centre, p and R over the right foot and the left one."""
+        """Half width, height of the centre, p and R, for the right and for the left foot."""
         body = self.prior.body
         assert body is not None
         sides = body.side("right"), body.side("left")
@@ -116,14 +117,14 @@ class Forced:
         return [(getattr(sides[0], name), getattr(sides[1], name)) for name in names]
 
     def sides(self, sign: Any, width: Any, height: Any, tilt: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return slenderness angle [rad], p [rad/s] and R [m] over the right foot (sign 1) or the left one."""
+        """Return slenderness angle [rad], p [rad/s] and R [m] for the right foot (sign 1) or the left foot."""
         across, up, p, size = (np.where(np.asarray(sign) > 0.0, *pair) for pair in self.believed)
         across, up = across * np.exp(width), up * np.exp(height)
         real = np.hypot(across, up)
         return np.arctan2(across, up) - sign * tilt, p * np.sqrt(size / real), real
 
     def levers(self, z: FloatArray) -> tuple[FloatArray, ...]:
-        """Return levers of the feet before and after the impact at the start, height, inertia over mass."""
+        """Return the levers of the feet before and after the impact at the start, the height, and inertia / mass."""
         (alpha, p, size), (before, _, old) = (
             self.sides(sign, z[:, WIDTH], z[:, HEIGHT], 0.0) for sign in (self.excursions.sign, -self.excursions.sign)
         )
@@ -133,7 +134,7 @@ class Forced:
     def find_start_velocities(self, x: FloatArray, moved: FloatArray, about: FloatArray | None) -> FloatArray:
         """Return start velocities of bodies and feet of all half cycles, for all moved unknowns.
 
-        They follow from the end of the previous half cycle by iteration; about: first values.
+        The velocities follow from the end of the previous half cycle by iteration; `about` contains first values.
         """
         if about is None:
             about = np.stack([np.exp(np.minimum(x[SIZE + 1 :: 2], 5.0)), 0.0 * x[SIZE::2]])[:, None]
@@ -199,7 +200,7 @@ class Forced:
         return flights, begin
 
     def terms(self, x: FloatArray, about: FloatArray | None = None) -> Terms:
-        """Return the residuals, with slopes by finite differences; about: first values of start velocities."""
+        """Return the residuals with slopes by finite differences; `about` has first values of start velocities."""
         excursions, (index, which), count = self.excursions, self.samples, self.excursions.sign.size
         by_move = [SIZE, SIZE + 1, WIDTH, HEIGHT, TILT, CLOCK, *([FRICTION] if self.slides else [])]
         moves = 1 + len(by_move)
@@ -267,7 +268,7 @@ class Forced:
 
     @cached_property
     def precision(self) -> FloatArray:
-        """Prior precision of all unknowns; infinite for known ones."""
+        """Prior precision of all unknowns; infinite for known values."""
         with np.errstate(divide="ignore"):
             return np.concatenate([1.0 / self.deviation**2, np.zeros(2 * self.excursions.sign.size)])
 

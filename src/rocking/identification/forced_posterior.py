@@ -1,4 +1,4 @@
-"""The posterior of rocking under a known ground motion: one normal distribution per scatter."""
+"""The posterior for rocking under a known ground motion: one normal distribution per scatter."""
 
 import math
 
@@ -27,7 +27,7 @@ class ForcedPosterior:
         scale = 1.0 / np.sqrt(np.diag(fixed))
         self._root = np.linalg.inv(np.linalg.cholesky(fixed * scale[:, None] * scale)) * scale
         self._pull = self._root @ (pull - by.T @ drawn - precision * away)[self.free]
-        # singular directions of the coefficients: no scatter needs its own matrix
+        # in the singular directions of the coefficients, all scatters use one matrix
         self._modes, size, turn = np.linalg.svd(self._root @ by[:, self.free].T, full_matrices=False)
         missed = turn @ drawn - size * (self._modes.T @ self._pull)
         total = self.scatter[:, None] ** 2 + size**2
@@ -39,7 +39,7 @@ class ForcedPosterior:
         exponent = float(self._pull @ self._pull) - misfit
         self.ln_evidence = float(
             ln.max() + math.log(weights.sum()) + 0.5 * exponent + np.log(np.diag(self._root)).sum()
-        )  # over all scatters
+        )  # sum over all scatters
 
     def distribution(self, slopes: FloatArray, value: float) -> Mixture:
         """Return the distribution of a quantity from its value and slopes at the linearisation."""
@@ -56,7 +56,7 @@ class ForcedPosterior:
         return self.distribution(slopes, float(slopes @ self.fit.x))
 
     def explained(self, which: int, by: tuple[int, ...]) -> float:
-        """Return the part of the standard deviation of a shared parameter that others of them explain."""
+        """Return the fraction of the standard deviation of a shared parameter that other shared parameters explain."""
         column, held_fraction = np.cumsum(self.free) - 1, self._held[int(np.argmax(self.weights))]
         root = self._root - self._modes @ ((1.0 - np.sqrt(1.0 - held_fraction))[:, None] * (self._modes.T @ self._root))
         target, others = root[:, column[which]], root[:, [column[index] for index in by if self.free[index]]]

@@ -34,17 +34,18 @@ from rocking.motions.motion import GroundMotion
 MIN_IMPACTS = 3
 """Smallest number of impacts."""
 
-_SHARE, _SHARE_INTEGRATED = 0.01, 0.05  # smallest rotation over its range
-_STILL = 0.7  # fraction of the uplift acceleration; below it the body certainly rests
+_SHARE, _SHARE_INTEGRATED = 0.01, 0.05  # smallest rotation / range of the rotation
+_STILL = 0.7  # fraction of the uplift acceleration below which the body certainly rests
 _TRIES = 8
-_ODD = 4.0  # mean square over the usual one; larger ones are no rocking
+_ODD = 4.0  # largest mean square of a half cycle with rocking / usual mean square
 _TELLS, _TAKES = 0.3, 0.5  # limits of ln r at an impact: standard deviation, absolute value
-_LARGEST, _FEW, _BETWEEN = 12, 400, 0.02  # half cycles and samples for the search of a clock; step of the search [s]
+# numbers of half cycles and samples for the search of the clock offset; step of the search [s]
+_LARGEST, _FEW, _BETWEEN = 12, 400, 0.02
 _AT_ONCE = 100
 ANNEALED = ((0.3, 3e-3), (0.03, 5e-4))
-"""Scatter, and tolerance of the end of a half cycle at the start of the next one [s]."""
+"""Scatter, and tolerance of the time between the end of a half cycle and the start of the next half cycle [s]."""
 SURE = 0.03
-"""Standard deviation of a clock; above it a search precedes the fit [s]."""
+"""Standard deviation of the clock above which a search precedes the fit [s]."""
 
 
 def problem_of(series: RotationSeries, prior: Knowledge, motion: GroundMotion, clock: tuple[float, float]) -> Forced:
@@ -81,7 +82,7 @@ def rotation_of(problem: Forced, shared: FloatArray) -> FloatArray:
         return np.asarray(series.rotation - shared[OFFSET] - shared[DRIFT] * problem.line)
     turning = np.asarray(series.angular_velocity) - shared[OFFSET + 1] - shared[DRIFT + 1] * problem.line
     rotation = np.concatenate([[0.0], np.cumsum(0.5 * (turning[1:] + turning[:-1]) * np.diff(time))])
-    # the body rests at the start and in intervals without rotation
+    # the body is at rest at the start and in intervals without rotation
     loud = np.flatnonzero(np.abs(turning) > 4.0 * white_noise(turning))
     edges = np.concatenate([[0], loud, [time.size - 1]])
     calm = np.flatnonzero(np.diff(edges) > max(10, 0.3 / float(np.median(np.diff(time)))))
@@ -193,7 +194,7 @@ def _is_regular(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
 
 
 def _is_no_impact(problem: Forced, fit: Fit, noise: FloatArray) -> BoolArray:
-    """Return True for impacts that are none, or too uncertain: from separately fitted half cycles."""
+    """Return True for false or too uncertain impacts, from separately fitted half cycles."""
     drawn, by = fit.terms.draws
     hessian = fit.terms.normal(noise, 1.0, None)[0] + np.diag(np.minimum(problem.precision, 1e12))
     scale = 1.0 / np.sqrt(np.diag(hessian))

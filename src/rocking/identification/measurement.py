@@ -19,7 +19,7 @@ class ImpactTimes:
     Parameters
     ----------
     times : ndarray
-        At least 4 increasing times; some may be false, and impacts may be missing [s].
+        At least 4 increasing times. Some times may be false, and impacts may be missing [s].
     sigma : float, optional
         Standard deviation of a time; fitted by default [s].
     probabilities : ndarray, optional
@@ -29,7 +29,7 @@ class ImpactTimes:
     doubts : tuple of str
         Doubts of the reader.
     loudness : ndarray, optional
-        For pictures of a sound: times [s] in the first column, amplitudes in the second [-].
+        Amplitudes of a sound for figures: times [s] in the first column, amplitudes in the second [-].
 
     Raises
     ------
@@ -80,9 +80,9 @@ class RotationSeries:
     time : ndarray
         Increasing times [s].
     rotation : ndarray, optional
-        Positive on the right foot; an offset and a drift are fitted [rad].
+        Rotation, positive on the right foot; an offset and a drift are fitted [rad].
     angular_velocity : ndarray, optional
-        Positive clockwise; an offset and a drift are fitted [rad/s].
+        Angular velocity, positive clockwise; an offset and a drift are fitted [rad/s].
     source : str
         Source of the measurement.
     doubts : tuple of str

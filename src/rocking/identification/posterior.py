@@ -22,7 +22,7 @@ NO_SCATTER: Final = 0.2
 """Prior probability that ln r does not scatter [-]."""
 
 _SMALL_SCATTER = 0.02
-"""The prior is flat in a smaller scatter, and in the logarithm of a larger one; the usual scatter is 1 to 3 % [-]."""
+"""The prior is flat in a smaller scatter, and flat in the logarithm of a larger scatter; usual: 1 to 3 % [-]."""
 
 _COARSE, _FINE, _NEGLIGIBLE = (9, 7), (11, 9), 1e-4
 
@@ -32,7 +32,7 @@ Nodes = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class Noise:
-    """Prior of the noise: its median, and the standard deviation of its logarithm, 0 if it is known."""
+    """Prior of the noise: median, and standard deviation of the logarithm (0 for a known noise)."""
 
     median: float
     dispersion: float = 0.0
@@ -40,20 +40,20 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Normal distributions of the unknowns with weights, one for each scatter and noise of a grid."""
+    """Weighted normal distributions of the unknowns, one per pair of scatter and noise in a grid of size g."""
 
     model: Model
-    weights: FloatArray  # g
-    scatter: FloatArray  # g
-    noise: FloatArray  # g
-    u: FloatArray  # g, d
-    covariance: FloatArray  # g, d, d
-    residuals: FloatArray  # g, m
+    weights: FloatArray  # shape (g,)
+    scatter: FloatArray  # shape (g,)
+    noise: FloatArray  # shape (g,)
+    u: FloatArray  # mean of the d unknowns, shape (g, d)
+    covariance: FloatArray  # shape (g, d, d)
+    residuals: FloatArray  # shape (g, m)
     evidence: float  # ln of the probability density of the measurement
     converged: bool
 
     def normal(self, slopes: FloatArray, offset: float = 0.0) -> "Mixture":
-        """Return the distribution of offset + slopes . u; slopes: d or g, d."""
+        """Return the distribution of offset + slopes . u, for slopes of shape (d,) or (g, d)."""
         slopes = np.broadcast_to(slopes, self.u.shape)
         spread = np.sqrt(np.einsum("gi,gij,gj->g", slopes, self.covariance, slopes))
         return Mixture(self.weights, offset + (slopes * self.u).sum(axis=1), spread)
@@ -66,13 +66,13 @@ class Posterior:
         return self.normal(slopes, sum(factor * float(self.model.mean[which]) for which, factor in terms))
 
     def explained(self, which: int, by: Sequence[int]) -> float:
-        """Return the part of the standard deviation of a shared parameter that others of them explain."""
+        """Return the fraction of the standard deviation of a shared parameter that other shared parameters explain."""
         across, among = self.covariance[:, which, by], self.covariance[:, by][:, :, by]
         variance = np.einsum("gi,gij,gj->g", across, np.linalg.pinv(among, hermitian=True), across)
         return float(self.model.deviation[which] * np.sqrt(self.weights @ variance))
 
     def standardized_residuals(self, observer: Observer) -> FloatArray:
-        """Return the residual of each measured value over the standard deviation of that residual [-]."""
+        """Return each residual divided by its standard deviation [-]."""
         best = [int(np.argmax(self.weights))]
         residual, slopes = observer.residuals(self.model.path(self.u[best], self.scatter[best]))
         noise, slopes = float(self.noise[best[0]]), slopes[0]
@@ -112,7 +112,7 @@ class Mixture:
         return float(self.weights @ ndtr((value - self.means) / np.maximum(self.deviations, 1e-300)))
 
     def quantiles(self, *levels: float) -> tuple[float, ...]:
-        """Return the quantiles at some levels."""
+        """Return the quantiles at the given probabilities."""
         low = np.full(len(levels), (self.means - 9.0 * self.deviations).min())
         high = np.full(len(levels), (self.means + 9.0 * self.deviations).max())
         for _ in range(60):
@@ -126,7 +126,7 @@ class Mixture:
 def posterior(
     model: Model, observer: Observer, scatter: float | None, noise: Noise, start: Callable[[FloatArray], FloatArray]
 ) -> Posterior:
-    """Return the posterior; scatter: of ln r if it is known; start: first unknowns for given scatters."""
+    """Return the posterior. `scatter` is a known scatter of ln r. `start` gives first unknowns for scatters."""
     scatters = _first_nodes(_COARSE[0]) if scatter is None else (np.array([scatter]), np.zeros(1))
     noise_ends = np.log(noise.median) + noise.dispersion * np.array([-3.0, 3.0])
     coarse = _on_grid(model, observer, scatters, _noise_nodes(noise, noise_ends, _COARSE[1]), start)
@@ -152,26 +152,26 @@ def rescaled(u: FloatArray, at: float, scatters: FloatArray) -> FloatArray:
 
 
 def scatter_nodes(ends: FloatArray, count: int) -> Nodes:
-    """Return a scatter of zero and scatters between two ends, given as logarithms, with prior probabilities."""
+    """Return a scatter of zero and scatters between two ends with prior probabilities; the ends are logarithms."""
     values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
     ln = np.log1p(-NO_SCATTER) + _ln_scatter_density(values) + np.log(step)  # Eq. 324
     return np.concatenate([[0.0], values]), np.concatenate([[np.log(NO_SCATTER)], ln])
 
 
 def _first_nodes(count: int) -> Nodes:
-    """Return the scatters of the first grid; its smallest scatter includes the probability of no scatter."""
+    """Return the scatters of the first grid. The smallest scatter also has the probability of no scatter."""
     values, ln = scatter_nodes(np.log(SCATTERS), count)
     return values[1:], np.concatenate([[np.logaddexp(ln[0], ln[1])], ln[2:]])
 
 
 def _ln_scatter_density(scatters: FloatArray) -> FloatArray:
-    """Return ln of the density of ln of a scatter: flat in small scatters, in the logarithm of large ones."""
+    """Return ln of the density of ln(scatter): flat in small scatters, and flat in the logarithm of large scatters."""
     low, high = (np.log(limit + _SMALL_SCATTER) for limit in SCATTERS)
     return np.asarray(np.log(scatters / (scatters + _SMALL_SCATTER) / (high - low)))  # Eq. 273
 
 
 def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
-    """Return noises between two ends, given as logarithms, with their prior probabilities."""
+    """Return noises between two ends with their prior probabilities; the ends are logarithms."""
     if noise.dispersion == 0.0:
         return np.array([noise.median]), np.zeros(1)
     values, step = np.exp(np.linspace(ends[0], ends[1], count)), (ends[1] - ends[0]) / (count - 1)
@@ -182,8 +182,8 @@ def _noise_nodes(noise: Noise, ends: FloatArray, count: int) -> Nodes:
 def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
     """Return median, 2.5 % and 97.5 % quantile of a scatter or a noise with weights on a grid.
 
-    The median and the lower quantile are zero if zero has at least that probability. The upper quantile is the one of
-    the positive values: it limits an undetected scatter.
+    The median and the lower quantile are zero if zero has at least this probability. The upper quantile is that of the
+    positive values, so that it limits an undetected scatter.
     """
     nodes = np.unique(values)
     mass = np.array([weights[values == node].sum() for node in nodes])
@@ -198,7 +198,7 @@ def interval_of_nodes(values: FloatArray, weights: FloatArray) -> tuple[float, f
 
 
 def _narrowed(ends: FloatArray, values: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return the ends, as logarithms, of the nodes above zero with relevant weight."""
+    """Return the logarithms of the smallest and largest node above zero with relevant weight."""
     levels = np.unique(values[values > 0.0])
     mass = np.array([weights[values == level].sum() for level in levels])
     kept = np.flatnonzero(mass >= _NEGLIGIBLE * mass.max())
@@ -229,21 +229,21 @@ LEVEL: Final = math.radians(0.3)
 UNKNOWN_FREQUENCIES: Final = (1.3, 2.0, 3.1, 4.8, 7.4, 11.5)
 """Tried frequency parameters of an unknown body [rad/s]."""
 
-_UNKNOWN = (0.25, 0.22, 0.5)  # deviation of ln p; slenderness angle; deviation of its logarithm
+_UNKNOWN = (0.25, 0.22, 0.5)  # for an unknown body: deviation of ln p, slenderness angle, deviation of its logarithm
 
 
 @dataclass(frozen=True)
 class Knowledge:
-    """Prior knowledge; a standard deviation of zero means a certain value."""
+    """Prior knowledge. A standard deviation of zero means a certain value."""
 
     body: Body | None
-    size_error: float  # of a length of the body, relative
-    tilt: float  # [rad]
+    size_error: float  # relative standard deviation of a length of the body
+    tilt: float  # tilt of the floor [rad]
     tilt_error: float
-    asymmetry: float  # deviation of the difference of ln r between both feet
+    asymmetry: float  # standard deviation of the difference of ln r between both feet
     trend: bool
     damping: bool
-    first: Foot  # in contact after the first impact
+    first: Foot  # foot in contact after the first impact
 
     @classmethod
     def checked(
@@ -268,21 +268,21 @@ class Knowledge:
 
     @property
     def frequencies(self) -> tuple[tuple[float, float], ...]:
-        """First means of ln p, with their standard deviations."""
+        """First mean values of ln p, with their standard deviations."""
         if self.body is None:
             return tuple((math.log(p), _UNKNOWN[0]) for p in UNKNOWN_FREQUENCIES)
         return ((0.5 * math.log(self._p[0] * self._p[1]), 0.5 * self.size_error),)
 
     @property
     def slenderness_angles(self) -> tuple[float, float]:
-        """Over the right and the left foot [rad]."""
+        """Slenderness angles for the right and the left foot [rad]."""
         if self.body is None:
             return _UNKNOWN[1], _UNKNOWN[1]
         return self.body.side("right").slenderness_angle, self.body.side("left").slenderness_angle
 
     @property
     def alternation(self) -> tuple[float, float]:
-        """Change of ln y onto the first side due to unequal sides, and its standard deviation."""
+        """Change of ln y at an impact onto the first side due to unequal sides, and its standard deviation."""
         right, left = self.slenderness_angles
         floor = math.hypot(self.tilt, self.tilt_error) / min(right, left)
         # change of the overturning speed from the second side to the first, for asymmetric bodies
@@ -292,17 +292,17 @@ class Knowledge:
 
     @property
     def _p(self) -> tuple[float, float]:
-        """Frequency parameters over the right and the left foot; 1 for an unknown body [rad/s]."""
+        """Frequency parameters for the right and the left foot; 1 for an unknown body [rad/s]."""
         if self.body is None:
             return 1.0, 1.0
         return self.body.side("right").frequency_parameter, self.body.side("left").frequency_parameter
 
     def sides(self, count: int) -> IntArray:
-        """Return the side of each half cycle: 0 right, 1 left."""
+        """Return the side of each half cycle: 0 for right, 1 for left."""
         return (np.arange(count) + (self.first == "left")) % 2
 
     def model(self, sides: IntArray, start: float, speeds: FloatArray, frequency: tuple[float, float]) -> Model:
-        """Return the model of a path; start, speeds: first time, ln of speeds; frequency: mean, deviation of ln p."""
+        """Return the model from the first time, ln of the speeds, and mean and deviation of ln p (`frequency`)."""
         mean, deviation = np.zeros(len(SHARED)), np.zeros(len(SHARED))
         p = np.array([math.exp(frequency[0])] * 2)
         slender = math.sqrt(2.0) * self.size_error
@@ -320,5 +320,5 @@ class Knowledge:
         deviation[state_space.SLENDERNESS] = slender
         deviation[state_space.TREND] = 0.05 if self.trend else 0.0
         deviation[state_space.DAMPING] = 0.02 if self.damping else 0.0
-        middle = float(speeds[:-1].mean())  # mean over the impacts: the mean coefficient with a trend refers to it
+        middle = float(speeds[:-1].mean())  # mean over the impacts, the reference of the mean coefficient with a trend
         return Model(sides, self.slenderness_angles, (float(p[0]), float(p[1])), mean, deviation, middle)

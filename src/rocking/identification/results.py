@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 LEVELS = (0.5, 0.025, 0.975)
 """Probabilities of an estimate and its interval."""
 
-_NOISES = {"times": "s", "rotation": "rad", "angular_velocity": "rad/s"}  # units of residuals
+_NOISES = {"times": "s", "rotation": "rad", "angular_velocity": "rad/s"}  # unit of the residuals by kind of measurement
 _SCATTERS = (
     "The coefficient of restitution is {mean}, from {count} impacts. It scatters by {scatter:.2g} % from impact to "
     "impact."
@@ -47,7 +47,7 @@ class IntervalEstimate:
     Parameters
     ----------
     value, low, high : float
-        Median, 2.5 and 97.5 % of its posterior, in the unit of the number.
+        Median, 2.5 % and 97.5 % quantile of the posterior, in the unit of the number.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def _ends(estimate: IntervalEstimate | None) -> dict[str, float] | None:
 
 
 def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate:
-    """Return the estimate of a distribution, or of factor times its exponential."""
+    """Return the estimate of a distribution, or of its exponential times a factor."""
     quantiles = mixture.quantiles(*LEVELS)
     return IntervalEstimate(*(quantiles if factor is None else (factor * math.exp(quantile) for quantile in quantiles)))
 
@@ -80,7 +80,7 @@ def estimated(mixture: Mixture, factor: float | None = None) -> IntervalEstimate
 class Impact:
     """One impact with its coefficient of restitution."""
 
-    number: int  # from zero; the coefficient of the first one is unknown
+    number: int  # number of the impact, from zero; the coefficient of impact 0 is unknown
     time: float  # computed time [s]
     foot: Foot  # foot in contact after the impact
     speed: float  # absolute angular velocity before the impact [rad/s]
@@ -113,12 +113,12 @@ class ModelComparison:
 class ForcedRocking:
     """Additional results from a rotation under a known ground motion."""
 
-    clock: IntervalEstimate  # lead of the clock of the measurement over the clock of the motion [s]
-    gain: IntervalEstimate  # measured over true rotation [-]
-    # coefficient of friction; if it is not identified, only the low end is a number, a bound at 95 % [-]
+    clock: IntervalEstimate  # time by which the clock of the measurement is ahead of the clock of the motion [s]
+    gain: IntervalEstimate  # measured rotation / true rotation [-]
+    # coefficient of friction [-]; if not identified, only the low end is a number: a bound at 95 %
     friction: IntervalEstimate
     stretches: int  # number of sequences of half cycles that begin with a measured state
-    excluded_half_cycles: int  # excluded half cycles, which rocking alone does not explain
+    excluded_half_cycles: int  # number of excluded half cycles, which rocking alone does not explain
     used: float  # used, measured: duration of the used half cycles, and of the measurement [s]
     measured: float
     # time after which a difference of 1e-4 in r changes the response from rest by 10 % of its peak; NaN if never [s]
@@ -411,7 +411,7 @@ class Identification(Exported):
 
 
 def impulses(body: Body, coefficients: dict[Foot, IntervalEstimate]) -> dict[Foot, IntervalEstimate]:
-    """Return the impulse position k of each foot from the coefficients; a larger coefficient has a smaller k."""
+    """Return the impulse position k of each foot from the coefficients. A larger coefficient gives a smaller k."""
     ratios: dict[Foot, IntervalEstimate] = {}
     for foot, estimate in coefficients.items():
         value, high, low = (
@@ -428,7 +428,7 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
         try:
             model: RestitutionModel = kind()
             sides = [model.evaluate(body, foot=foot).coefficient for foot in FEET]
-        except (TypeError, RockingError):  # the model requires a number, or excludes this body
+        except (TypeError, RockingError):  # the model requires a value, or does not apply to this body
             continue
         value = math.sqrt(sides[0] * sides[1])
         comparisons.append(ModelComparison(name, value, mean.low <= value <= mean.high, value - mean.value))
@@ -436,7 +436,7 @@ def compared(body: Body, mean: IntervalEstimate) -> tuple[ModelComparison, ...]:
 
 
 def next_impact(mean: Mixture, scatter: FloatArray | float) -> FloatArray:
-    """Return quantiles of the coefficient of another impact; without scatter, of the mean."""
+    """Return quantiles of the coefficient of another impact, or of the mean coefficient without scatter."""
     spread = Mixture(mean.weights, mean.means, np.hypot(mean.deviations, scatter))
     levels = (np.arange(65) + 0.5) / 65.0
     return np.exp(np.minimum(spread.quantiles(*levels), math.log(10.0)))  # Eq. 274

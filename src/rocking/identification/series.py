@@ -14,17 +14,17 @@ from rocking.identification.measurement import RotationSeries, white_noise
 from rocking.identification.posterior import Knowledge, Noise, Posterior, posterior, rescaled
 from rocking.identification.state_space import Path
 
-_STEP = 1e-7  # of ln of the speed
+_STEP = 1e-7  # change of ln of the speed for derivatives
 _MAX_SAMPLES, _MAX_SEARCHED = 3000, 20_000
 _MIN_CROSSINGS, _ROUNDS, _SCATTER = 3, 3, 0.03
-_NOISES = 6.0  # standard deviations of the noise; smaller rotations are noise
+_NOISES = 6.0  # number of standard deviations of the noise below which a rotation is noise
 
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A measured quantity against time, and its noise over the noise of the first one."""
+    """A measured quantity against time, and the ratio of its noise to the noise of the first quantity."""
 
-    kind: str  # rotation or angular_velocity
+    kind: str  # "rotation" or "angular_velocity"
     time: FloatArray
     values: FloatArray
     scale: float = 1.0
@@ -39,7 +39,7 @@ class SampledSeries:
 
     @property
     def count(self) -> int:
-        """Number of samples, without those for offset and drift."""
+        """Number of samples, minus the number of values for offset and drift."""
         return sum(row.values.size - 2 for row in self.rows)
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
@@ -63,7 +63,7 @@ class SampledSeries:
         angle_by_y, speed_by_y = (
             (b - a) / _STEP for a, b in zip((angle, speed), response(path.y * (1.0 + _STEP)), strict=True)
         )
-        # a change of the slenderness angle shifts the time and changes the speed: disturbances obey one linear equation
+        # a change of the slenderness angle shifts the time and changes the speed; both obey one linear equation
         begun = (2.0 * np.sin(0.5 * path.alpha) * path.y)[g, k]
         mixed = (np.cos(0.5 * path.alpha) * (1.0 / path.y - path.y))[g, k]
         if row.kind == "rotation":
@@ -88,7 +88,7 @@ class SampledSeries:
 
 
 def fit_series(series: RotationSeries, prior: Knowledge) -> tuple[Posterior, tuple[Row, ...], float] | None:
-    """Return the posterior, the rows and the effective number of samples; None with fewer than three crossings."""
+    """Return the posterior, the rows and the effective number of samples; None for fewer than three crossings."""
     crossings, first = find_impacts(series)
     if crossings.size < _MIN_CROSSINGS:
         return None
@@ -134,7 +134,7 @@ def _without_impact_samples(row: Row, impacts: FloatArray, scale: float) -> Row:
 def find_impacts(series: RotationSeries) -> tuple[FloatArray, Foot]:
     """Return approximate times of impacts, and the foot in contact after the first impact."""
     time, values, degree = series.time, series.rotation, 1
-    if values is None:  # integral of the velocity; offset and drift become a line and a parabola
+    if values is None:  # use the integral of the velocity; its offset and drift become a line and a parabola
         turning = np.asarray(series.angular_velocity)
         steps = 0.5 * (turning[1:] + turning[:-1]) * np.diff(time)
         values, degree = np.concatenate([[0.0], np.cumsum(steps)]), 2
@@ -146,7 +146,7 @@ def find_impacts(series: RotationSeries) -> tuple[FloatArray, Foot]:
         return np.zeros(0), "right"
     crossings = []
     for low, high in ends:
-        # zero of the straight line through the samples between
+        # zero of the straight line through the samples between both ends
         near = slice(max(low - 1, 0), high + 2)
         slope, level = np.polyfit(time[near] - time[low], values[near], 1)
         crossings.append(float(np.clip(time[low] - level / slope, time[low], time[high])))
@@ -167,7 +167,8 @@ def _about_middle(time: FloatArray, values: FloatArray, degree: int, threshold: 
         return np.asarray(values - np.median(values))
     tops = values[peaks]
     halfway, at = 0.25 * (tops[:-2] + tops[2:]) + 0.5 * tops[1:-1], time[peaks[1:-1]]
-    weights = 1.0 / (np.abs(tops[2:] - tops[1:-1]) + np.abs(tops[1:-1] - tops[:-2]))  # large peaks are inaccurate
+    # small weights, because midpoints of large peaks are inaccurate
+    weights = 1.0 / (np.abs(tops[2:] - tops[1:-1]) + np.abs(tops[1:-1] - tops[:-2]))
     return np.asarray(values - Polynomial.fit(at, halfway, min(degree, at.size - 1), w=weights)(time))
 
 
@@ -182,7 +183,7 @@ def _peaks(values: FloatArray, threshold: float) -> IntArray:
         elif direction >= 0 and values[high] - values[k] > threshold:
             peaks.append(high)
             direction, low = -1, k
-    return np.array(peaks[1:], dtype=np.int64)  # the first one is the start
+    return np.array(peaks[1:], dtype=np.int64)  # the first turning point is the start
 
 
 def _misfit(frequency: tuple[float, float], crossings: FloatArray, prior: Knowledge, rows: tuple[Row, ...]) -> float:

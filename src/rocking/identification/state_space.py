@@ -1,11 +1,11 @@
 """A freely rocking body as a state-space model: its speed after each impact, and the measured quantities.
 
-The unknowns are standard normal a priori: the parameters shared by all impacts, and one draw for each impact. A draw
-scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed together: they are
-the first axis of all arrays, called g below. All angles of the left side are mirrored.
+The unknowns have standard normal priors: the parameters shared by all impacts, and one random number per impact. This
+number scatters the coefficient of restitution about its mean. Many pairs of scatter and noise are computed together.
+They are the first axis of all arrays, with the size g below. All angles of the left side are mirrored.
 
-`y` is the speed after an impact over the speed that just overturns the body. `alpha` is the slenderness angle over the
-foot in contact. Times are multiplied by the frequency parameter p.
+`y` is the ratio of the speed after an impact to the smallest speed with overturning. `alpha` is the slenderness angle
+of the foot in contact. Times are multiplied by the frequency parameter p.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ def overturning_speed(alpha: FloatArray) -> FloatArray:
 
 
 def duration(y: FloatArray, alpha: FloatArray) -> FloatArray:
-    """Return p T, T the time from one impact to the next [-].
+    """Return p T, with the time T from one impact to the next impact [-].
 
     >>> round(float(duration(np.array(0.8), np.array(1e-9)) - 2.0 * np.arctanh(0.8)), 12)
     0.0
@@ -32,12 +32,12 @@ def duration(y: FloatArray, alpha: FloatArray) -> FloatArray:
 
 
 def duration_and_slopes(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return p T, its derivative by ln y at constant alpha, and by alpha at constant y."""
+    """Return p T, its derivative by ln y at constant alpha, and its derivative by alpha at constant y."""
     a, b, c = _arguments(y, alpha)
     q, s2 = 1.0 - y * y, np.sin(0.5 * alpha) ** 2
     by_a, by_b, by_c = -elliprd(b, c, a) / 6.0, -elliprd(a, c, b) / 6.0, -elliprd(a, b, c) / 6.0
     scaled = 2.0 * y * elliprf(a, b, c)
-    by_y = (s2 - 1.0) * by_a + (s2 * q - c) * by_b + s2 * by_c  # over 2 y
+    by_y = (s2 - 1.0) * by_a + (s2 * q - c) * by_b + s2 * by_c  # derivative / (2 y)
     by_s2 = -q * (by_a + q * by_b + by_c)
     return scaled, scaled + 4.0 * y**3 * by_y, y * np.sin(alpha) * by_s2
 
@@ -65,15 +65,15 @@ def peak(y: FloatArray, alpha: FloatArray) -> FloatArray:
 def rotation(
     since: FloatArray, y: FloatArray, alpha: FloatArray, until: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return rotation [rad] and angular velocity over p [-]; since, until: p times the time since and to an impact."""
-    low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # sine of half the angle at the peak
+    """Return rotation [rad] and angular velocity / p [-]; `since`, `until`: p x time since and time to an impact."""
+    low = np.sin(0.5 * alpha) * np.sqrt(1.0 - y * y)  # sine of half the angle to equilibrium at the peak
     m = 1.0 - low * low
     sn, _, dn, _ = ellipj(since - 0.5 * (duration(y, alpha) if until is None else until), m)
     return alpha - 2.0 * np.arcsin(np.minimum(low / dn, 1.0)), -2.0 * low * np.sqrt(m) * sn / dn  # Eq. 267
 
 
 def viscous_loss(y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the decrease of ln y until the next impact per damping ratio, for slender bodies.
+    """Return the decrease of ln y until the next impact / damping ratio, for slender bodies.
 
     The second result is its derivative by ln y; y is the geometric mean of the values at both ends.
     """
@@ -91,46 +91,47 @@ def _arguments(y: FloatArray, alpha: FloatArray) -> tuple[FloatArray, FloatArray
 
 
 SHARED = (START, SPEED, MEAN, HALF, FREQUENCY, TILT, SLENDERNESS, TREND, DAMPING) = tuple(range(9))
-"""Time of the first impact [s]; ln of the speed after it, ln of the mean coefficient, half the difference of ln r
-between the right and the left foot, ln of p and of the slenderness angle over their nominal values, tilt of the floor,
-clockwise [rad], slope of ln r over ln of the speed, damping ratio."""
+"""Time of the first impact [s], ln of the speed after the first impact, ln of the mean coefficient, half the difference
+of ln r between the right and the left foot, ln of the ratios of p and of the slenderness angle to their nominal values,
+clockwise tilt of the floor [rad], slope of ln r over ln of the speed, damping ratio."""
 
 _BELOW_OVERTURNING = 1.0 - 1e-9
 _ROUNDING = 1e-14
-_STEEPEST = 1.5  # slenderness angle [rad]
-_PART = 128  # rows of a small product, for which the linear algebra starts no threads
-_STEPS, _PATIENCE, _FAR_BEHIND = 40, 12, 100.0  # largest number of steps; steps; ln of the probability density
-_CLOSE = 1e-3  # change of -2 ln of the posterior
+_STEEPEST = 1.5  # largest slenderness angle [rad]
+_PART = 128  # rows of a matrix product that is small enough for one thread
+# largest number of steps; step of the check; difference of ln of the density with negligible weight
+_STEPS, _PATIENCE, _FAR_BEHIND = 40, 12, 100.0
+_CLOSE = 1e-3  # largest change of -2 ln of the posterior at convergence
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
     """Path of the body for given unknowns: impacts n = 0..N, half cycles k = 0..N-1.
 
-    Slopes are derivatives by the unknowns, the last axis.
+    Slopes are derivatives by the d unknowns on the last axis.
     """
 
-    times: FloatArray  # g, n [s]
-    speeds: FloatArray  # g, k: ln of the angular velocity after the impact
-    y: FloatArray  # g, k: over the overturning speed
-    alpha: FloatArray  # g, k [rad]
-    p: FloatArray  # g, k [rad/s]
-    time_slopes: FloatArray  # g, n, d
-    y_slopes: FloatArray  # g, k, d: of ln y
-    alpha_slopes: FloatArray  # g, k, d
-    p_slopes: FloatArray  # d: of ln p
-    feasible: BoolArray  # g: True without overturning
+    times: FloatArray  # times of impacts, shape (g, n) [s]
+    speeds: FloatArray  # ln of the angular velocity after the impact, shape (g, k)
+    y: FloatArray  # speed / overturning speed, shape (g, k) [-]
+    alpha: FloatArray  # slenderness angle, shape (g, k) [rad]
+    p: FloatArray  # frequency parameter, shape (g, k) [rad/s]
+    time_slopes: FloatArray  # slopes of the times, shape (g, n, d)
+    y_slopes: FloatArray  # slopes of ln y, shape (g, k, d)
+    alpha_slopes: FloatArray  # slopes of alpha, shape (g, k, d)
+    p_slopes: FloatArray  # slopes of ln p, shape (d,)
+    feasible: BoolArray  # True without overturning, shape (g,)
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
     """Prior of a measurement: the body, its side in each half cycle, and the prior distributions."""
 
-    sides: IntArray  # k: 0 right, 1 left
-    alpha: tuple[float, float]  # right, left [rad]
-    p: tuple[float, float]  # [rad/s]
-    mean: FloatArray  # of the shared parameters
-    deviation: FloatArray  # zero for known parameters
+    sides: IntArray  # 0 for right, 1 for left, shape (k,)
+    alpha: tuple[float, float]  # slenderness angles, right and left [rad]
+    p: tuple[float, float]  # frequency parameters, right and left [rad/s]
+    mean: FloatArray  # prior mean of the shared parameters
+    deviation: FloatArray  # prior standard deviation of the shared parameters, zero for known parameters
     middle: float = 0.0  # ln of the reference speed of a trend
 
     @property
@@ -143,7 +144,7 @@ class Model:
         return np.asarray(self.mean + self.deviation * u[..., : len(SHARED)])
 
     def path(self, u: FloatArray, scatter: FloatArray) -> Path:
-        """Return the path from impact to impact; u: g, d; scatter: standard deviation of ln r at an impact, g."""
+        """Return the path from impact to impact for u, shape (g, d), and the scatter of ln r at impacts, shape (g,)."""
         count, size = self.sides.size, self.size
         z = self.shared(u)
         unit = np.zeros((len(SHARED), size))
@@ -154,7 +155,7 @@ class Model:
         feasible = np.ones(len(u), dtype=np.bool_)
         trend, damped = (self.deviation[which] > 0.0 or self.mean[which] != 0.0 for which in (TREND, DAMPING))
         for k, side in enumerate(self.sides):
-            sign = 1.0 - 2.0 * side  # a fall to the right reduces the slenderness angle over the right foot
+            sign = 1.0 - 2.0 * side  # a tilt to the right reduces the slenderness angle over the right foot
             alone = self.alpha[side] * np.exp(z[:, SLENDERNESS])
             alpha, p = np.clip(alone - sign * z[:, TILT], 1e-3, _STEEPEST), self.p[side] * np.exp(z[:, FREQUENCY])
             da = alone[:, None] * unit[SLENDERNESS] - sign * unit[TILT]
@@ -175,7 +176,7 @@ class Model:
             )
             if k + 1 == count:
                 break
-            lands = -sign  # onto the other side
+            lands = -sign  # the body lands on the other side
             change = z[:, MEAN] + lands * z[:, HALF] + scatter * u[:, len(SHARED) + k] - lost  # Eq. 269
             dc = unit[MEAN] + lands * unit[HALF] - dl
             dc[:, len(SHARED) + k] += scatter
@@ -230,7 +231,7 @@ class Observer(Protocol):
         ...
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
-        """Return measured minus computed values, g, m, and slopes of the computed ones, g, m, d."""
+        """Return measured minus computed values, shape (g, m), and slopes of the computed values, shape (g, m, d)."""
         ...
 
 
@@ -247,7 +248,7 @@ class Clicks:
         return self.measured.size
 
     def residuals(self, path: Path) -> tuple[FloatArray, FloatArray]:
-        """Return measured minus computed times, with slopes of the computed ones."""
+        """Return measured minus computed times, with slopes of the computed times."""
         return self.measured - path.times[:, self.impacts], path.time_slopes[:, self.impacts]
 
 
@@ -255,20 +256,20 @@ class Clicks:
 class Laplace:
     """The posterior for each pair of scatter and noise, as a normal distribution of the unknowns."""
 
-    u: FloatArray  # g, d: at the maximum
-    covariance: FloatArray  # g, d, d
-    evidence: FloatArray  # g: ln of the probability density of the measurement
-    residuals: FloatArray  # g, m
-    converged: BoolArray  # g
+    u: FloatArray  # unknowns at the maximum, shape (g, d)
+    covariance: FloatArray  # shape (g, d, d)
+    evidence: FloatArray  # ln of the probability density of the measurement, shape (g,)
+    residuals: FloatArray  # shape (g, m)
+    converged: BoolArray  # shape (g,)
 
 
 def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray) -> Laplace:
-    """Return the posterior about its maximum, found by damped Gauss-Newton steps from u."""
+    """Return the posterior about its maximum; damped Gauss-Newton steps from u search the maximum."""
     u = u.copy()
     best = _objective(model, observer, scatter, noise, u)
     damping, active, converged = np.zeros(len(u)), np.arange(len(u)), np.zeros(len(u), dtype=np.bool_)
     for iteration in range(_STEPS):
-        if iteration == _PATIENCE:  # unlikely nodes have a negligible weight
+        if iteration == _PATIENCE:  # omit unlikely nodes, which have a negligible weight
             ln = -0.5 * best[0] - observer.count * np.log(noise)
             active = active[ln[active] > ln.max() - _FAR_BEHIND]
         state = (u[active], *(values[active] for values in best))
@@ -287,7 +288,7 @@ def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatA
         if not active.size:
             break
     value, residual, slopes, *_ = best
-    # root of the Hessian: parameters without data keep their digits
+    # with the root of the Hessian, parameters without data keep their digits
     eye = np.broadcast_to(np.eye(model.size), (len(u), model.size, model.size))
     root = np.linalg.qr(np.concatenate([slopes, eye], axis=1), mode="r")
     half = np.log(np.abs(np.einsum("gii->gi", root))).sum(axis=1)
@@ -316,10 +317,10 @@ def _stepped(
     again = np.flatnonzero((scatter > 0.0) | (straight[0] > value))
     bent, has_draws = tried[again], scatter[again] > 0.0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        # times are far more accurate than speeds: the change along the step is linear in u or in the times
+        # times are much more accurate than speeds, so the step is linear in u, or in the times
         goal = (times + (time_slopes @ step)[..., 0])[again][has_draws]
         bent[has_draws] = model.unknowns_at_times(bent[has_draws], scatter[again][has_draws], goal)
-    # without draws: a second step with the slopes of the first
+    # without random numbers, a second step has the slopes of the first step
     fixed = again[~has_draws]
     bent[~has_draws] += np.linalg.solve(
         matrix[fixed], (turned @ straight[1][..., None])[fixed] - tried[fixed][..., None]
@@ -336,7 +337,8 @@ def _objective(
     model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return -2 ln of the posterior, residuals and slopes divided by the noise, times of impacts and their slopes."""
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # far from the maximum; the step is rejected
+    # far from the maximum, values overflow and the step is rejected
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         path = model.path(u, scatter)
         residual, slopes = observer.residuals(path)
         residual = residual / noise[:, None]

@@ -40,7 +40,7 @@ SPACE_DIRECTIONS = 6
 
 POINTS, REACH, TOGETHER = 24, 20.0, 8
 """Number of factors in the search for the smallest overturning factor, largest factor over the uplift factor, and
-factors per batch. A 3D history takes a thousand times as long as a plane one."""
+factors per batch. The computing time of a 3D history is a thousand times that of a 2D history."""
 
 TURN, SAME = 2.0 * math.pi, 1e-9
 
@@ -76,7 +76,7 @@ class SolidHistories:
         pose, equilibria = self._mechanics.pose, self._mechanics.solid.equilibria()
         self._edges, self._outward = pose.edge_distances, _outward(pose)
         fixed_azimuth = float(azimuth) if isinstance(azimuth, (int, float)) else None
-        # uplift begins at the nearest edge, or at the edge of the stated direction
+        # uplift begins at the nearest edge, or at the edge in the stated direction
         uplift_factors = self._edges
         if fixed_azimuth is not None:
             by_motion = [self._edge_uplift_factors(components, fixed_azimuth) for components in self.components]
@@ -139,7 +139,7 @@ class SolidHistories:
         ground = [np.zeros(0) if component is None else sampled(component).acceleration for component in motion.parts]
         x, y, vertical = (np.pad(component, (0, max(map(len, ground)) - len(component))) for component in ground)
         c, s = math.cos(azimuth), math.sin(azimuth)
-        outward = self._outward @ np.array([[c, s], [-s, c]])  # in the axes of the ground
+        outward = self._outward @ np.array([[c, s], [-s, c]])  # normals in the axes of the ground
         height, gravity = self._mechanics.pose.height, self._options["gravity"]
         push = np.abs(outward[:, :1] * x + outward[:, 1:] * y) * height - self._edges[:, None] * vertical
         return np.asarray(gravity * self._edges / np.maximum(push.max(axis=1), 1e-300))  # Eq. 312
@@ -149,8 +149,8 @@ class SolidHistories:
     ) -> ModelMargin:
         """Return the margin with one restitution.
 
-        plane_margin: that of the plane body, with its coefficients; restitution: as for `predict`; level: probability
-        in its distribution, if it has one.
+        `plane_margin` is the margin of the plane body, with its coefficients. `restitution` is as for `predict`, and
+        `level` is the probability in the distribution of the restitution.
         """
         mechanics, polarities, count = self._mechanics.with_restitution(restitution), self.polarities, len(self.motions)
         peaks = np.array([motion.peak for motion in self.motions])
@@ -164,12 +164,12 @@ class SolidHistories:
 
         unscaled = overturned(np.arange(polarities * count), np.ones(polarities * count)).reshape(polarities, count)
         min_factors = find_min_factors(np.tile(grid, (polarities, 1)), overturned, TOGETHER).reshape(polarities, count)
-        # the factor 1 may be in an interval of overturning between two levels
+        # the factor 1 may lie in an overturning interval between two levels of the search
         min_factors = np.where(unscaled == 1.0, np.minimum(min_factors, 1.0), min_factors)
         return replace(plane_margin, overturned=np.maximum.reduce(unscaled), min_factors_by_polarity=min_factors)
 
     def with_overturning(self, margin: ModelMargin, restitution: Any, level: float, in_plane: float) -> StandingSolid:
-        """Return the solid with its overturning at the smallest factor; in_plane: factor of the plane body."""
+        """Return the solid with its overturning at the smallest factor; `in_plane` is the factor of the plane body."""
         mechanics, (polarity, motion) = self._mechanics.with_restitution(restitution), margin.governing_case
         azimuth = self.motions[motion].azimuth + 0.5 * TURN * polarity
         standing = replace(
@@ -215,7 +215,7 @@ def _outward(pose: StablePose) -> FloatArray:
 
 
 ENDS = {"low": 0.025, "high": 0.975}
-"""Quantiles at the ends of the 95 % interval of single measured bodies, assessed with the calibrated model."""
+"""Quantiles of the calibrated model at both ends of the 95 % interval of single measured bodies."""
 
 MAX_MARGIN = 50.0
 """Largest required margin of measures, equal to the largest factor in the search for margins [-]."""
@@ -243,7 +243,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     """Assess overturning of a body: outcome, margin, probability, causes and measures.
 
     Histories of pure rocking are computed under all motions, in both polarities, with all restitution models. The model
-    of the smallest margin is also computed with sliding. A search over scale factors gives the smallest factor with
+    with the smallest margin is also computed with sliding. A search over scale factors gives the smallest factor with
     overturning. The result also contains a probability, with uncertain inputs sampled, and the code methods.
 
     Parameters
@@ -281,7 +281,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
     Raises
     ------
     InvalidValueError
-        If the body has another type, a motion is zero throughout, or a value is outside its range.
+        If the body has another type, a motion is zero at all times, or a value is outside its range.
 
     Examples
     --------
@@ -357,7 +357,7 @@ def assess(  # noqa: PLR0913 - inputs, assumptions and settings
 
 
 def in_the_plane(motions: Any, azimuth: Any = None) -> tuple[list[GroundMotion], IntArray]:
-    """Return the motions in the plane of a body, and the index of the input motion of each.
+    """Return the motions in the plane of a body, and the index of the input motion for each of them.
 
     One component is unchanged; two components are rotated into all directions.
     """
@@ -404,7 +404,7 @@ def choices(body: Body, restitutions: Sequence[Any] | None) -> Mapping[str, Any]
 
 
 def _sampled_restitution(name: str, choice: Any) -> tuple[Any, float]:
-    """Return a restitution as for `predict` of a solid, and the probability in its distribution."""
+    """Return a restitution of a solid in the form for `predict`, and the probability in its distribution."""
     label, _, end = name.partition(", ")
     if label == CALIBRATED:
         return None, ENDS.get(end, 0.5)
@@ -435,7 +435,7 @@ def _margins(
 
 def _margin(body: Body, motions: MotionList, restitution: Any, options: dict[str, Any]) -> ModelMargin:
     margins = Margins.of(body, motions, restitution, "pga", None, options)
-    # the factor 1 may be in an interval of overturning between two levels
+    # the factor 1 may lie in an overturning interval between two levels of the search
     min_factors = np.where(
         margins.overturned_by_polarity[:, :, 0] == 1.0,
         np.minimum(margins.min_factors_by_polarity, 1.0),

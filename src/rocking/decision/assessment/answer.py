@@ -38,7 +38,7 @@ _DEPENDS = (
     "The body may overturn: under {with_some} of {motions} with some of {models}, under {with_all} with all. The "
     "result depends on the restitution model."
 )
-_MARGINS = {  # by two flags: there is only one motion; the factor is a margin
+_MARGINS = {  # keys: (True for a single motion, True if the factor is a margin)
     (True, True): "Margin to overturning: {factor:.3g} times this record ({model}), a {peak} of {acceleration:.3g} g.",
     (False, True): "Margin to overturning: {factor:.3g} times {motion} ({model}), a {peak} of {acceleration:.3g} g.",
     (True, False): (
@@ -120,7 +120,7 @@ def _cases(names: Collection[str]) -> Message:
 
 
 def just_above(factor: float) -> float:
-    """Return a factor with overturning, from a smallest factor with a tolerance of 0.1 %; 1 stays 1."""
+    """Return a factor that is certain to overturn, from a smallest factor with a tolerance of 0.1 %; 1 is unchanged."""
     return factor if factor == 1.0 else 1.001 * factor
 
 
@@ -137,7 +137,7 @@ class ModelMargin:
     coefficients : dict of str to float
         Coefficient of restitution, by landing foot [-].
     overturned : ndarray, shape (motions,)
-        1 if the body overturns under the unscaled motion in one of both polarities; NaN without a result.
+        1 if the body overturns under the unscaled motion in at least one polarity; NaN without a result.
     min_factors_by_polarity : ndarray, shape (polarities, motions)
         Smallest overturning factor on each motion, as recorded and reversed; infinite if no factor overturns [-].
     """
@@ -182,14 +182,14 @@ class StandingSolid:
     pose: StablePose
     # outward normal of the edge where uplift begins, from the x axis of the solid [rad]
     plane_azimuth: float
-    edge_distance: float  # horizontal distance of that edge from the centre of mass [m]
-    is_weakest: bool  # True if that edge is the nearest one
+    edge_distance: float  # horizontal distance between this edge and the centre of mass [m]
+    is_weakest: bool  # True if this edge is the nearest edge
     lowest_pass: Pass | None  # lowest pass into another pose
     min_factor_in_plane: float = math.nan  # smallest overturning factor of the plane body, without sliding [-]
-    overturning_direction: float = math.nan  # direction of overturning, from its x axis [rad]
-    sliding_distance: float = math.nan  # sliding distance in that history [m]
-    restitution: Any = None  # its restitution, as for `simulate`
-    azimuth: float = 0.0  # azimuth of the solid's x axis in it [rad]
+    overturning_direction: float = math.nan  # direction of overturning, from the solid's x axis [rad]
+    sliding_distance: float = math.nan  # sliding distance in the history with overturning [m]
+    restitution: Any = None  # restitution of this history, as for `simulate`
+    azimuth: float = 0.0  # azimuth of the solid's x axis in this history [rad]
 
     @property
     def sentences(self) -> tuple[Message, str]:
@@ -521,10 +521,10 @@ class BodyAssessment:
 
     @property
     def code_rows(self) -> list[dict[str, Any]]:
-        """Result of each code method, by quantity: motions rated safe, overturned motions of these, limit factor."""
+        """Result of each code method, by quantity: motions rated safe, safe motions with overturning, limit factor."""
         rows = []
         for name, factors in self.capacities.items():
-            capacity = self.by_record(factors, np.minimum)  # NaN where one direction is outside the domain
+            capacity = self.by_record(factors, np.minimum)  # NaN if one direction is outside the domain
             rated = np.isfinite(capacity)
             safe = rated & (capacity * AT_MOST >= 1.0)
             counts: dict[str, Any] = {"safe": self.exclusion(name), "overturned": None, "code_methods": None}

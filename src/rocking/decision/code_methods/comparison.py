@@ -24,7 +24,7 @@ from rocking.studies.motion_sets import MotionList, MotionSet
 
 MEASURE = "pga/(g tan alpha)"  # default measure of the levels
 REPETITIONS, TAIL = 1000, 0.025
-AT_MOST = 1.0 + 1e-9  # largest demand over capacity of a safe case: the clauses require "at least" [-]
+AT_MOST = 1.0 + 1e-9  # largest ratio of demand to capacity of a safe case; equal values are safe [-]
 FACTS = "title", "reference", "domain", "reading", "example", "vertical_motion"  # texts of each method
 QUARTERS = 0.16, 0.5, 0.84  # quantiles of median and scatter [-]
 
@@ -33,22 +33,22 @@ QUARTERS = 0.16, 0.5, 0.84  # quantiles of median and scatter [-]
 class Bias:
     """Ratio of the capacity of a method to the overturning intensity of the histories."""
 
-    # median ratio; above 1 the method is not conservative; 0 if censored ratios enter [-]
+    # median ratio; the method is not conservative above 1; 0 if the median is a censored ratio [-]
     median: float
     # 95 % interval of the median, by resampling motions; NaN for fewer than five motions [-]
     interval: tuple[float, float]
-    # half the distance of the 16 % and 84 % quantiles of the ratio's logarithm; infinite if too many motions do not
-    # overturn within the searched range, NaN for fewer than five motions [-]
+    # half the difference between the 16 % and 84 % quantiles of the logarithm of the ratio; infinite if too many
+    # motions do not overturn within the searched range, NaN for fewer than five motions [-]
     scatter: float
-    # count, censored: numbers of pairs of a motion and a body, and of pairs without overturning at any level: their
-    # ratio lies below all others
+    # count: number of pairs of a motion and a body; censored: number of pairs without overturning at any level, with
+    # a ratio below all other ratios
     count: int
     censored: int
 
 
 @dataclass(frozen=True)
 class CalledSafe:
-    """Numbers of cases that a method rates safe, and that overturn.
+    """Numbers of cases that a method rates safe, and of safe cases that overturn.
 
     Parameters
     ----------
@@ -96,13 +96,13 @@ class CodeComparison:
     factors : ndarray, shape (motions, bodies, levels)
         Scale factors of the motions at the levels [-].
     overturned : ndarray, shape (motions, bodies, levels)
-        1 if a body overturns at a level in one of both polarities; NaN without a result [-].
+        1 if a body overturns at a level in at least one polarity; NaN without a result [-].
     asymmetric : ndarray, shape (bodies,)
         True for bodies with two polarities.
     restitution : str
         Restitution of the histories, as text.
     outside : dict of str to str
-        Reasons for excluded bodies or motions by method; empty without any.
+        Reasons for excluded bodies or motions by method; empty if there are none.
     vertical : int
         Number of motions with a vertical component.
     sources : tuple of MotionSummary
@@ -124,19 +124,19 @@ class CodeComparison:
     sources: tuple[MotionSummary, ...] = ()
 
     def called_safe(self, method: str, body: int | slice = slice(None), level: int | slice = slice(None)) -> CalledSafe:
-        """Return the numbers of safe and of overturned safe cases of a method, for all or one of bodies and levels.
+        """Return the numbers of safe cases of a method, and of safe cases that overturn.
 
         Parameters
         ----------
         method : str
             Name of the method.
         body, level : int, optional
-            Indices of one body and one level; default: all together.
+            Indices of one body and one level; default: all bodies and levels together.
 
         Returns
         -------
         CalledSafe
-            Counts and interval; the interval is exact for one body at one level, else from resampled motions.
+            Counts and interval. The interval is exact for one body at one level, otherwise from resampled motions.
         """
         ratio = (self.factors / self.capacity[self._index(method)][:, :, None])[:, body, level]
         fallen = self.overturned[:, body, level]
@@ -146,7 +146,7 @@ class CodeComparison:
         hits, count = (int(row.sum()) for row in rows)
         interval = None
         alone = isinstance(body, int) and isinstance(level, int)
-        if count and (alone or hits in {0, count}):  # none or all: all samples are equal
+        if count and (alone or hits in {0, count}):  # if 0 or all cases overturn, all resamples are equal
             independent = count if alone else int((rows[1] > 0.0).sum())
             interval = share_interval(min(hits, independent), independent)
         elif count and (rows[1] > 0.0).sum() >= MIN_CLUSTERS:
@@ -156,7 +156,7 @@ class CodeComparison:
         return CalledSafe(int(valid.sum()), count, hits, middle, interval)
 
     def bias(self, method: str, body: int | None = None) -> Bias:
-        """Return the bias of a method for all bodies or one.
+        """Return the bias of a method for all bodies or for one body.
 
         Parameters
         ----------
@@ -176,7 +176,7 @@ class CodeComparison:
         good = np.isfinite(ratio)
         if not good.any():
             return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)
-        sample = np.where(np.isinf(truth), -np.inf, ratio)  # below all others
+        sample = np.where(np.isinf(truth), -np.inf, ratio)  # below all other ratios
         sample[~good] = np.nan
         low, middle, high = np.maximum(quantiles(sample.ravel(), QUARTERS), 0.0).tolist()
         interval, scatter = (math.nan, math.nan), math.nan
@@ -255,10 +255,10 @@ def compare_code_methods(
 ) -> CodeComparison:
     """Compare the capacities of bodies by code methods with their histories under the same motions.
 
-    An unsymmetric body is rated by its worse side, and its histories are computed for both polarities; overturning in
+    An unsymmetric body is rated by its worse side. Its histories are computed for both polarities, and overturning in
     one polarity counts. The overturning intensity is the smallest overturning factor of each motion, from 64 levels in
-    equal ratios and 6 bisections. The search ends at 50 times uplift or the largest recorded acceleration; a narrow
-    overturning interval below the result may be missed.
+    equal ratios and 6 bisections. The search ends at 50 times uplift or the largest recorded acceleration. The search
+    can miss a narrow overturning interval below the result.
 
     Parameters
     ----------

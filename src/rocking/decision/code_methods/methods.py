@@ -21,7 +21,7 @@ from rocking.motions.spectrum import response_spectrum
 
 @dataclass(frozen=True)
 class BodySides:
-    """Dimensions of bodies about their feet: one row per body, columns right and left."""
+    """Dimensions of bodies about their feet: one row per body, columns for the right and the left foot."""
 
     half_width: FloatArray  # horizontal distance b from the foot to the centre of mass [m]
     height: FloatArray  # height h of the centre of mass [m]
@@ -30,7 +30,7 @@ class BodySides:
 
     @classmethod
     def of(cls, bodies: Sequence[Body], gravity: float = g) -> "BodySides":
-        """Return the dimensions of plane bodies; gravity: [m/s2]."""
+        """Return the dimensions of plane bodies at an acceleration of gravity [m/s2]."""
         for body in bodies:
             if not isinstance(body, Body):
                 raise InvalidValueError(
@@ -54,7 +54,7 @@ class BodySides:
 
     @property
     def inertia(self) -> FloatArray:
-        """Moment of inertia about the foot over m h^2 [-]."""
+        """Ratio of the moment of inertia about the foot to m h^2 [-]."""
         h, p = self.height, self.frequency_parameter
         return np.asarray(self.gravity * np.hypot(self.half_width, h) / (p * h) ** 2)
 
@@ -107,9 +107,9 @@ class Shaking:
         return np.array([[component is not None and bool(np.any(component))] for component in components])
 
     def uplift_demand(self, slope: FloatArray) -> FloatArray:
-        """Return the largest |horizontal| - slope * vertical acceleration of each motion, by slope [m/s2].
+        """Return the largest value of |horizontal| - slope * vertical acceleration of each motion, by slope [m/s2].
 
-        Vertical is positive upwards: a ground that falls reduces the weight of the body.
+        The vertical acceleration is positive upwards. Downward acceleration reduces the weight of the body.
         """
         demand = np.broadcast_to(self.acceleration, (len(self.motions), *slope.shape)).copy()
         for k in np.flatnonzero(self.vertical):
@@ -135,15 +135,15 @@ class CodeMethod(ABC):
     """Base of published overturning criteria, which need no history.
 
     Class attributes contain the source and the reliability of the reading. An unsymmetric body is checked on both
-    sides; the worse side decides.
+    sides, and the worse side decides.
     """
 
     name: ClassVar[str]
     title: ClassVar[str]
-    reference: ClassVar[str]  # with clause or equation
+    reference: ClassVar[str]  # source with clause or equation
     domain: ClassVar[str]
     reading: ClassVar[str]  # reliability of the reading of the source
-    example: ClassVar[str] = "none of the source was at hand"  # numbers for comparison
+    example: ClassVar[str] = "none of the source was at hand"  # example for a comparison with the source
     vertical: ClassVar[VerticalMotion] = VerticalMotion.NOT_CONSIDERED
     vertical_rule: ClassVar[str] = ""  # rule of vertical motion, or reason of its exclusion
 
@@ -154,10 +154,10 @@ class CodeMethod(ABC):
 
     @abstractmethod
     def of_sides(self, sides: BodySides, shaking: Shaking) -> FloatArray:
-        """Return the scale factor of every motion at the limit, of a shape fitting (motions, bodies, 2) [-]."""
+        """Return the scale factor of every motion at the limit; the shape broadcasts to (motions, bodies, 2) [-]."""
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
-        """Return flags of the excluded bodies and motions by the reason, fitting (motions, bodies)."""
+        """Return flags of excluded bodies and motions by reason; the shape broadcasts to (motions, bodies)."""
         return {}
 
     def holds(self, sides: BodySides, shaking: Shaking) -> BoolArray:
@@ -168,7 +168,7 @@ class CodeMethod(ABC):
         return ~excluded
 
     def outside(self, sides: BodySides, shaking: Shaking) -> str:
-        """Return the reasons why bodies or motions are outside the domain, as text; empty without any."""
+        """Return the reasons for bodies or motions outside the domain as text; empty if all are in the domain."""
         return ", ".join(reason for reason, flags in self.exclusions(sides, shaking).items() if np.any(flags))
 
     def capacity(self, sides: BodySides, shaking: Shaking) -> FloatArray:
@@ -292,7 +292,7 @@ class AsceRocking(CodeMethod):
         """Return period [s] and capacity [m/s2] at a rotation of every side [rad]."""
         a, h = sides.slope, sides.height
         half = 0.5 * rotation
-        f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1, without cancellation
+        f1 = 2.0 * np.sin(half) * (a * np.cos(half) - np.sin(half))  # cos + a sin - 1 in a form without cancellation
         work = 2.0 * sides.gravity * f1
         period = 2.0 * math.pi * rotation * np.sqrt(sides.inertia * h / work)  # Eq. 298
         return period, work / rotation  # Eq. 299
@@ -301,7 +301,7 @@ class AsceRocking(CodeMethod):
         """Eqs. 296 to 299, at the rotation that overturns."""
         beta, (period, capacity) = self.damping(sides), self.oscillator(sides, sides.angle)
         factors = np.full((len(shaking.motions), *beta.shape), np.nan)
-        dampings = np.round(beta, 12)  # sides with equal damping use common spectra
+        dampings = np.round(beta, 12)  # sides with equal damping share spectra
         for value in np.unique(dampings[np.isfinite(dampings)]):
             selected = dampings == value
             periods, inverse = np.unique(period[selected], return_inverse=True)
@@ -349,12 +349,12 @@ class KanekoHayashi(CodeMethod):
     )
 
     def exclusions(self, sides: BodySides, shaking: Shaking) -> dict[str, BoolArray]:
-        """All but rectangles."""
+        """All bodies except rectangles."""
         return {"not a rectangle": ~sides.rectangle}
 
     @staticmethod
     def acceleration(sides: BodySides, frequency: FloatArray) -> FloatArray:
-        """Return A_R50 of every side [m/s2]; frequency: of the floor motion [Hz]. Its factor 10 is 1 in m and s."""
+        """Return A_R50 of every side [m/s2] at a frequency of the floor motion [Hz]. In m and s, its factor 10 is 1."""
         ratio = sides.slope
         width, height = 2.0 * sides.half_width, 2.0 * sides.height
         slow = sides.gravity * ratio * (1.0 + ratio)
@@ -413,4 +413,4 @@ LEFT_OUT = {
     "NZSEE C8, displacement method for face loads": "its text could not be read",
     "margins of ASCE/SEI 43 over its best estimate": "the clauses could not be read",
 }
-"""Excluded methods, with reasons: no method is written from memory."""
+"""Methods without a readable source, with the reasons for their exclusion."""

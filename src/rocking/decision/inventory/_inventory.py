@@ -20,7 +20,7 @@ from rocking.motions.motion import GroundMotion
 if TYPE_CHECKING:
     import xarray as xr
 
-# over restitution, object and direction: type and description
+# variables over restitution, object and direction: type and description
 _OF_DIRECTIONS = {
     "count": (np.int64, "number of computed motions"),
     "lifted": (np.int64, "number of motions with uplift"),
@@ -94,7 +94,8 @@ def inventory(  # noqa: PLR0913 - users set every one of them
         Over ``object``, the worst first: light, worse direction, uplift acceleration, interval of the overturning
         fraction, and sentences, with the measures that make it green. Over ``restitution``, ``object`` and
         ``direction``: numbers of motions with uplift and with overturning, and rotations. Over ``not_assessed``: rows
-        without a verdict, with reasons. Over ``not_object``: other lines. With units, numbers and notes of the list.
+        without a verdict, with reasons. Over ``not_object``: other lines. The dataset also contains the units, and the
+        numbers and notes of the list.
 
     Raises
     ------

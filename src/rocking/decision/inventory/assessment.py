@@ -1,4 +1,4 @@
-"""Assessment of every object in both directions under every motion; the worse direction decides."""
+"""Assessment of every object in both directions under every motion. The worse direction decides."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -37,18 +37,18 @@ class DirectionResult:
 
     direction: Direction  # the direction
     uplift_acceleration: float  # horizontal acceleration of uplift, ``g b / h`` [m/s2]
-    # count, lifted, overturned, failed: numbers of computed motions, of motions with uplift and with overturning, and
-    # of motions that could not be computed [-]
+    # count: number of computed motions; lifted: with uplift; overturned: with overturning; failed: number of motions
+    # that could not be computed [-]
     count: int
     lifted: int
     overturned: int
     failed: int
-    # median_rotation, high_rotation: median and 84 % quantile of the peak rotation over the slenderness angle [-];
-    # None if overturned
+    # median_rotation, high_rotation: median and 84 % quantile of the ratio of peak rotation to slenderness angle [-];
+    # None with overturning
     median_rotation: float | None
     high_rotation: float | None
-    light: Light  # light of this direction alone
-    # number of computed motions with a tensile contact force: their verdicts assume contact [-]
+    light: Light  # light for this direction alone
+    # number of computed motions with a tensile contact force; these results assume contact [-]
     lost_contact: int = 0
     slid: int = 0  # number of motions with sliding, of an object in three dimensions [-]
 
@@ -77,21 +77,21 @@ class Verdict:
     results: tuple[DirectionResult, ...]  # one per direction, with the selected restitution model
     compared: tuple[tuple[DirectionResult, ...], ...]  # results with the other models
     interval: tuple[float, float]  # interval of the overturning fraction in the worse direction [-]
-    friction: float = math.inf  # of an object in 3D; infinite for a plane object [-]
+    friction: float = math.inf  # coefficient of friction of an object in 3D; infinite for a plane object [-]
 
     @property
     def worse(self) -> DirectionResult:
-        """The direction that governs."""
+        """The governing direction."""
         return max(self.results, key=lambda result: result.severity)
 
     @property
     def worse_compared(self) -> tuple[DirectionResult, ...]:
-        """The direction that governs, for each of the other models."""
+        """The governing direction for each of the other models."""
         return tuple(max(results, key=lambda result: result.severity) for results in self.compared)
 
     @property
     def uplift_acceleration(self) -> float:
-        """Horizontal acceleration of uplift, the smaller of both directions [m/s2]."""
+        """Horizontal acceleration of uplift: the smaller value of both directions [m/s2]."""
         return min(result.uplift_acceleration for result in self.results)
 
     @property
@@ -112,16 +112,16 @@ class Assessment:
     verdicts: tuple[Verdict, ...]  # the worst first
     not_assessed: tuple[NotAssessed, ...]  # rows without a verdict
     hazard: Hazard  # the motions
-    thresholds: Thresholds  # of the lights
-    restitution: str  # restitution, comparisons: names of the restitution models
+    thresholds: Thresholds  # thresholds of the lights
+    restitution: str  # name of the restitution model
     comparisons: tuple[str, ...]
     source: str = "objects"  # name of the inventory
     ignored: tuple[str, ...] = ()  # columns of the file that were not read
     gravity: float = g  # acceleration of gravity [m/s2]
     plan: tuple[PlanEntry, ...] = ()  # measures for the objects that are not green, sorted by gain
     drawn: bool = False  # True if the coefficient of restitution is sampled for every motion
-    language: str = "en"  # of the report
-    not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are no objects
+    language: str = "en"  # language of the report
+    not_objects: tuple[NotAssessed, ...] = ()  # rows of the list that are not objects
     stated: tuple[str | Message, ...] = ()  # used statements of the list outside its table
     header_lines: tuple[int, ...] = ()  # lines of the header of the list
 
@@ -140,10 +140,10 @@ class Assessment:
 _ROLLS = Message("its friction was ignored: a round object rocks in a plane")
 
 DEFAULT_MODELS = (DEFAULT_RESTITUTION, *reversed(COMPARED_RESTITUTIONS))
-"""Restitution models of an inventory without a stated one: the first gives the rating."""
+"""Default restitution models of an inventory; the first model gives the rating."""
 
 PIECE = 1 << 18
-"""Histories held in memory at once unless one object has more."""
+"""Largest number of histories in memory, unless one object has more histories."""
 
 
 def assess(
@@ -157,7 +157,7 @@ def assess(
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Assessment:
-    """Assess an inventory; `rocking.inventory` returns the same as a dataset.
+    """Assess an inventory; `rocking.inventory` returns the same result as a dataset.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def assess(
     Returns
     -------
     Assessment
-        Verdicts, the worst first, and rows without one.
+        Verdicts, the worst first, and rows without a verdict.
 
     Raises
     ------
@@ -208,7 +208,7 @@ def assessment_plan(
 ) -> tuple[Histories, Callable[[Arrays], Assessment], dict[str, int], tuple[InventoryObject, ...]]:
     """Return the histories of an assessment, the function of their results, their dimensions, and the objects.
 
-    For campaigns. With objects in three dimensions, restitution models change more slowly than motions.
+    The result is for campaigns. With objects in three dimensions, the motion index varies faster than the model index.
     """
     assessor = _Assessor(inventory, hazard, **options)
     objects = assessor.inventory.objects
@@ -245,7 +245,7 @@ class ObjectHistories:
     """The histories of one object, and the function from their results to its verdict."""
 
     item: InventoryObject
-    parts: tuple[Product, ...]  # by model, each over motion and direction
+    parts: tuple[Product, ...]  # histories by model; each product is over motion and direction
     models: int  # number of restitution models
     make: Callable[[Arrays], Verdict | NotAssessed]  # function of results over motion, direction and model
 
@@ -272,18 +272,18 @@ class _Assessor:
         self.gravity = checks.positive("gravity", gravity, "m/s2")
         is_housner = restitution == "housner" or getattr(restitution, "name", None) == "housner"
         compared = ("ked",) if is_housner else ("housner",)
-        # in 3D the first is the mean of the calibrated model, without scatter
+        # in 3D, the first default is the mean of the calibrated model, without scatter
         self.restitutions = DEFAULT_MODELS if restitution is None else (restitution, *compared)
         # the default model is sampled with its scatter, for each motion
         self.drawn, self.draws = restitution is None, Draws(len(hazard.motions), hazard.description.get("seed", SEED))
-        # an unknown model is an error of the user, not of every row: it is refused here
+        # an unknown model is an error of the user, not of every row; therefore it is refused here
         example = Block(width=1.0, height=4.0)
         self.labels = tuple(
             RockingParameters.of_body(example, model, self.gravity).label for model in self.restitutions
         )
 
     def pieces(self) -> Iterator[Sequence[InventoryObject]]:
-        """Yield groups of objects whose histories fit into a piece: memory does not grow with the inventory."""
+        """Yield groups of objects whose histories fit into a piece, so that memory does not grow with the inventory."""
         objects = [item for item in self.inventory.objects if not self.moves_in_space(item)]
         size = max(1, PIECE // (len(self.hazard.motions) * len(DIRECTIONS) * len(self.labels)))
         for first in range(0, len(objects), size):
@@ -292,7 +292,7 @@ class _Assessor:
     def product(
         self, objects: Sequence[InventoryObject]
     ) -> tuple[Product | None, list[InventoryObject], list[NotAssessed]]:
-        """Return the histories of objects, the objects with histories, and the refused ones."""
+        """Return the histories of objects, the objects with histories, and the refused objects."""
         items: list[InventoryObject] = []
         refused: list[NotAssessed] = []
         columns: list[dict[str, FloatArray]] = []
@@ -307,7 +307,7 @@ class _Assessor:
             return None, items, refused
         sides = {name: np.stack([column[name] for column in columns], axis=-2) for name in columns[0]}
         if not self.drawn and not any(item.approximate for item in items):
-            sides = {name: values[0] for name, values in sides.items()}  # independent of the motion
+            sides = {name: values[0] for name, values in sides.items()}  # the sides do not depend on the motion
         settings = PlaneSettings(gravity=self.gravity)
         return Product(MotionList(self.hazard.motions), sides, np.ones(1), settings=settings), items, refused
 
@@ -339,7 +339,7 @@ class _Assessor:
             yield self._verdict(item, uplifts, outcome[:, k], ratio[:, k], lost[:, k])
 
     def moves_in_space(self, item: InventoryObject) -> bool:
-        """Return True if an object moves in three dimensions; a round object, which rolls for minutes, does not."""
+        """Return True if an object is computed in 3D; a round object is not, because it would roll for minutes."""
         return item.solid is not None or (item.shape != "round" and self._friction(item) is not None)
 
     def _friction(self, item: InventoryObject) -> float | None:
@@ -399,11 +399,11 @@ class _Assessor:
 
     @cached_property
     def ordered(self) -> MotionList:
-        """The motions in this order."""
+        """The motions in the order of `order`."""
         return MotionList([self.hazard.motions[k] for k in self.order])
 
     def check_any(self, items: Sequence[Any], refused: Sequence[NotAssessed]) -> None:
-        """Refuse an inventory without an object that can be assessed."""
+        """Raise an error for an inventory without an object that can be assessed."""
         if not items:
             first = min([*self.inventory.not_assessed, *refused], key=lambda row: row.row)
             raise InvalidValueError(
@@ -463,7 +463,7 @@ class _Assessor:
         )  # fmt: skip
 
     def _plan(self, verdicts: Sequence[Verdict], threads: int | None) -> tuple[PlanEntry, ...]:
-        """Return the measures for each object that is not green: the largest gain first, then the worse verdict."""
+        """Return the measures for objects that are not green, by decreasing gain, then from the worst verdict."""
         restitution = None if self.drawn else self.restitutions[0]
         planner = Planner(self.hazard, self.draws, restitution, self.gravity, threads, self._is_green)
         rockers: list[tuple[InventoryObject, tuple[Direction, ...], float, float]] = []

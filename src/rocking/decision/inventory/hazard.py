@@ -21,7 +21,7 @@ VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
 """Units of a peak ground velocity [m/s]."""
 
 MOST_MOTIONS = 5000
-"""Largest number of motions of a hazard; all are kept in memory."""
+"""Largest number of motions of a hazard, because all motions are kept in memory."""
 
 FAMILY, COUNT, SEED = "firm-ground", 200, 1
 """Defaults of synthetic motions."""
@@ -88,7 +88,7 @@ class Hazard:
     motions: tuple[GroundMotion, ...]  # the motions, scaled
     level: IntensityLevel | None  # level of the scaled motions; None for unscaled records
     source: Message  # source of the motions
-    description: dict[str, Any]  # the same as plain values
+    description: dict[str, Any]  # description of the source as plain values
     # horizontal components at right angles to the motions, for objects in 3D; None if missing
     across: tuple[GroundMotion | None, ...] = ()
 
@@ -102,7 +102,7 @@ class Hazard:
         seed: int = SEED,
         progress: Callable[[int], None] | None = None,
     ) -> "Hazard":
-        """Return synthetic motions scaled to a level; the families define no level."""
+        """Return synthetic motions scaled to a level, which is required because the families define no level."""
         count = checks.whole("count", count, 1, MOST_MOTIONS)
         motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
         shaken = []

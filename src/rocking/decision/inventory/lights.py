@@ -9,9 +9,9 @@ from rocking.language import language
 from rocking.messages import Message
 from rocking.statistics.counts import share_interval
 
-# 0.07 * 100 is 7.000000000000001: 7 of 100 must reach the threshold
+# 0.07 * 100 is 7.000000000000001, but 7 of 100 must reach the threshold 0.07
 _ROUNDING = 1e-9
-_MOST = 0.99  # largest fraction of green for all consequences
+_MOST = 0.99  # largest allowed limit of green for every consequence
 
 
 class Light(Enum):
@@ -60,7 +60,7 @@ _MEANINGS = {
 class Thresholds:
     """Limits between the lights.
 
-    They are a convention of this package, not of a code. Change them if another convention is agreed.
+    The limits are a convention of this package, not of a code. Change them if another convention is agreed.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class Thresholds:
     level : float
         Confidence of the interval [-].
     low_consequence, high_consequence : float
-        Factor of both fractions for an object with low or high consequence of a fall [-].
+        Factor on both fractions for an object with low or high consequence of a fall [-].
 
     Raises
     ------
@@ -187,7 +187,7 @@ class Thresholds:
         Returns
         -------
         dict of Light to str
-            One sentence each, with the numbers.
+            One sentence per light, with the limits.
         """
         say = language(code)
         numbers = {

@@ -30,9 +30,9 @@ SMALLEST, LARGEST = 0.001, 100.0
 """Allowed lengths [m]."""
 
 LIGHTEST, DENSEST = 1.0, 23000.0
-"""Allowed mass over the volume of the enclosing box [kg/m3]: from air to the densest metal."""
+"""Allowed ratio of mass to volume of the enclosing box [kg/m3]: from air to the densest metal."""
 
-# mass points of a round body across and up either half: KED's integral is within 1e-5 of the limit
+# numbers of mass points of a round body: across, and over the height of either half. Error of KED's integral: 1e-5
 _CHORDS, _LEVELS = 32, 16
 
 
@@ -40,9 +40,9 @@ _CHORDS, _LEVELS = 32, 16
 class InventoryObject:
     """A free-standing rigid object on level ground.
 
-    In each direction it is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller than
-    the body, the feet lie inside. For a known height of the centre of mass, the masses below and above it are each
-    uniform, in the ratio of this height. The weight does not affect rocking.
+    In each direction the object is a rectangle of its outer size, or a cylinder if it is round. If the base is smaller
+    than the body, the feet lie inside. For a known height of the centre of mass, the masses below and above this
+    centre are each uniform, and their ratio follows from the height. The weight does not affect rocking.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class InventoryObject:
     width, depth, height : float
         Outer size [m].
     mass : float, optional
-        Its mass [kg].
+        Mass [kg].
     base_width, base_depth : float, optional
         Size of the base on the floor, at most that of the body [m].
     centre_of_mass_height : float, optional
@@ -63,10 +63,10 @@ class InventoryObject:
     row : int
         Line of the object in the file, 0 for none [-].
     friction : float, optional
-        Coefficient of friction between object and ground; with friction it moves in three dimensions [-].
+        Coefficient of friction between object and ground; with this value the object moves in three dimensions [-].
     solid : Solid, optional
-        3D body in its pose, which defines the size: it moves in three dimensions, and without friction it does not
-        slide.
+        3D body in its pose, which defines the size. This body moves in three dimensions, and does not slide without a
+        coefficient of friction.
     shape : {"box", "round"}
         Outline from above; a round one is a circle or an ellipse with width and depth as axes.
     consequence : {"low", "medium", "high"}
@@ -239,7 +239,7 @@ class InventoryObject:
         if flare > 0.0:
             low.append(Part(frustum(self.base("width"), self.width, flare)))
         below = Solid(low)
-        # the masses that put the common centre at the middle, over the volumes
+        # densities of both halves for which the common centre is at the middle
         dense = 0.5 * above / (below.mass / DEFAULT_DENSITY)
         light = (middle - below.centre[2]) / (0.25 * math.pi * self.width**2 * above)
         most = max(dense, light)
@@ -255,10 +255,10 @@ class InventoryObject:
     def _cylinder(self, size: float, base: float) -> MassPoints:
         """Return the mass points of a cylinder in side view, with its exact second moments.
 
-        The chords of an ellipse are in the same proportions as those of a circle.
+        The chords of an ellipse have the same proportions as the chords of a circle.
         """
         turns = math.pi * np.arange(1, _CHORDS + 1) / (_CHORDS + 1)
-        # Gauss-Chebyshev of the second kind: chords are in proportion to sqrt(1 - x^2)
+        # Gauss-Chebyshev rule of the second kind, because chords are proportional to sqrt(1 - x^2)
         across, chords = portable.each(math.cos, turns), np.square(portable.each(math.sin, turns))
         nodes, weights = portable.gauss_legendre(_LEVELS)
         heights, masses = self._halves()
@@ -308,9 +308,9 @@ class NotAssessed:
     """A row without a verdict, or without an object."""
 
     row: int  # line of the file [-]
-    name: str  # name of the object, may be empty; the text of the row if it is no object
+    name: str  # name of the object, or text of a row that is not an object; may be empty
     reason: str | Message  # reason, in one sentence
-    number: str = ""  # its inventory number, may be empty
+    number: str = ""  # inventory number, may be empty
     note: str = ""  # note of the list
 
     @property
@@ -325,7 +325,7 @@ class NotAssessed:
 
 
 def labelled(number: str, name: str) -> str:
-    """Return inventory number and name; only one if the other is missing or equal.
+    """Return inventory number and name, or only one of them if the other is missing or equal.
 
     >>> labelled("A-17", "Vase"), labelled("A-17", "A-17")
     ('A-17 Vase', 'A-17')

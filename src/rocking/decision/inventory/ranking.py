@@ -91,7 +91,7 @@ _ROCKS = Message(
 )
 _RECORDS = Message("the one record", many="{count} records")
 _SIMULATED = Message("the one simulated earthquake", many="{count} simulated earthquakes")
-# by whether the base is the outer size, and whether there is vertical shaking
+# keys: (True if the base has the outer size, True with vertical motion)
 _BASES = {
     (True, False): Message(
         "Secure it, lower its centre of mass, or widen its base: its {way} is {size:.3g} cm; {needed} cm "
@@ -107,7 +107,7 @@ _BASES = {
     ),
 }
 
-# assumptions of every report
+# assumptions in every report
 _LIMITS = (
     Message(
         "Objects are rigid and free-standing on a rigid, level floor. The input motion must include the amplification"
@@ -275,14 +275,14 @@ def as_csv(assessment: Assessment) -> str:
 
 
 def answer_of(assessment: Assessment) -> Answer:
-    """Return the complete answer of an assessment; text without escapes."""
+    """Return the complete result of an assessment, with texts that are not escaped."""
     hazard, thresholds, say = assessment.hazard, assessment.thresholds, words_of(assessment)
     low, high = hazard.velocity()
     return Answer(
         {
             "inventory": assessment.source,
             "hazard": {
-                # the description comes first: its pgv is the requested level, not the range of the motions
+                # the description comes first, because its pgv is the requested level, not the range of the motions
                 **{_STATED.get(key, key): value for key, value in hazard.description.items()},
                 **{key: say(hazard.description[key]) for key in ("generator", "origin") if key in hazard.description},
                 "level": hazard.words(say.code),
@@ -398,7 +398,7 @@ def words_of(assessment: Assessment) -> Language:
 
 
 def untranslated(assessment: Assessment) -> str:
-    """Return a sentence if the language of a list has no translation; else an empty text."""
+    """Return a sentence if the language of a list has no translation, otherwise an empty text."""
     say = words_of(assessment)
     if say.requested == say.code:
         return ""
@@ -442,7 +442,7 @@ def passed_over(assessment: Assessment) -> list[tuple[str, list[int]]]:
 
 
 def stated(assessment: Assessment) -> str:
-    """Return the used statements outside the table of the list, as a sentence; empty without any."""
+    """Return the used statements outside the table of the list, as a sentence; empty if there are none."""
     say = words_of(assessment)
     text = "; ".join(map(say, assessment.stated))
     return say("Used from the lines outside the table: {stated}.", stated=text) if text else ""
@@ -494,7 +494,7 @@ def _lights(verdict: Verdict, assessment: Assessment) -> dict[str, str]:
 
 
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
-    """Return a sentence if the light depends on the restitution model, else an empty text."""
+    """Return a sentence if the light depends on the restitution model, otherwise an empty text."""
     say, pairs = words_of(assessment), zip(assessment.comparisons, verdict.worse_compared, strict=True)
     others = [
         say(
@@ -507,7 +507,7 @@ def model_note(verdict: Verdict, assessment: Assessment) -> str:
 
 
 def rotation_words(value: float | None, say: Language) -> str:
-    """Return a peak rotation over the slenderness angle as text; None is an overturned object."""
+    """Return a ratio of peak rotation to slenderness angle as text; None means overturning."""
     return say("overturns") if value is None else say.number(f"{value:.2f}")
 
 
@@ -516,7 +516,7 @@ def _demanded(value: float, say: Language) -> str:
 
 
 def rounded_down(value: float, digits: int) -> str:
-    """Return a limit with a number of decimals, rounded down to remain valid.
+    """Return a limit with a number of decimals, rounded down so that the limit remains valid.
 
     >>> rounded_down(0.1299, 2), rounded_down(0.3, 2)
     ('0.12', '0.30')
@@ -532,7 +532,8 @@ def _base(verdict: Verdict, assessment: Assessment) -> str:
     """Return the advice with the smallest base without uplift, from ``g b / h`` at the same centre height."""
     say, way, peak = words_of(assessment), verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
-    needed = math.floor(100.0 * now * peak / verdict.worse.uplift_acceleration + 1e-9) + 1  # above the limit of uplift
+    # the smallest size above the limit of uplift
+    needed = math.floor(100.0 * now * peak / verdict.worse.uplift_acceleration + 1e-9) + 1
     own = verdict.item.width if way == "width" else verdict.item.depth
     message = _BASES[now == own, assessment.hazard.vertical]
     return say(message.text, way=say(DIRECTION_NAMES[way]), size=100.0 * now, needed=needed)

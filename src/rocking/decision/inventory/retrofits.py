@@ -24,17 +24,17 @@ from rocking.studies.motion_sets import MotionList
 ROUNDS = 4
 """Number of bisections between no change and the change without uplift."""
 
-_COARSE, _FINE, _SMALL = 0.01, 0.001, 0.1  # lengths change in steps of 1 cm, up to 10 cm in steps of 1 mm [m]
-_angle = np.frompyfunc(math.atan2, 2, 1)  # numpy's own differs between processors
+_COARSE, _FINE, _SMALL = 0.01, 0.001, 0.1  # lengths change in steps of 1 cm, or in steps of 1 mm up to 10 cm [m]
+_angle = np.frompyfunc(math.atan2, 2, 1)  # math.atan2, because numpy.arctan2 differs between processors
 
 _Judgement = Callable[[InventoryObject, Direction, np.ndarray, FloatArray], bool]
-# object, directions of uplift, fraction of the motions that overturn it, and weight of a fall
+# object, directions of uplift, fraction of motions with overturning, and weight of a fall
 _Candidate = tuple[InventoryObject, tuple[Direction, ...], float, float]
 
 
 @dataclass(frozen=True, eq=False)
 class PlanEntry:
-    """Measures that make an object green; None if not effective, unknown or not computed."""
+    """Measures that make an object green. A measure is None if it is not effective, unknown or not computed."""
 
     item: InventoryObject
     spared: float  # expected number of prevented falls [-]
@@ -53,10 +53,10 @@ class PlanEntry:
 
 @dataclass(eq=False)
 class _Search:
-    """Search of one measure in whole steps: from no change, which is not enough, to the change without uplift."""
+    """Search of one measure in integer steps, between no change (not sufficient) and the change without uplift."""
 
     subject: "_Subject"
-    name: str  # out, down or weaker
+    name: str  # measure: out, down or weaker
     step: float
     high: int
     low: int = 0
@@ -76,11 +76,11 @@ class Planner:
             PlaneSettings(gravity=gravity),
             is_green,
         )
-        # the strongest horizontal motion alone decides on uplift
+        # without vertical motion, the strongest motion alone decides on uplift
         peaks = [peak_ground_acceleration(motion) for motion in hazard.motions]
         self.strongest = hazard.motions if hazard.vertical else hazard.motions[int(np.argmax(peaks)) :][:1]
         self.peak = max(peaks)
-        # if one of these overturns a changed object, the others are not computed
+        # these motions come first: if one of them overturns an object, the other motions are not computed
         order = np.argsort([-peak_ground_velocity(motion) for motion in hazard.motions], kind="stable")
         self.hardest = np.sort(order[: math.ceil(len(order) / 4)])
 
@@ -144,7 +144,7 @@ class Planner:
         return [is_upright and next(are_green) for is_upright in upright]
 
     def _all(self, trials: Sequence[tuple[_Search, int]], motions: IntArray, good: _Judgement) -> list[bool]:
-        """Return True for changed objects whose histories under the motions are good in every direction."""
+        """Return True for changed objects whose histories are acceptable in every direction."""
         rows = [
             (search.subject.item, way, search.subject.sides(way, **{search.name: k * search.step}))
             for search, k in trials for way in search.subject.directions
@@ -188,7 +188,7 @@ class _Subject:
         for name, length in zip(("out", "down"), limits.tolist(), strict=True):
             if math.isfinite(length):
                 step = _COARSE if length > _SMALL else _FINE
-                high = math.floor(length / step + 1e-9) + 1  # above the limit of uplift
+                high = math.floor(length / step + 1e-9) + 1  # the smallest step above the limit of uplift
                 yield _Search(self, name, step, max(1, high if name == "out" else min(high, int(0.99 * lowest / step))))
         uplift = min(
             lifting_factor(body, motion, planner.gravity) for body in self._worst for motion in planner.strongest
@@ -199,7 +199,7 @@ class _Subject:
         """Return the side parameters of a changed object, for each motion."""
         right, gravity = self._right[way], self.planner.gravity
         height, old, new = right.height - down, right.old_lever + out, right.new_lever + out
-        # the ballast at the floor is the fraction down / right.height of the total mass
+        # ballast at the floor: its fraction of the total mass is down / right.height
         spread_x, spread_y = height / right.height * np.array([right.spread_x, right.spread_y])
         spread_y = spread_y + down * height
         rows = {"scale": np.full(len(height), 1.0 - weaker)}

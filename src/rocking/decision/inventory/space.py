@@ -19,7 +19,7 @@ from rocking.studies.motion_sets import MotionList
 
 
 class SpatialObject:
-    """An object that slides, rocks and overturns under motions along its width and depth; one body per motion."""
+    """An object that slides, rocks and overturns under motions along its width and depth, with one body per motion."""
 
     def __init__(
         self, item: InventoryObject, hazard: Hazard, draws: Draws, gravity: float, friction: float | None,
@@ -51,12 +51,12 @@ class SpatialObject:
             motions = MotionList([turned for index in indices[own] for turned in self.turned(int(index))])
             parameters = mechanics_of(self.settings).parameters(body, model, self.settings)
             law: Any = parameters.law
-            _ = law.on_hull  # raises an error for an unsuitable body before anything is computed
+            _ = law.on_hull  # raises an error for an unsuitable body before the computation
             sides = {name: values[None] for name, values in sides_of([parameters]).items()}
             yield own, Product(motions, sides, np.array([scale]), law=law, settings=self.settings)
 
     def turned(self, index: int) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
-        """Return a motion along the width, and rotated by 90 degrees along the depth."""
+        """Return a motion along the width, and the same motion along the depth (rotated by 90 degrees)."""
         x, _, up = components_of(self.hazard.motions[index])
         y = self.hazard.across[index] if self.hazard.across else None
         return (x, y, up), (None if y is None else y.scaled(-1.0), x, up)
@@ -66,7 +66,7 @@ class SpatialObject:
         return [min(self.friction * self.gravity, *pair) for pair in _uplift(self._first, self.gravity).tolist()]
 
     def pull(self) -> float:
-        """Return the force of the anchors along one edge over the weight, with the other edge as pivot [-]."""
+        """Return the ratio of the anchor force along one edge to the weight; the other edge is the pivot [-]."""
         height = float(self._first.centre[2]) - self._first.ground
         max_force = 0.0
         for levers in _uplift(self._first, self.gravity) / self.gravity * height:

@@ -21,7 +21,7 @@ from rocking.statistics.shares import REPETITIONS, SaltelliDesign, VarianceShare
 
 COUNT = 128
 SLIDING_BEYOND = 0.01
-"""Defaults: number of sampled bodies, and sliding distance that counts as sliding [m]."""
+"""Default number of sampled bodies, and default sliding distance that counts as sliding [m]."""
 
 PAIRS = 16
 CHANGE = 1e-6
@@ -29,7 +29,7 @@ CHANGE = 1e-6
 
 FIFTH = 0.2
 FEWEST = 4
-"""Histories with the rarer outcome below which contributions to the variance are not computed."""
+"""Smallest number of histories with the rarer outcome for a computation of contributions to the variance."""
 
 
 def predict(  # noqa: PLR0913 - each uncertain input is an argument
@@ -244,7 +244,7 @@ def _shares(
     if np.isnan(both).all():
         return {}, both[:0]
     rarer = min(np.nansum(both), np.nansum(1.0 - both))
-    if rarer < FEWEST:  # without variance, or with too little of it, no contribution is resolved
+    if rarer < FEWEST:  # the variance is zero, or too small for its contributions
         return dict.fromkeys([*design.inputs, *["case"] * (both.shape[1] > 1)], VarianceShare(*[0.0] * 6)), both[:0]
     others = _counted(mechanics, mixed, min_sliding, threads, progress, 0)["overturning"]
     return smaller.shares(np.concatenate([both, others])), others
@@ -258,7 +258,7 @@ def _counted(
     progress: Callable[[int], None] | None,
     pairs: int = PAIRS,
 ) -> dict[str, FloatArray]:
-    """Return outcomes, shape (bodies, motions): all sample points, then the repeated points at a changed scale."""
+    """Return outcomes of all sample points, then of repeated points at a changed scale; shape (bodies, motions)."""
     repeated = points[:pairs]
     factor = np.concatenate([np.ones(len(points)), np.full(len(repeated), 1.0 + CHANGE)])
     columns: dict[str, list[FloatArray]] = {name: [] for name in ("uplift", "sliding", "overturning")}
@@ -282,7 +282,7 @@ def _chance(occurred: FloatArray, seed: int) -> Chance:
     )
     valid_fractions = fractions[valid > 0]
     value = float(valid_fractions.mean())  # Eq. 259
-    # bodies are the same under all motions; the scatter of their means gives the number of independent histories
+    # the bodies are equal under all motions; the scatter of their means gives the number of independent histories
     bodies = np.nanmean(occurred[~np.isnan(occurred).all(axis=1)][:, valid > 0], axis=1)
     spread = float(bodies.var()) / bodies.size
     trials = float(np.clip(value * (1.0 - value) / spread if spread else 0.0, bodies.size, occurred.size))
@@ -311,7 +311,7 @@ def _ends(mechanics: SampledBodies, points: FloatArray, overturned: FloatArray) 
     values, by_input, column = mechanics.values(points), {}, 0
     for name, width in mechanics.widths.items():
         level, sampled = points[:, column : column + width].sum(axis=1), values[name]
-        if name == MODEL_ERROR:  # its factors have different means: by the factor on the uplift acceleration
+        if name == MODEL_ERROR:  # both factors have different means; the factor on the uplift acceleration is used
             level = sampled = sampled[:, 0]
         column += width
         order, size = np.argsort(level, kind="stable"), max(1, int(FIFTH * len(points)))

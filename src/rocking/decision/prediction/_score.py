@@ -65,7 +65,7 @@ class Validation:
 
     @cached_property
     def either(self) -> tuple[int, int]:
-        """Number of motions with at least one occurrence, and with at least one absence of the event."""
+        """Number of motions with at least one occurrence of the event, and number with at least one absence."""
         forecast = self.forecasts[PREDICTION]
         with_event, without_event = (
             np.unique(forecast.cluster[forecast.outcome == value]).size for value in (1.0, 0.0)
@@ -89,7 +89,7 @@ class Validation:
 
     @property
     def finding(self) -> str:
-        """Paired differences: "better" than both reference curves, "worse" than one, "mixed" or "not resolved".
+        """Result: "better" than both reference curves, "worse" than at least one of them, "mixed" or "not resolved".
 
         Balanced accuracy is not used, because it ignores the probability of a forecast.
         """
@@ -120,7 +120,7 @@ class Validation:
 
     @property
     def too_sure(self) -> bool:
-        """True if the prediction is overconfident, resolved over motions."""
+        """True if the prediction is overconfident: there are enough motions, and the interval is above zero."""
         return self.enough and self.forecasts[PREDICTION].sureness.low > 0.0
 
     @property
@@ -262,7 +262,7 @@ def score(  # noqa: PLR0913 - outcomes, motions and settings
             )  # fmt: skip
     if count is not None:
         n = checks.whole("count", count, 1, 1 << 24)
-        inside = (probabilities >= 0.0) & (probabilities <= 1.0)  # Forecasts raises the error for other values
+        inside = (probabilities >= 0.0) & (probabilities <= 1.0)  # `Forecasts` raises the error for other values
         probabilities = np.where(inside, (probabilities * n + 0.5) / (n + 1.0), probabilities)
     by_forecast = {
         PREDICTION: probabilities,
@@ -280,7 +280,7 @@ def score(  # noqa: PLR0913 - outcomes, motions and settings
 
 
 def _side(scores: Mapping[str, Score]) -> str:
-    """Return the position of a forecast relative to a reference curve, from its resolved differences."""
+    """Return "better", "worse", "mixed" or "not resolved" for a forecast relative to a reference."""
     sides = {BETTER if difference.value > 0.0 else WORSE for difference in scores.values() if difference.resolved}
     return NOT_RESOLVED if not sides else MIXED if len(sides) > 1 else sides.pop()
 
@@ -300,7 +300,7 @@ EVENTS = {"overturned": "overturning", "rocked": "uplift", "slid": "sliding"}
 AXES = ("x", "y", "z")
 CLUSTER = "earthquake"
 COLUMNS = ("motion", *AXES, "scale", CLUSTER, *EVENTS)
-"""Columns of a table: motion, or x with y and z for several components; tests of one earthquake are dependent."""
+"""Columns of a table of outcomes: motion, or x, y and z for components. Tests of one earthquake are dependent."""
 
 _SYNONYMS = {"record": "motion", "shake": "motion", "cluster": CLUSTER, "event": CLUSTER}
 
@@ -316,7 +316,7 @@ class Trial:
     """One row: motion, scale factor and observed outcomes."""
 
     line: int
-    files: tuple[tuple[str, str], ...]  # axis and record file of each component
+    files: tuple[tuple[str, str], ...]  # axis and record file by component
     scale: float  # factor on the acceleration [-]
     observed: dict[str, float]  # 1, 0, or NaN if unknown, by event
     earthquake: str = ""  # name of the earthquake; empty if not stated
@@ -385,7 +385,7 @@ class Outcomes:
 
 
 def is_outcomes(path: Path) -> bool:
-    """Return True if the first line of a file names observed outcomes; never raises."""
+    """Return True if the first line of a file contains a column of observed outcomes; raises no error."""
     try:
         with path.open("rb") as file:
             return _delimiter(file.read(10_000).decode("utf-8-sig", "replace")) is not None
@@ -413,7 +413,7 @@ def _check_titles(titles: Sequence[str], source: str) -> None:
     for title in titles:
         title_words = set(title.replace("_", " ").replace("-", " ").split())
         candidates = [*(title_words & set(COLUMNS)), *difflib.get_close_matches(title, COLUMNS, n=1, cutoff=0.75)]
-        if title not in COLUMNS and candidates:  # ignoring this column would change the result
+        if title not in COLUMNS and candidates:  # the column must not be ignored, because this would change the result
             raise InvalidValueError(
                 "unknown column {column!r:.60}", column=title, hint=f"rename it to {candidates[0]!r}",
             ).at(source)  # fmt: skip

@@ -61,10 +61,10 @@ class Chance:
     """Probability of an event with 95 % intervals [-]."""
 
     value: float  # mean of all motions
-    low: float  # low, high: interval from the number of sampled bodies, under these motions
+    low: float  # low, high: interval that follows from the number of sampled bodies, under these motions
     high: float
     between: float  # standard deviation between motions, without sampling error; NaN for one motion
-    wide_low: float  # wide_low, wide_high: interval for other motions like these; NaN below five motions
+    wide_low: float  # wide_low, wide_high: interval for other motions of the same kind; NaN for fewer than five motions
     wide_high: float
     per_motion: FloatArray
     per_motion_low: FloatArray
@@ -86,9 +86,9 @@ class OutcomePairs:
     """Pairs of histories whose motions differ by one part in a million."""
 
     pairs: int  # number of pairs under each motion
-    rocking: int  # number of pairs with rocking, of all motions
-    apart: int  # number of these with different outcomes
-    motions_apart: tuple[str, ...]  # motions with such pairs
+    rocking: int  # number of pairs with rocking under all motions
+    apart: int  # number of these pairs with different outcomes
+    motions_apart: tuple[str, ...]  # motions with pairs of different outcomes
     motions: int  # number of motions
 
     @property
@@ -115,7 +115,7 @@ class Prediction(Exported):
     inputs : dict of str to str
         Distribution or value of each input as text.
     assumptions : dict of str to str
-        Reason of each default, by input; a sentence on no single input has an empty reason.
+        Reason of each default, by input. A sentence that does not belong to an input has an empty reason.
     fixed : dict of str to str
         Value and reason of each input with one value in all histories.
     sliding_beyond : float
@@ -188,7 +188,7 @@ class Prediction(Exported):
 
     @property
     def condition(self) -> str:
-        """Motions and their intensity, the condition of all probabilities, as text."""
+        """Condition of all probabilities as text: the motions and their intensity."""
         return condition(self.motions)
 
     @property
@@ -356,7 +356,7 @@ def _reasoned(name: str, reason: str) -> str:
 
 
 def input_label(name: str) -> str:
-    """Return the name of an input as text; names of assumptions without an input are sentences."""
+    """Return the name of an input as text; a sentence without an input is returned unchanged."""
     return Message({MODEL_ERROR: "model error", "case": "motion"}.get(name, name))
 
 

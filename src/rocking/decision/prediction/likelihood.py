@@ -33,7 +33,7 @@ SOURCE = (
 def likelihood(low: float, high: float) -> str:
     """Return the likelihood term of a probability from its interval [-].
 
-    The result is the narrowest term whose range contains the interval, so that few histories never give a strong term.
+    The result is the narrowest term whose range contains the interval. Thus few histories never give a strong term.
     If no range contains the interval, the result names the terms of both ends.
 
     >>> likelihood(0.0, 0.21), likelihood(0.0, 0.005), likelihood(0.3, 0.5)

@@ -43,7 +43,7 @@ class Uncertain:
 
     @classmethod
     def of(cls, name: str, stated: Any, low: float, high: float, unit: str = "-") -> "Uncertain":
-        """Return a stated input; low, high: allowed range, which truncates distributions.
+        """Return a stated input; `low` and `high` are the allowed range, which truncates distributions.
 
         >>> friction = Uncertain.of("friction", (0.4, 0.8), 0.0, 10.0)
         >>> friction.text, friction.quantile(np.array([0.25])).tolist()
@@ -145,7 +145,7 @@ class Uncertain:
 
 
 MEASURED, COMPLEMENTARITY = ("measured", "calibrated"), "complementarity"
-"""Names of restitutions: sampled from the published measurements; from the contact laws at the corners only."""
+"""Names of restitutions: sampled from published measurements, and only from the contact laws at the corners."""
 
 FRICTION = ((0.3, 0.8), 0.01, 10.0, "-")
 CENTRE = ((0.97, 1.03), 0.5, 1.5, "-")
@@ -186,12 +186,12 @@ class BodyOutcomes:
 
 
 class SampledBodies(ABC):
-    """A body on an engine: samples from the unit cube, and outcomes."""
+    """A body for an engine: samples from the unit cube, and outcomes."""
 
-    kind: str = "natural"  # class of bodies with one prior of the model error
-    widths_of: Mapping[str, int] = {}  # dimensions of an input in the unit cube; default: 1
+    kind: str = "natural"  # class of bodies with a common prior of the model error
+    widths_of: Mapping[str, int] = {}  # number of dimensions of an input in the unit cube; default: 1
     reasons: Mapping[str, str] = {}  # reasons of the defaults, by input
-    never_sampled: Mapping[str, str] = MappingProxyType({})  # reasons of quantities with one value, by name
+    never_sampled: Mapping[str, str] = MappingProxyType({})  # reasons for quantities that are not sampled, by name
 
     def __init__(self, motions: Any, inputs: Mapping[str, Any]) -> None:
         self.motions, self.names, self._turns = motion_sequence(motions), [], False
@@ -200,7 +200,7 @@ class SampledBodies(ABC):
             self.names.append(along.name)
             self._turns |= across is not None
         self.stated, self.inputs = dict(inputs), dict[str, Uncertain]()
-        self.assumed: dict[str, str] = {}  # reason by input; a sentence on no single input has an empty reason
+        self.assumed: dict[str, str] = {}  # reason by input; empty for a sentence that does not belong to an input
 
     def _level(self, width: float) -> Usual:
         """Return the default slope of the support in each direction, by its name or the width of the base [m]."""
@@ -301,7 +301,7 @@ class _ScaledToPeak(Sequence[Any]):
 
 
 def _to_peak(component: Any, pga: float, peak: float) -> Any:
-    """Return a component times the factor that scales the stronger horizontal one to a peak [m/s2]."""
+    """Return a component times the factor that scales the stronger horizontal component to a peak [m/s2]."""
     if isinstance(component, Pulse):
         return component.scaled(pga / peak)
     vertical = None if component.vertical is None else component.vertical * (pga / peak)
@@ -310,7 +310,7 @@ def _to_peak(component: Any, pga: float, peak: float) -> Any:
 
 
 def motion_sequence(motions: Any, pga: float | None = None) -> Any:
-    """Return an indexable sequence of motions from one motion, several, or a set; pga: target of scaling [m/s2]."""
+    """Return an indexable sequence of motions, optionally scaled to a peak ground acceleration `pga` [m/s2]."""
     if isinstance(motions, (Mapping, GroundMotion, Pulse)) or not hasattr(motions, "__getitem__"):
         motions = [motions]
     if isinstance(motions, str) or not motions:

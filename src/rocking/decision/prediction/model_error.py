@@ -2,8 +2,8 @@
 
 A body with the factors f on its uplift acceleration and F on the energy barrier of its lowest pass is similar to the
 body without factors: its size is s = F / f**2 times larger, and its angles are f times larger. The body without factors
-has the same response under gravity g / s, with the motion times 1 / (s f) and friction over f. Thus factors need no
-other shape. Lengths are then s f times longer.
+has the same response under gravity g / s, with the motion multiplied by 1 / (s f) and friction divided by f. Thus no
+other shape is necessary for the factors. Lengths are then s f times longer.
 """
 
 import json
@@ -23,12 +23,12 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Message
 
 KEPT = Path(__file__).parent / "data" / "shaking_tests.json"
-"""Posteriors and scores of tests of real bodies, written by `make shaking-tests`."""
+"""File with posteriors and scores of tests of real bodies, written by `make shaking-tests`."""
 
 MODEL_ERROR = "model_error"  # name of the input
 OFF = "off"
 ORDERS = np.array([1.0, 2.0])
-"""The uplift acceleration is proportional to an angle, and the energy barrier to its square: so are their errors."""
+"""Orders in an angle of uplift acceleration (proportional) and energy barrier (square), and of their errors."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class BodyClass:
     """Class of bodies with one prior of the factors."""
 
     text: str
-    deviation: float  # of ln of the factor on the uplift acceleration: of the mean of the class, and between bodies [-]
+    deviation: float  # deviation of ln of the uplift factor, for the mean of the class and between bodies [-]
 
 
 CLASSES = {
@@ -44,7 +44,7 @@ CLASSES = {
     "object": BodyClass(Message("object such as a statue or a cabinet"), 0.1),
     "natural": BodyClass(Message("natural rough body or scan"), 0.2),
 }
-"""Classes in the order of their errors. The deviations are arguments, not estimates: docs/theory/prediction.md."""
+"""Classes in the order of their errors. The deviations are assumptions with reasons in docs/theory/prediction.md."""
 
 DEVIATIONS = np.linspace(0.1, 4.0, 40)
 """Grid of the standard deviation between bodies over the deviation of the class [-]."""
@@ -63,8 +63,8 @@ _HOW = (
 class ModelError:
     """Lognormal factors on the uplift acceleration and on the energy barrier, and their source."""
 
-    mean: tuple[float, float]  # of ln of both factors [-]
-    covariance: tuple[tuple[float, float], tuple[float, float]]  # of ln of both factors [-]
+    mean: tuple[float, float]  # mean of ln of both factors [-]
+    covariance: tuple[tuple[float, float], tuple[float, float]]  # covariance of ln of both factors [-]
     source: str
 
     def __post_init__(self) -> None:
@@ -129,7 +129,7 @@ class Similarity:
 
 
 def model_error_of(stated: Any, kind: str) -> ModelError | None:
-    """Return the stated model error, by default that of a further body of a class; None without one."""
+    """Return the stated model error, by default that of a further body of a class; None for "off"."""
     if stated is None or is_class(stated):
         return kept_error(stated or kind)
     if isinstance(stated, ModelError):
@@ -166,7 +166,7 @@ def _refused(path: Path) -> ModelError:
 
 @dataclass(frozen=True)
 class BodyEvidence:
-    """Factors of one tested body from its tests alone: mean and covariance of ln of the factors, and scatter."""
+    """Factors of one tested body, only from its own tests: mean and covariance of ln of the factors, and scatter."""
 
     name: str
     kind: str  # name of the class
@@ -174,7 +174,7 @@ class BodyEvidence:
     earthquakes: int
     mean: FloatArray  # shape (2,)
     covariance: FloatArray  # shape (2, 2)
-    scatter: float  # mean square between repeated tests, of ln of the uplift acceleration [-]
+    scatter: float  # mean square of ln of the uplift acceleration between repeated tests [-]
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class FurtherBody:
 
     mean: FloatArray  # shape (2,)
     covariance: FloatArray  # shape (2, 2)
-    scatter: float  # mean square, of ln of the uplift acceleration [-]
+    scatter: float  # mean square of ln of the uplift acceleration [-]
 
     def error(self, source: str) -> ModelError:
         """Return the model error of a test of this body."""
@@ -193,8 +193,8 @@ class FurtherBody:
 def hierarchy(bodies: Sequence[BodyEvidence], kind: str) -> FurtherBody:
     """Return the distribution of the factors of a further body of a class, from tested bodies.
 
-    The mean of a class has a normal prior, the standard deviation between bodies a half-normal one. Its likelihood is
-    the restricted one, which does not depend on the deviation for a single body: one specimen cannot shrink it.
+    The mean of a class has a normal prior. The standard deviation between bodies has a half-normal prior and the
+    restricted likelihood, which does not depend on this deviation for a single body: one body cannot reduce it.
     """
     prior = CLASSES[kind]
     seen = [_in_class(body, prior) for body in bodies if CLASSES[body.kind].deviation >= prior.deviation]
@@ -218,13 +218,13 @@ def hierarchy(bodies: Sequence[BodyEvidence], kind: str) -> FurtherBody:
 
 
 def _in_class(body: BodyEvidence, prior: BodyClass) -> BodyEvidence:
-    """Return a tested body as evidence for a class with smaller errors, whose error is contained in its own."""
-    further = 2.0 * (CLASSES[body.kind].deviation ** 2 - prior.deviation**2)  # of the mean, and between bodies
+    """Return a tested body as evidence for a class with smaller errors; its covariance is larger for this class."""
+    further = 2.0 * (CLASSES[body.kind].deviation ** 2 - prior.deviation**2)  # sum for the mean and between bodies
     return replace(body, covariance=body.covariance + further * np.diag(ORDERS**2))
 
 
 def _scatter(bodies: Sequence[BodyEvidence], kind: str) -> float:
-    """Return the mean square between repeated tests of the tested bodies of a class, or of its prior."""
+    """Return the mean square between repeated tests, from the tested bodies of a class or from its prior."""
     tested = [body.scatter for body in bodies if body.kind == kind]
     if tested:
         return float(np.mean(tested))

@@ -12,15 +12,15 @@ from rocking.messages import Message
 UNEVENNESS = ((0.1, 0.002), (1.0, 0.004), (4.0, 0.010), (10.0, 0.012), (15.0, 0.015))
 INCLINATION = ((0.5, 0.003), (1.0, 0.006), (3.0, 0.008), (6.0, 0.012), (15.0, 0.016))
 """Length and allowed deviation of a finished floor [m]: gap below a straightedge between two high points (DIN 18202,
-Table 3, row 3), and deviation from level (Table 2). Deviation over length as a slope, and values between the lengths
-by interpolation, are arguments of this project."""
+Table 3, row 3), and deviation from level (Table 2). Two assumptions are of this project: the slope is deviation /
+length, and values between the lengths are interpolated."""
 
 SHELF, PEDESTAL, ROAD = 0.016, math.radians(1.0), 0.025
-"""Largest slopes [rad]. Arguments: end of a shelf with uniform load whose deflection is 1/200 of its span (3.2 x
-deflection over span), a pedestal set by eye. Straight roads: crossfall of 2.5 %; curves are steeper."""
+"""Largest slopes [rad], as assumptions of this project. Shelf: end slope under uniform load, 3.2 x deflection / span,
+with a deflection of 1/200 of the span. Pedestal: set by eye. Straight road: crossfall of 2.5 %; curves are steeper."""
 
 OFFSET = 0.03
-"""Largest offset of the centre of mass over the half size of the body, as for its height [-]."""
+"""Largest horizontal offset of the centre of mass / half size of the body, equal to the value for its height [-]."""
 
 OFFSET_REASON = Message(
     "horizontal position of the centre of mass: up to 3 % of the half size of the body, as for its height; smaller "
@@ -37,7 +37,7 @@ _REASONS = {
 }
 SUPPORTS = tuple(_REASONS)
 FARTHEST = 0.9
-"""Largest distance of the plumb line from its nominal position over the distance of the edge of the base [-]."""
+"""Largest distance of the plumb line from its nominal position / distance of the edge of the base [-]."""
 
 STEEPEST = 0.5
 """Largest slope that is accepted [rad]."""
@@ -59,7 +59,7 @@ def _slope(width: float, allowed: Sequence[tuple[float, float]]) -> float:
 
 
 def level_default(stated: Any, width: float) -> tuple[tuple[float, float] | None, Message]:
-    """Return the range of slopes of a named support, the floor by default, and its reason; None for a stated input."""
+    """Return the range of slopes of a named support (default: floor), and its reason; None for a stated input."""
     name = "floor" if stated is None else stated
     if not isinstance(name, str):
         return None, _FLOOR

@@ -41,10 +41,10 @@ from rocking.outcome import Outcome, overturned
 from rocking.restitution import ImpactGeometry, RestitutionModel
 from rocking.restitution.shifted_impulse import shifted
 
-BASE = 0.02  # default of the largest inset of a foot, fraction of the base width
+BASE = 0.02  # default of the largest inset of a foot / base width
 
 DIRECTIONS = 36
-"""Directions over half a turn; sampled azimuths are rounded to them."""
+"""Number of directions over half a turn, to which sampled azimuths are rounded."""
 
 NOT_SAMPLED = {
     "placement": Message("the body is free-standing and has contact at both feet"),
@@ -168,7 +168,7 @@ class SampledInPlane(SampledBodies):
         )  # fmt: skip
 
     def _ground(self, motion: int, values: Mapping[str, FloatArray]) -> tuple[list[Any], IntArray, BoolArray]:
-        """Return the motion in all sampled directions, index of the direction of each body, and flags of reversal."""
+        """Return the motion in all sampled directions, the direction index of each body, and flags of reversal."""
         first, second, upright = ground_components(self.motions[motion])
         mirrored = values["polarity"][:, 0] < 0.0
         if second is None:
@@ -184,7 +184,7 @@ class SampledInPlane(SampledBodies):
         )
 
     def _coefficients(self, level: FloatArray, levers: FloatArray, height: FloatArray) -> FloatArray:
-        """Return the coefficients landing left and right, limited by energy."""
+        """Return the coefficients for landing on the left and on the right foot, limited by energy."""
         coefficients = np.empty_like(levers)
         for new, table in enumerate(self._tables):
             old = 1 - new
@@ -204,10 +204,10 @@ class SampledInPlane(SampledBodies):
 
 
 def _moved(levers: FloatArray, offset: FloatArray, height: FloatArray, slope: FloatArray) -> FloatArray:
-    """Return the levers of both feet [m] with the centre moved to the right [m] on a support that descends there [rad].
+    """Return the levers of both feet [m] for a centre offset to the right [m] on a descent to the right [rad].
 
-    The slenderness angles against the vertical are exact; the distance of both feet is exact to first order. The plumb
-    line stays within 90 % of the nearer lever.
+    The slenderness angles from the vertical are exact. The distance between the feet is exact to first order. The
+    plumb line stays within 90 % of the nearer lever.
     """
     limit = FARTHEST * levers.min(axis=1)
     sign = np.array([1.0, -1.0])

@@ -1,4 +1,4 @@
-"""Factors of one body from tests with known outcomes: posterior, prediction of left-out earthquakes."""
+"""Factors of one body from tests with known outcomes: posterior, and prediction of omitted earthquakes."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ from rocking.messages import Message
 from rocking.statistics.sobol import scrambled_sobol
 
 WIDE = ModelError((0.0, 0.0), ((0.09, 0.0), (0.0, 0.36)), "proposal")
-"""Distribution from which the factors of the tests are sampled; weights replace it by any narrower one."""
+"""Distribution from which the factors of the tests are sampled; weights convert it to narrower distributions."""
 
 _STEPS = np.linspace(-0.9, 0.9, 19)
 OF_HISTORY = {"restitution", "friction", "level", "azimuth", "polarity", "model_error"}
-"""Inputs that do not change the shape of a body: sampled anew for each test."""
+"""Inputs that do not change the shape of a body; they have new samples for each test."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,17 +59,17 @@ class BodyTests:
     def probabilities(self) -> FloatArray:
         """Probability of overturning of each test at each node, shape (tests, nodes), by weighted samples.
 
-        The estimate with the next larger scatter counts as one effective sample of that with a smaller one. That with
-        the largest scatter has the fraction of all samples, (h + 1/2) / (n + 1) as in `score`, as one.
+        Each estimate includes the estimate with the next larger scatter as one effective sample. The estimate with the
+        largest scatter includes the fraction of all samples, (h + 1/2) / (n + 1) as in `score`, as one sample.
         """
-        centres = self.nodes[:: len(SCATTERS), :2]  # the scatter varies fastest
+        centres = self.nodes[:: len(SCATTERS), :2]  # the index of the scatter varies fastest
         return np.array([_smoothed(*test, centres) for test in zip(self.logarithms, self.overturned, strict=True)])
 
     @cached_property
     def likelihood(self) -> FloatArray:
         """Logarithm of the likelihood of each outcome at each node, shape (tests, nodes).
 
-        The tests of one earthquake count as one test: their motions differ in scale only.
+        The tests of one earthquake count as one test, because their motions differ only in scale.
         """
         p, happened = self.probabilities, self.observed[:, None]
         _, index, count = np.unique(self.earthquakes, return_inverse=True, return_counts=True)
@@ -77,7 +77,7 @@ class BodyTests:
         return np.where(np.isfinite(happened), terms, 0.0)
 
     def weights(self, prior: FurtherBody | None, tests: Any = slice(None)) -> FloatArray:
-        """Return the posterior probabilities of the nodes from a subset of the tests; without a prior, a flat one."""
+        """Return the posterior probabilities of the nodes from a subset of the tests; the default prior is flat."""
         logarithms = self.likelihood[tests].sum(axis=0)
         if prior is not None:
             off = self.nodes[:, :2] - prior.mean
@@ -106,7 +106,7 @@ class BodyTests:
         return FurtherBody(mean, covariance, scatter).error(Message("{tests} tests of this body", facts))
 
     def tested(self, name: str, kind: str) -> BodyEvidence:
-        """Return the factors from these tests alone, as evidence for further bodies."""
+        """Return the factors only from these tests, as evidence for further bodies."""
         mean, covariance, scatter = self._moments(self.weights(None))
         scored = np.isfinite(self.observed)
         count = np.unique(np.asarray(self.earthquakes)[scored]).size
@@ -116,14 +116,14 @@ class BodyTests:
         """Return mean and covariance of ln of the factors, and the mean square of the scatter."""
         nodes = self.nodes
         step = (_STEPS[1] - _STEPS[0]) * ORDERS
-        within = np.tile(np.diag(step**2 / 12.0), (len(nodes), 1, 1))  # of the cells of the grid
+        within = np.tile(np.diag(step**2 / 12.0), (len(nodes), 1, 1))  # covariance within a cell of the grid
         with np.errstate(divide="ignore"):
             mean, covariance = mixed(np.log(weights), nodes[:, :2], within)
         return mean, covariance, float(weights @ nodes[:, 2] ** 2)
 
 
 def _smoothed(logarithms: FloatArray, overturned: FloatArray, centres: FloatArray) -> FloatArray:
-    """Return the probability of a test at each centre of the factors and each scatter, the scatter fastest."""
+    """Return the probability of a test at each centre of the factors and each scatter; the scatter varies fastest."""
     valid = np.isfinite(overturned)
     sampled, fell = logarithms[valid], overturned[valid]
     proposal = 0.5 * (sampled**2 / np.array(WIDE.covariance).diagonal()).sum(axis=1)[:, None]
@@ -167,7 +167,7 @@ def wide_sample(
 
 
 def wide_draws(widths: Mapping[str, int], motion: int, count: int, seed: int) -> FloatArray:
-    """Return the sample points of a motion: other inputs of a history, and the same shapes in another order."""
+    """Return the sample points of a motion: equal shapes for all motions in another order, and new other inputs."""
     size = sum(widths.values())
     draws, shapes = scrambled_sobol(size, count, seed + 1 + motion), scrambled_sobol(size, count, seed)
     order, column = np.random.default_rng([seed, motion]).permutation(count), 0

@@ -15,7 +15,7 @@ ANOTHER = np.cos(np.radians(10.0))
 
 
 class StandingShape:
-    """A body in its initial pose; its other poses have the index 1."""
+    """A body in its initial pose; all other poses have the index 1."""
 
     def __init__(self, body: HullBody) -> None:
         self.facet = body.hull.rolled(body.under((0.0, 0.0, 1.0)))
@@ -29,7 +29,7 @@ class StandingShape:
 
 
 class SampledShapes:
-    """Shapes of a body. The hull is computed once for each base; a moved centre changes no vertex of the hull."""
+    """Shapes of a body. The hull is computed once per base, because a moved centre changes no vertex of the hull."""
 
     def __init__(self, solid: Solid, pose: StablePose, inertia: FloatArray) -> None:
         equilibria, rotation = solid.equilibria(), pose.rotation
@@ -40,7 +40,7 @@ class SampledShapes:
         self._shapes: dict[tuple[float, ...], StandingShape] = {}
 
     def of(self, base: float, centre: float, offset: tuple[float, ...] = (0.0, 0.0)) -> StandingShape:
-        """Return the shape with a base [m], a factor on the height of the centre, and its offset [m]."""
+        """Return the shape with a base [m], a factor on the height of the centre, and an offset of the centre [m]."""
         key = (base, centre, *offset)
         if key not in self._shapes:
             if base not in self._hulls:
@@ -54,7 +54,7 @@ class SampledShapes:
 
     def points(self, base: float) -> FloatArray:
         """Return the vertices of the body with a base, from the nominal centre of mass [m]."""
-        # negative: each point lies inside the outline by this distance; positive: further points touch the ground
+        # negative base: distance of each point inside the outline; positive base: further points touch the ground
         points = self.corners.copy()
         if base <= 0.0:
             points[:, :2] = inset(points[:, :2], base)
@@ -67,7 +67,8 @@ class SampledShapes:
     def standing(self, base: FloatArray, shift: FloatArray) -> FloatArray:
         """Return the factor, at most 1, on shifts of the plumb line for stable bodies; shape (n,).
 
-        base: insets of the contact points, shape (n,); shift: of the plumb line in the base, shape (n, 2) [m].
+        `base` contains insets of the contact points, shape (n,); `shift` contains shifts of the plumb line in the base,
+        shape (n, 2) [m].
         """
         factor = np.ones(len(base))
         for k, distance in enumerate(base.tolist()):

@@ -40,11 +40,11 @@ from rocking.messages import Message
 from rocking.outcome import Status
 
 INSIDE, STEPS = 0.02, 32
-"""Default of the largest inset of the contact points over the width of the base, and number of sampled bases."""
+"""Default of the largest inset of the contact points / width of the base, and number of sampled bases."""
 
 _UPRIGHT = -1.0 + 1e-12
 _SETTINGS = HullSettings(tolerance=1e-6, rest_speed=3e-4)
-"""Coarser than those of single histories: outcomes differ like those of histories whose motions differ by 1e-6."""
+"""Settings with larger tolerances than for single histories; the effect is that of a change of the motion by 1e-6."""
 
 NOT_SAMPLED = {
     "placement": Message("the body is free-standing"),
@@ -132,10 +132,10 @@ class SampledInSpace(SampledBodies):
         support, nearest = self.pose.support, int(np.argmin(self.pose.edge_distances))
         chord = np.roll(support, -1, axis=0)[nearest] - support[nearest]
         edge = np.append(chord / np.linalg.norm(chord), 0.0)
-        reach = support @ np.array([edge[1], -edge[0]])  # outward across the edge
+        reach = support @ np.array([edge[1], -edge[0]])  # extent normal to the edge, positive outward
         new, old, height = float(reach.max()), float(-reach.min()), self.pose.height
         inertia = float(edge @ self.inertia @ edge)
-        # two equal masses have the moments of the body; no block has them if the body is wider than its base
+        # two equal masses with the moments of the body; no block has these moments if the body overhangs its base
         far, half = math.sqrt(inertia / self._mass), 0.5 * self._mass
         plane = MassPoints([(old - far, height), (old + far, height)], [half, half], feet=(0.0, old + new))
         distribution = restitution_distribution(plane)

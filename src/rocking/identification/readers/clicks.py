@@ -1,4 +1,4 @@
-"""Clicks in a sound: sudden increases of its power, in the frequencies with the best contrast to the noise."""
+"""Clicks in a sound: sudden increases of power at the frequencies with the best contrast to the noise."""
 
 from dataclasses import dataclass
 
@@ -17,8 +17,8 @@ _BLOCK = 2.0
 def without_hum(sound: FloatArray, rate: float) -> FloatArray:
     """Return a sound without the best-fitting multiples of 50 or 60 Hz, block by block.
 
-    A comb filter repeats every click, and narrow filters ring for a second. A least-squares fit of about fifty sines to
-    two seconds removes less than 1 % of a click.
+    A comb filter would repeat every click, and narrow filters would ring for a second. A least-squares fit of about
+    fifty sines to blocks of two seconds removes less than 1 % of a click.
     """
     size = next_fast_len(sound.size, real=True)
     spectrum = rfft(sound, size)
@@ -74,10 +74,10 @@ _LOWEST = 150.0
 class HeardClicks:
     """Clicks of a sound, in their order."""
 
-    times: FloatArray  # accurate to some milliseconds [s]
-    contrasts: FloatArray  # power after over power before
-    strengths: FloatArray  # power after minus power before, over the noise power
-    sound: FloatArray  # without hum
+    times: FloatArray  # times, accurate to some milliseconds [s]
+    contrasts: FloatArray  # ratio of the power after a click to the power before
+    strengths: FloatArray  # difference of the power after and before a click / noise power
+    sound: FloatArray  # sound without hum
 
 
 def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
@@ -88,7 +88,7 @@ def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
     power = (filtered[: filtered.size // hop * hop].reshape(-1, hop) ** 2).mean(axis=1)
     floor = np.median(power) + np.finfo(float).tiny
     behind = _means(power, 0, _AFTER)
-    # the preceding sound decays: the larger mean of a short and a long interval also masks echoes
+    # the sound before a click decays: the larger mean of a short and a long interval also masks echoes
     before = np.maximum(_means(power, -_BEFORE[0], -_GAP), _means(power, -_BEFORE[1], -_GAP))
     contrast = behind / np.maximum(before, floor)
     at = _peaks(contrast, int(_DEAD / STEP))
@@ -98,8 +98,9 @@ def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
 def emphasised(sound: FloatArray, rate: float) -> FloatArray:
     """Return a sound after the optimal filter for bursts in noise: Eckart, Scripps Report 52-11 (1952).
 
-    Its gain is sqrt(S) / N by frequency, N the power of the noise, S the power beyond it. The noise is that of the
-    quietest quarter of the windows: a variable with two degrees of freedom is below 0.288 of its mean there.
+    The gain at each frequency is sqrt(S) / N, with the power N of the noise and the additional power S. The noise is
+    that of the quietest quarter of the windows. A variable with two degrees of freedom is there below 0.288 of its
+    mean.
     """
     size, noise, power = spectra(sound, rate)
     beyond = smooth(np.maximum(power.mean(axis=0) - noise, 0.0), 9)
@@ -118,7 +119,8 @@ def spectra(sound: FloatArray, rate: float) -> tuple[int, FloatArray, FloatArray
 def causal(gain: FloatArray, rate: float, size: int) -> FloatArray:
     """Return the impulse response of a gain with minimum phase, by the cepstrum, without low frequencies.
 
-    Nothing precedes its cause then, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal Processing.
+    With this response no output precedes its cause, and onsets stay sharp. Oppenheim & Schafer, Discrete-Time Signal
+    Processing.
     """
     frequency = np.arange(gain.size) * rate / size
     gain = gain / (1.0 + (_LOWEST / np.maximum(frequency, 1e-9)) ** 8)
@@ -132,7 +134,7 @@ def causal(gain: FloatArray, rate: float, size: int) -> FloatArray:
 
 
 def _means(values: FloatArray, first: int, last: int) -> FloatArray:
-    """Return the mean over [i + first, i + last) at each i, cut at the ends."""
+    """Return the mean over [i + first, i + last) at each i; intervals are truncated at both ends."""
     total = np.concatenate(([0.0], np.cumsum(values)))
     here = np.arange(values.size)
     low, high = np.clip(here + first, 0, values.size), np.clip(here + last, 0, values.size)
@@ -146,7 +148,7 @@ def smooth(values: FloatArray, width: int) -> FloatArray:
 
 
 def _peaks(contrast: FloatArray, apart: int) -> IntArray:
-    """Return the peaks of the contrast; of two close peaks the higher one."""
+    """Return the peaks of the contrast; only the higher of two close peaks is returned."""
     inner = (contrast[1:-1] > contrast[:-2]) & (contrast[1:-1] >= contrast[2:]) & (contrast[1:-1] > _FAINTEST)
     peaks = np.flatnonzero(inner) + 1
     is_near_peak = np.zeros(contrast.size, dtype=bool)

@@ -1,4 +1,4 @@
-"""Tables of measurements, columns by name and unit; rotation from displacement or acceleration above the base."""
+"""Tables of measurements with columns by name and unit, and rotation from a displacement or an acceleration."""
 
 import io
 import math
@@ -25,8 +25,8 @@ _STEEPEST = 0.95
 def rotation_of_displacement(displacement: FloatArray, height: float) -> FloatArray:
     """Return the rotation from the displacement of a point to the right, zero at rest.
 
-    The point turns about the foot below, so its distance from the vertical through that foot hardly changes: sin(theta)
-    = u / height, to the second order in theta times the half width over the height.
+    The point rotates about the foot below, so sin(theta) = u / height. The error is of second order in theta, times
+    half width / height.
     """
     most = float(np.abs(displacement).max())
     if most > _STEEPEST * height:
@@ -42,15 +42,15 @@ def rotation_of_acceleration(
 ) -> tuple[FloatArray, tuple[str, ...]]:
     """Return the rotation from the acceleration of a sensor on the body, and doubts.
 
-    The sensor measures h theta'' - g theta to the right, because it tilts. The equation is solved for theta by
-    frequency, theta = -f / (h omega^2 + g): gravity gives the vertical, so no drift is integrated.
+    The sensor tilts, so it measures h theta'' - g theta to the right. The equation is solved for theta at each
+    frequency: theta = -f / (h omega^2 + g). Gravity defines the vertical, so that no drift is integrated.
     """
     steps = np.diff(time)
     step = float(np.median(steps))
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
     felt = np.interp(even, time, acceleration)
     count = felt.size
-    # constant ends of ten time constants sqrt(h / g): their influence decays
+    # constant values are added at both ends for ten time constants sqrt(h / g), until their influence decays
     padding = int(np.ceil(10.0 * np.sqrt(height / g) / step))
     size = next_fast_len(count + 2 * padding, real=True)
     padded = np.concatenate((np.full(padding, felt[0]), felt, np.full(size - count - padding, felt[-1])))
@@ -72,7 +72,7 @@ UNITS = {
     "displacement": LENGTH_UNITS,
     "acceleration": ACCELERATION_UNITS,
 }
-"""Units by kind of sensor; each unit belongs to one kind."""
+"""Units by kind of sensor. Each unit belongs to one kind."""
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 
@@ -96,7 +96,7 @@ class ReaderOptions:
     frame_rate: float | None = None
 
     def names(self, *excluded: str) -> str:
-        """Return the names of the stated options, without the kind and the excluded ones, as text."""
+        """Return the names of the stated options as text, without the kind and the excluded options."""
         stated = (option.name for option in fields(self) if getattr(self, option.name) is not None)
         return ", ".join(name for name in stated if name not in ("kind", *excluded))
 
@@ -106,13 +106,13 @@ class MeasuredTable:
     """Columns by name."""
 
     source: Source
-    names: tuple[str, ...]  # without units
-    units: tuple[str | None, ...]  # from the brackets
+    names: tuple[str, ...]  # names without units
+    units: tuple[str | None, ...]  # units from the brackets
     values: FloatArray
 
     @classmethod
     def read(cls, source: Source) -> "MeasuredTable":
-        """Read a table, text or a sheet of a workbook."""
+        """Read a table from text or from a sheet of a workbook."""
         sheet = source.name.lower().endswith(".xlsx")
         texts, values = _sheet(source) if sheet else _text(source)
         if values.shape[0] < 2:
@@ -141,7 +141,7 @@ class MeasuredTable:
         return matches[0] if matches else None
 
     def unit(self, index: int, requested: str | None, argument: str) -> str:
-        """Return the unit of a column, from the table or as requested; both must agree."""
+        """Return the unit of a column from the table or from the options, which must agree."""
         stated = self.units[index]
         if stated is None and requested is None:
             name = self.names[index]
@@ -185,7 +185,7 @@ def impact_list(source: Source, options: ReaderOptions) -> ImpactTimes:
 
 
 def motion_series(source: Source, options: ReaderOptions) -> RotationSeries | ImpactTimes:
-    """Return the rotation from one column and the times; a single column of times contains impacts."""
+    """Return the rotation from one column and the times, or the impacts from a single column of times."""
     table = MeasuredTable.read(source)
     at = table.times(options)
     if len(table.names) == 1 and options.kind is None and (at is not None or table.units[0] in TIME_UNITS):

@@ -100,11 +100,11 @@ def read_measurement(  # noqa: PLR0913 - options of a file
             ).at(path.name)  # fmt: skip
         source = Source.of_path(path)
         return _reader(path, kind)(source, options)
-    except RecordError as error:  # the reader of columns also reads ground motions
+    except RecordError as error:  # the error of the reader of columns, which also reads ground motions
         raise error.copied(MeasurementError) from error
     except RockingError:
         raise
-    except Exception as error:  # any error of a reader is a refusal; the original error stays chained
+    except Exception as error:  # any error of a reader refuses the file; the original error stays chained
         raise MeasurementError(
             "cannot be read ({type}: {reason:.120})",
             type=type(error).__name__,

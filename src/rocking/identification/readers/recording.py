@@ -1,4 +1,4 @@
-"""Recordings of sound: WAV, read here, and FLAC, OGG, MP3 and AIFF through libsndfile."""
+"""Recordings of sound: WAV files are read here, and FLAC, OGG, MP3 and AIFF files through libsndfile."""
 
 import io
 import struct
@@ -12,10 +12,10 @@ from rocking.conventions import FloatArray
 from rocking.errors import MeasurementError, extra
 
 RATES = (4_000, 384_000)
-"""Range of the sampling rate [Hz]: an impact is a click of a few kHz."""
+"""Allowed range of the sampling rate [Hz], because an impact is a click of a few kHz."""
 
 MOST_SAMPLES = 32_000_000
-"""Largest length of a recording, 12 minutes at 44.1 kHz: a trial lasts seconds."""
+"""Largest number of samples of a recording: 12 minutes at 44.1 kHz. A trial lasts seconds."""
 
 _SHORTEST = 0.25
 _CLIPPED = 3
@@ -23,7 +23,7 @@ _CLIPPED = 3
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Samples of shape (samples, channels), full scale 1, and their rate [Hz]."""
+    """Samples of shape (samples, channels) with full scale 1, and their rate [Hz]."""
 
     name: str
     samples: FloatArray
@@ -59,7 +59,7 @@ class Recording:
             )
 
     def error(self, cause: str, **facts: Any) -> MeasurementError:
-        """Return the error for a cause; facts: as of `RockingError`."""
+        """Return the error for a cause, with the facts of `RockingError`."""
         return MeasurementError(cause, **facts).at(self.name)
 
     @property
@@ -143,7 +143,7 @@ def _chunks(content: bytes, name: str) -> Iterator[tuple[bytes, bytes]]:
             name
         )
     (stated,) = struct.unpack_from("<I", content, 4)
-    if stated + 8 not in {len(content), len(content) - 1, len(content) + 1}:  # some writers forget to pad
+    if stated + 8 not in {len(content), len(content) - 1, len(content) + 1}:  # some programs omit the padding byte
         raise MeasurementError(
             "the header states {stated} bytes, the file has {size}; save the sound again from the recorder or an "
             "audio editor", stated=stated + 8, size=len(content),

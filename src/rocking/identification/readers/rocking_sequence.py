@@ -1,8 +1,8 @@
 """Detection of the impacts of one rocking body among many clicks, by the law of their times.
 
 The time between impacts of a slender body is T_n = (2/p) atanh y_n, and y_n decreases by the coefficient of
-restitution: y_(n+1) = r y_n (Housner 1963). With unequal sides or a tilted floor y_n alternates, but its ratio to the
-last interval on the same side does not: y_(n+2) = r_left r_right y_n.
+restitution: y_(n+1) = r y_n (Housner 1963). With unequal sides or a tilted floor, y_n alternates. The ratio to the last
+interval on the same side does not alternate: y_(n+2) = r_left r_right y_n.
 """
 
 from dataclasses import dataclass, field
@@ -15,19 +15,19 @@ _MODERATE = 0.6
 """Value of y of the longest interval for an unknown p."""
 
 _FIRST_FALLS = (0.2, 0.45, 0.65, 0.8, 0.9, 0.96)
-"""Tried values of y of the first interval: 0.2 is the limit of small rotations."""
+"""Tried values of y of the first interval. The value 0.2 is the limit of small rotations."""
 
 _FALL, _FALL_SPREAD = -0.22, 0.12
-"""Prior mean and standard deviation of ln(r_left r_right): r from 0.8 to 0.99."""
+"""Prior mean and standard deviation of ln(r_left r_right), for r from 0.8 to 0.99."""
 
 SCATTER = 0.035
-"""Standard deviation of ln(y_(n+2) / y_n) about its mean: the coefficient scatters by 1 to 3 %."""
+"""Standard deviation of ln(y_(n+2) / y_n) about its mean, because the coefficient scatters by 1 to 3 %."""
 
 _LAW_SCATTER = 0.015
 """Standard deviation of ln(y_(n+1) / y_n) in the comparison of sequences."""
 
 _FADING_SCATTER = 1.0
-"""Standard deviation of the log power of a click about the decayed one of the last click on the same side."""
+"""Standard deviation of the log power of a click about the decayed power of the last click on the same side."""
 
 _INTERVALS = (0.02, 3.0)
 _RATIOS = (0.5, 1.25)
@@ -38,9 +38,9 @@ MISSED = -3.0
 
 _FEWEST, _SHRUNK, _SHARE = 7, 0.9, 0.7
 _ECHO = 0.1
-"""Largest power of an echo over the power of its impact."""
+"""Largest ratio of the power of an echo to the power of its impact."""
 _CHANCE = 23.0
-"""Between the scores of seven impacts in quiet rooms (at least 25.9) and of rain (20.6)."""
+"""Limit of the score, between the scores of seven impacts in quiet rooms (at least 25.9) and of rain (20.6)."""
 _LARGEST_SCATTER, _LARGEST_ALTERNATION, _SLOWEST_FALL = 0.05, 0.25, 0.985
 
 
@@ -49,17 +49,17 @@ class RockingSequence:
     """Impacts among clicks."""
 
     members: IntArray  # indices of the clicks
-    orders: IntArray  # number of each in the sequence; an absent number is a missed impact
-    score: float  # log likelihood ratio to chance
+    orders: IntArray  # impact number of each click in the sequence; a missing number is a missed impact
+    score: float  # log likelihood ratio relative to random clicks
 
 
 def half_cycle_fall(intervals: FloatArray, half_p: FloatArray) -> FloatArray:
-    """Return ln y of intervals between impacts: y = tanh(p T / 2)."""
+    """Return ln y of intervals T between impacts, with y = tanh(p T / 2)."""
     return np.asarray(np.log(np.tanh(half_p * intervals)))
 
 
 def half_cycle(fall: FloatArray, half_p: FloatArray) -> FloatArray:
-    """Return the interval between impacts at ln y, the inverse of `half_cycle_fall`."""
+    """Return the interval between impacts from ln y; inverse of `half_cycle_fall`."""
     return np.asarray(np.arctanh(np.minimum(np.exp(fall), 1.0 - 1e-9)) / half_p)
 
 
@@ -68,8 +68,8 @@ def find_sequence(
 ) -> RockingSequence | None:
     """Return the most likely sequence of impacts among clicks; None without three clicks that can begin one.
 
-    `evidence` is the log likelihood ratio of impact and noise for each click, without its time. `strengths` are the
-    powers, which decrease as the square of y.
+    `evidence` is the log likelihood ratio of impact to noise for each click, without information from its time.
+    `strengths` are the powers, which decrease as the square of y.
     """
     kept = np.sort(np.argsort(-evidence)[:_CLICKS])
     strongest = np.sort(np.argsort(-evidence[kept])[:_SEEDS])
@@ -87,7 +87,7 @@ def find_sequence(
 
 @dataclass(eq=False)
 class _Beams:
-    """Partial sequences in rows: every three of the strongest clicks, with several y of the first interval."""
+    """Partial sequences in rows, from every three of the strongest clicks and several y of the first interval."""
 
     times: FloatArray
     evidence: FloatArray
@@ -95,9 +95,9 @@ class _Beams:
     rate: float
     half_p: FloatArray
     last: FloatArray  # time of the last impact
-    falls: FloatArray  # of the last two intervals: ln y
-    faded: FloatArray  # logarithm of the power of the last two impacts
-    mean: FloatArray  # mean of ln(r_left r_right); its variance follows
+    falls: FloatArray  # ln y of the last two intervals
+    faded: FloatArray  # logarithms of the power of the last two impacts
+    mean: FloatArray  # mean of ln(r_left r_right); the next field is its variance
     variance: FloatArray
     score: FloatArray
     chains: IntArray
@@ -137,12 +137,12 @@ class _Beams:
         )  # fmt: skip
 
     def __post_init__(self) -> None:
-        """Store the first scores as the best ones."""
+        """Store the first scores as the best scores."""
         self.best, self.best_order = self.score.copy(), np.full(self.score.size, 2)
         self.missed = np.zeros(self.score.size, dtype=np.int64)
 
     def step(self, order: int) -> bool:
-        """Search the next impact of every sequence; return True if any sequence continues."""
+        """Search for the next impact of every sequence; return True if any sequence continues."""
         going = self.missed < 2
         if not going.any():
             return False
@@ -152,7 +152,7 @@ class _Beams:
         later = interval > 0.3 * half_cycle(expected, self.half_p)[:, None]
         safe = np.where(later, interval, 1.0)
         fall = half_cycle_fall(safe, self.half_p[:, None])
-        # density of the expected time of the next impact over the density of random clicks
+        # ratio of the density of the expected time of the next impact to the density of random clicks
         slope = 2.0 * self.half_p[:, None] / np.sinh(np.minimum(2.0 * self.half_p[:, None] * safe, 50.0))
         surprise = (fall - expected[:, None]) ** 2 / variance[:, None]
         fading = (self.powers - self.faded[:, :1] - 2.0 * self.mean[:, None]) / _FADING_SCATTER
@@ -187,12 +187,12 @@ class Regularity:
     """Deviation of the intervals of a sequence from the law of rocking."""
 
     fall: float  # ratio of successive y, the mean coefficient of both sides [-]
-    scatter: float  # of ln y about the law [-]
+    scatter: float  # scatter of ln y about the law [-]
     alternation: float  # deviation of ln y of each side from the mean [-]
 
 
 def regularity(times: FloatArray, orders: IntArray) -> Regularity:
-    """Return the best-fitting law of the intervals; p, the decrease and both sides are free."""
+    """Return the law of the intervals with the best fit; p, the decrease and both sides are free."""
     adjacent = np.flatnonzero(np.diff(orders) == 1)
     intervals, at = np.diff(times)[adjacent], orders[:-1][adjacent]
     design = np.column_stack([np.ones(at.size), at, 1.0 - 2.0 * (at % 2)])
@@ -208,9 +208,9 @@ def regularity(times: FloatArray, orders: IntArray) -> Regularity:
 
 
 def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return the expected time of an impact after others, and the interval before it, at a moderate p.
+    """Return the expected time of an impact after other impacts, and the interval before this impact, at a moderate p.
 
-    y decreases by the median of the last decreases of both sides. NaN with too few intervals.
+    y decreases by the median of the last decreases of both sides. The result is NaN for too few intervals.
     """
     adjacent = np.flatnonzero(np.diff(orders) == 1)
     intervals = np.diff(times)[adjacent]
@@ -229,10 +229,10 @@ def next_impact(times: FloatArray, orders: IntArray, order: int) -> tuple[float,
 
 
 def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> FloatArray:
-    """Return the squared deviations of ln(y_(n+1) / y_n) over the usual ones, for times in rows.
+    """Return the squared deviations of ln(y_(n+1) / y_n) / usual squared deviations, for times in rows.
 
-    An offset of one side changes all its intervals equally; unequal sides and tilts change long intervals more than
-    short ones. With `loose` one side may be shifted by about that time [s].
+    An offset of one side changes all its intervals equally. Unequal sides and tilts change long intervals more than
+    short intervals. With `loose`, one side may be shifted by about this time [s].
     """
     adjacent = np.flatnonzero(np.diff(orders) == 1)
     pairs = np.flatnonzero(np.diff(adjacent) == 1)
@@ -254,7 +254,7 @@ def law_misfit(times: FloatArray, orders: IntArray, loose: float = 0.0) -> Float
 def rejection_reason(
     times: FloatArray, sequence: RockingSequence, contrasts: FloatArray, strengths: FloatArray
 ) -> str | None:
-    """Return the reason to reject a sequence of clicks; None if it may be the sequence of a rocking body."""
+    """Return the reason to reject a sequence of clicks; None for a possible sequence of a rocking body."""
     if times.size < _FEWEST:
         return (
             f"the longest sequence of clicks that obeys the law of rocking has {times.size}; at least {_FEWEST} are "
@@ -274,7 +274,7 @@ def rejection_reason(
     as_loud = (strengths >= np.quantile(mine, 0.25)) & (contrasts >= np.quantile(contrasts[sequence.members], 0.25))
     before = np.searchsorted(sequence.members, np.arange(strengths.size), side="right")[:, None] - [1, 2]
     last = np.where(before >= 0, mine[np.maximum(before, 0)], 0.0).max(axis=1)
-    as_loud &= strengths >= _ECHO * last  # of the louder foot
+    as_loud &= strengths >= _ECHO * last  # compared with the louder foot
     own = as_loud[sequence.members].sum()
     reason = None
     if own < _SHARE * as_loud.sum():

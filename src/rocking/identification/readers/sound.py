@@ -1,8 +1,8 @@
-"""Times of impacts from their sound: clicks of one foot are similar, so they are aligned and averaged.
+"""Times of impacts from their sound. Clicks of one foot are similar, so they are aligned and averaged.
 
 The onset of a single faint click would be detected late, after its growth beyond the noise. The mean of all clicks of a
-foot has a better contrast, and cross-correlation gives the lags to a fraction of a sample. Clicks of both feet differ,
-but they contain the same modes with real factors: see `_agreement`.
+foot has a better contrast, and cross-correlation gives the lags to a fraction of a sample. Clicks of the two feet
+differ, but contain the same modes with other real factors, see `_agreement`.
 """
 
 from itertools import product
@@ -33,7 +33,7 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
     size, noise, power = spectra(sound, rate)
     frames = np.clip(np.rint((times * rate - 0.3 * size) / (size // 2)).astype(int), 0, power.shape[0] - 1)
     clicks = np.maximum(power[frames].mean(axis=0) - noise, 0.0)
-    # filters of minimum phase are causal; the mean spectrum of clicks becomes flat as far as possible
+    # filters of minimum phase are causal; the mean spectrum of clicks becomes as flat as possible
     gains = (np.sqrt(clicks) / (noise + SOUND.equalisation * clicks), 1.0 / np.sqrt(noise))
     sharp, white = (oaconvolve(sound, causal(gain, rate, size))[: sound.size] for gain in gains)
     return sharp, white
@@ -42,10 +42,11 @@ def sharpened(sound: FloatArray, rate: float, times: FloatArray) -> tuple[FloatA
 def onsets(
     sharp: FloatArray, white: FloatArray, rate: float, times: FloatArray, orders: IntArray
 ) -> tuple[FloatArray, FloatArray, float, float]:
-    """Return onset times of impacts [s], certainty of places, similarity of clicks, error of the tie between feet.
+    """Return onset times of impacts [s], certainty of positions, similarity of clicks, error of the time between feet.
 
-    The certainty is the log likelihood ratio to other places. The similarity is the median correlation of a click with
-    the sum of the others on its foot, at most 1. The error is the standard deviation of the time between both feet [s].
+    The certainty is the log likelihood ratio to other positions. The similarity is the median correlation of a click
+    with the sum of the other clicks of its foot, at most 1. The error is the standard deviation of the time between
+    both feet [s].
     """
     onset_times, likenesses, begun, clicks = times.copy(), np.ones(times.size), [], []
     all_places, certainties = _best_places(sharp, rate, times, orders)
@@ -71,7 +72,7 @@ def onsets(
     likely += np.log(picked + SOUND.onset_failure)
     share = np.exp(likely - likely.max())  # Eq. 318
     share /= share.sum()
-    later = float(share @ off)  # the mean has the smallest square error among several likely ties
+    later = float(share @ off)  # for several likely times between feet, the mean has the smallest square error
     onset_times += later * (orders % 2 - 0.5)
     return onset_times, certainties, float(np.median(likenesses)), float(np.sqrt(share @ (off - later) ** 2))
 
@@ -84,13 +85,13 @@ def _feet(orders: IntArray) -> list[IntArray]:
 def revised(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return impacts without false ones, and with missed ones, whose member is -1.
+    """Return impacts without false impacts and with missed impacts; a missed impact has the member -1.
 
-    An impact is similar to earlier ones on its foot, nearly as loud, and near its expected time: see `_impact`.
+    An impact is similar to earlier impacts on its foot, nearly as loud, and near its expected time, see `_impact`.
     """
     for order in range(SOUND.first_revised, int(orders[-1])):
         times, orders, members = _with_missed_impact(sharp, rate, times, orders, members, order)
-    # a missing audible impact is evidence against all later ones
+    # a missing audible impact is evidence against all later impacts
     numbers = range(int(orders[-1]) + 1)
     certainties = np.nan_to_num(
         [_impact(sharp, rate, times, orders, n)[1] if n >= SOUND.first_revised else 0.0 for n in numbers]
@@ -98,14 +99,14 @@ def revised(
     last = numbers[-1] - int(np.cumsum(certainties)[::-1].argmax())
     kept = (orders <= last) & (certainties[orders] > MISSED)
     times, orders, members = times[kept], orders[kept], members[kept]
-    # one more impact only: a second one would depend on an undetected one
+    # only one more impact, because a second one would depend on an undetected impact
     return _with_missed_impact(sharp, rate, times, orders, members, int(orders[-1]) + 1)
 
 
 def _with_missed_impact(
     sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, members: IntArray, order: int
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return impacts with one more, if it was missed and is more likely than none."""
+    """Return impacts with one more impact, if it was missed and is more likely than no impact."""
     at, sure = (np.nan, np.nan) if order in orders else _impact(sharp, rate, times, orders, order)
     if not sure > 0.0:
         return times, orders, members
@@ -117,9 +118,9 @@ def _with_missed_impact(
 
 
 def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray, order: int) -> tuple[float, float]:
-    """Return the time of an impact from earlier ones, and the log likelihood ratio to no impact.
+    """Return the time of an impact from earlier impacts, and the log likelihood ratio to no impact.
 
-    NaN without enough earlier impacts.
+    Both are NaN for too few earlier impacts.
     """
     about, span = next_impact(times[orders < order], orders[orders < order], order)
     if np.isnan(about):
@@ -144,13 +145,13 @@ def _impact(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray,
     likely -= 0.5 * np.log(spread) + 0.5 * (off / SCATTER) ** 2 + np.log(np.sqrt(2.0 * np.pi) * SCATTER * span * rate)
     likely[np.abs(off) > SOUND.search_range] = -np.inf
     peak = int(likely.argmax())
-    # each of these impacts had a successor: Laplace's rule of succession
+    # Laplace's rule of succession, because each of these impacts had a successor
     sure = float(np.logaddexp.reduce(likely) + np.log(orders[orders < order].size + 1.0))
     return float(times[earlier[-1]] + (first + peak - places[-1]) / rate), sure
 
 
 def _likeness(cuts: FloatArray) -> FloatArray:
-    """Return the correlation of each row with the sum of the others."""
+    """Return the correlation of each row with the sum of the other rows."""
     others = cuts.sum(axis=0) - cuts
     scale = np.sqrt((cuts**2).sum(axis=1) * (others**2).sum(axis=1)) + np.finfo(float).tiny
     return np.asarray((cuts * others).sum(axis=1) / scale)
@@ -159,8 +160,8 @@ def _likeness(cuts: FloatArray) -> FloatArray:
 def _agreement(left: FloatArray, right: FloatArray, rate: float, lags: FloatArray) -> FloatArray:
     """Return the agreement of each lag of two clicks with common modes of independent real factors.
 
-    The factors a_m, b_m are real, so near a mode the cross-spectrum has the phase of a_m b_m exp(-i w d). Its square
-    has the phase of exp(-2 i w d) for any sign. Only the true lag d agrees with all modes.
+    The factors a_m, b_m are real. Near a mode the cross-spectrum therefore has the phase of a_m b_m exp(-i w d), and
+    its square has the phase of exp(-2 i w d) for any sign. Only the true lag d agrees with all modes.
     """
     size = next_fast_len(2 * left.size, real=True)
     quiet = int(0.75 * SOUND.mode_noise * rate)
@@ -180,8 +181,8 @@ def _agreement(left: FloatArray, right: FloatArray, rate: float, lags: FloatArra
 def _best_places(sharp: FloatArray, rate: float, times: FloatArray, orders: IntArray) -> tuple[IntArray, FloatArray]:
     """Return the matching samples of clicks on each foot, and their certainty.
 
-    The certainty is the log likelihood ratio to other places, milliseconds away. A mode that rings for long matches
-    nearly as well one or two periods later. The law of rocking, with a loose tolerance, often distinguishes them.
+    The certainty is the log likelihood ratio to other positions, milliseconds away. A mode with a slow decay matches
+    nearly as well one or two periods later. The law of rocking with a loose tolerance often excludes these positions.
     """
     feet = _feet(orders)
 
@@ -238,7 +239,8 @@ def _independent_numbers(correlations: FloatArray) -> FloatArray:
 def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[IntArray]:
     """Return the best matching samples of clicks, for each possible first click, the loudest first.
 
-    Each other click is placed by the sum of louder ones, then all by the sum of all others.
+    Each other click is positioned by the sum of the louder clicks. Then each click is positioned by the sum of all
+    other clicks.
     """
     start, reach = np.rint(times * rate).astype(np.int64), int(SOUND.reach * rate)
     cuts = _cuts(sound, rate, start, SOUND.before, SOUND.long_after)
@@ -246,7 +248,7 @@ def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[Int
     spectrum, lags, here = rfft(cuts, size), np.arange(-2 * reach, 2 * reach + 1), np.arange(-reach, reach + 1)
     cross = np.array([irfft(np.conj(row) * spectrum, size)[:, lags] for row in spectrum])
     cross[np.arange(start.size), np.arange(start.size)] = 0.0
-    likely = np.exp(-0.5 * (here / reach) ** 2)  # noise may resemble the click far from its detection
+    likely = np.exp(-0.5 * (here / reach) ** 2)  # far from the detection, noise can resemble the click
     order = np.argsort(-np.abs(cuts).max(axis=1))
     arrangements: dict[bytes, IntArray] = {}
     for first in order:
@@ -269,7 +271,7 @@ def _arrangements(sound: FloatArray, rate: float, times: FloatArray) -> list[Int
 
 
 def _matches(sound: FloatArray, rate: float, places: IntArray, reach: int) -> tuple[FloatArray, FloatArray]:
-    """Return the match of clicks with the sum of the others at lags within `reach`, and the correlations."""
+    """Return the match of each click with the sum of the other clicks at lags within `reach`, and the correlations."""
     cuts = _cuts(sound, rate, places, SOUND.before, SOUND.long_after)
     size = cuts.shape[1]
     wide = _cuts(sound, rate, places, SOUND.before + reach / rate, SOUND.long_after + reach / rate)[
@@ -283,7 +285,7 @@ def _matches(sound: FloatArray, rate: float, places: IntArray, reach: int) -> tu
 
 
 def _subsample_offsets(sound: FloatArray, rate: float, places: IntArray) -> FloatArray:
-    """Return the offsets of places within a sample, from the match with the sum of the others."""
+    """Return the offsets of positions within a sample, from the match with the sum of the other clicks."""
     return np.array([_vertex(match, 1) for match in _matches(sound, rate, places, 1)[0]])
 
 
@@ -311,8 +313,8 @@ def _mean(sound: FloatArray, rate: float, places: IntArray, before: float, after
 def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[FloatArray, FloatArray]:
     """Return possible delays of the onset of clicks on one foot [s], and their probabilities.
 
-    Their mean is noise first, then a random sound of their spectrum, which grows during the impact. The likelihood of
-    these normal values prevents a late onset for low modes.
+    The mean click is noise first, then a random sound with the spectrum of clicks, which grows during the impact. The
+    likelihood of these normal values prevents a late onset for low modes.
     """
     step = max(1, round(SOUND.onset_step * rate))
     cuts = _cuts(white, rate, places, -SOUND.noise_start, SOUND.decay_end)
@@ -324,7 +326,7 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
     )
     before = irfft((np.abs(rfft(cuts[:, :quiet], 2 * quiet)) ** 2).mean(axis=0))[: SOUND.prediction_order + 1]
     before[0] = 1.000001 * before[0] + np.finfo(float).tiny
-    # the predictable part of the noise is removed: echoes and hum
+    # echoes and hum are removed: the predictable part of the noise
     cuts = lfilter(np.append(1.0, -solve_toeplitz(before[:-1], before[1:])), [1.0], cuts, axis=1)
     noise = np.median(cuts[:, :quiet] ** 2) / 0.4549 + np.finfo(float).tiny  # median of a squared normal number
     window = np.hanning(cuts.shape[1] - first)
@@ -340,7 +342,7 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
     for rise, loud in product(SOUND.push_durations, SOUND.click_powers):
         grown = 0.5 - 0.5 * np.cos(np.pi * np.minimum((np.arange(mean.size) + 0.5) / (rise * rate), 1.0))
         root = cholesky(loud * np.outer(grown, grown) * alike / alike[0, 0] + np.eye(mean.size), lower=True)
-        # a later onset has fewer values of the same covariance; the first part of the root applies
+        # a later onset has fewer values with an equal covariance, so the first rows of the root apply
         cost = np.cumsum(0.5 * solve_triangular(root, behind, lower=True) ** 2 + np.log(np.diag(root))[:, None], axis=0)
         likely = np.logaddexp(likely, -cost[mean.size - late - 1, np.arange(late.size)])
     likely -= 0.5 * np.cumsum(mean**2)[late - 1]
@@ -349,7 +351,7 @@ def _onset_density(white: FloatArray, rate: float, places: IntArray) -> tuple[Fl
 
 
 def impacts_from_sound(recording: Recording) -> ImpactTimes:
-    """Return the times of impacts, or refuse a sound without rocking."""
+    """Return the times of impacts, or raise an error for a sound without rocking."""
     channel = recording.channel
     clicks = find_clicks(channel, recording.rate)
     length = recording.samples.shape[0] / recording.rate
@@ -402,7 +404,7 @@ def impacts_from_sound(recording: Recording) -> ImpactTimes:
 
 
 def _loudness(channel: FloatArray, rate: float) -> FloatArray:
-    """Return times and largest amplitudes of segments of a sound, for pictures."""
+    """Return times and largest amplitudes of segments of a sound, for figures."""
     step = max(1, channel.size // SOUND.picture_pieces)
     loud = np.abs(channel[: channel.size // step * step]).reshape(-1, step).max(axis=1)
     return np.column_stack([(np.arange(loud.size) + 0.5) * step / rate, loud])
@@ -411,7 +413,7 @@ def _loudness(channel: FloatArray, rate: float) -> FloatArray:
 def _evidence(contrasts: FloatArray) -> FloatArray:
     """Return the log likelihood ratio of impact and noise from contrasts.
 
-    Contrasts of noise and echoes decrease with a power; a neutral contrast has the ratio 1.
+    The frequency of contrasts of noise and echoes decreases with a power. A neutral contrast has the ratio 1.
     """
     return np.clip(SOUND.contrast_power * np.log(contrasts / SOUND.neutral_contrast), -4.0, 4.0)
 

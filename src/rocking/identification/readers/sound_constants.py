@@ -9,8 +9,8 @@ import numpy as np
 class SoundConstants:
     """Constants of `rocking.identification.readers.sound`.
 
-    "Development" is a choice with the development rooms (seeds 10000 to 10059, 20000 to 20119), without a derivation.
-    The other reasons are those of the theory page (Eq. 317, 318, 323), or state the effect of the value.
+    The reason "development" means a choice with the development rooms (seeds 10000 to 10059, 20000 to 20119), without a
+    derivation. All other reasons are in the theory manual (Eq. 317, 318, 323), or state the effect of the value.
     "Position" is the time at which a click has the best match with the other clicks of its foot.
     """
 
@@ -19,7 +19,7 @@ class SoundConstants:
         0.004  # start of a click before its position [s]; first detections are accurate to some milliseconds
     )
     after: float = 0.030  # end of a click in comparisons of shape and level [s]; development
-    long_after: float = 0.060  # end of a click in alignments [s]; longer than `after`: modes with long resonance
+    long_after: float = 0.060  # end of a click in alignments [s]; longer than `after` for modes with slow decay
     reach: float = (
         0.012  # largest shift of a click from its first detection [s]; 12 ms is also the tolerance of the tests
     )
@@ -35,11 +35,11 @@ class SoundConstants:
     )
     fewest_values: float = 25.0  # N in Eq. 317, and its smallest value for a single click [-]; development
     most_values: float = 60.0  # largest N of a single click in Eq. 317 [-]; limits the weight of a good match
-    law_tail: float = 10.0  # degrees of freedom of the law in Eq. 317 [-]; heavy tail: one bad time must not decide
+    law_tail: float = 10.0  # degrees of freedom of the law in Eq. 317 [-]; heavy tail against single wrong times
     law_tolerance: float = 3e-3  # tolerance of the time between feet in Eq. 317 [s]; `onsets` finds this time later
 
     # time difference of the feet, Eq. 318
-    mode_noise: float = 0.012  # start of a mean click before its position [s]; contains noise for its power
+    mode_noise: float = 0.012  # start of a mean click before its position [s]; with noise, for the noise power
     mode_decay: float = 0.100  # end of a mean click [s]; frequency resolution 9 Hz = 1 / (0.012 s + 0.100 s)
     mode_band: tuple[float, float] = (
         150.0,
@@ -71,10 +71,10 @@ class SoundConstants:
     )  # w: durations of the impact [s], equally probable
     click_powers: tuple[float, ...] = tuple(
         np.geomspace(0.5, 500.0, 6).tolist()
-    )  # click / noise [-]; -3 to 27 dB by 6 dB
+    )  # ratios of click to noise [-]; -3 to 27 dB in steps of 6 dB
 
     # missed and false impacts, Eq. 323
-    first_revised: int = 5  # first order of a revised impact [-]; earlier impacts give the law and the mean click
+    first_revised: int = 5  # first number of a revised impact [-]; earlier impacts give the law and the mean click
     search_range: float = 0.15  # largest deviation from the expected time / interval [-]; 4.3 deviations of 0.035
     noise_range: float = 0.040  # smallest half width of the neighbourhood with the noise level [s]; development
     loudness_ratio: float = 0.75  # level of an impact / last impact of its foot [-]; mean of 119 rooms
@@ -93,9 +93,9 @@ class SoundConstants:
         3.2  # contrast of a click that is an impact or noise with equal likelihood [-]; development
     )
     contrast_power: float = 5.0  # decrease of the contrasts of noise and echoes, as a power [-]; development
-    revised_contrast: float = 3.0  # contrast of an impact that only its similarity shows [-]; slightly below neutral
+    revised_contrast: float = 3.0  # contrast of an impact detected only by its similarity [-]; slightly below neutral
     doubtful_foot_lag: float = (
-        3e-4  # deviation of the time between feet with a warning [s]; onsets alone: 0.3 ms, 116 rooms
+        3e-4  # deviation of the time between feet that gives a warning [s]; onsets alone have 0.3 ms in 116 rooms
     )
     picture_pieces: int = 2000  # number of points of the sound in pictures [-]; enough for a picture
 

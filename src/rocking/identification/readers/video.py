@@ -1,4 +1,4 @@
-"""Rotation of a body from a video, by alignment with its picture at rest; fixed objects show the camera motion.
+"""Rotation of a body from a video, by alignment with its picture at rest. Fixed objects give the camera motion.
 
 Inverse compositional alignment of the pixels at edges (Baker & Matthews 2004, doi:10.1023/B:VISI.0000011205.11775.fd),
 with the weights of Huber.
@@ -25,12 +25,12 @@ from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Source
 
 _PIXELS, _LEAST, _STEPS, _CLOSE = 6000, 40, 20, 2e-3
-_BLUR = 1.0  # before differentiation [pixels]
-_SLOPE, _FLAT = 0.16, 0.1  # noise of slopes over noise of pixels, after the blur; negligible slopes
+_BLUR = 1.0  # width of the blur before differentiation [pixels]
+_SLOPE, _FLAT = 0.16, 0.1  # ratio of the noise of slopes to that of pixels, after the blur; limit of negligible slopes
 _QUIET = 0.2  # duration of the averaged picture at rest [s]
-_ALIKE, _OUTSIDE = 0.3, 0.05  # largest decrease of the correlation; fraction of pixels
+_ALIKE, _OUTSIDE = 0.3, 0.05  # largest decrease of the correlation; largest fraction of pixels outside the frame
 _EDGE = 4  # margin of a frame [pixels]
-_HUBER = 2.0  # times the median
+_HUBER = 2.0  # limit of Huber's weights / median
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +38,12 @@ class Film:
     """Grey frames of reduced size, with their times."""
 
     name: str
-    frames: NDArray[np.uint8]  # n, rows, columns
-    time: FloatArray  # [s]
+    frames: NDArray[np.uint8]  # grey values, shape (n, rows, columns)
+    time: FloatArray  # times of the frames [s]
     scale: float  # pixels per pixel of the video
 
     def error(self, cause: str, **facts: Any) -> MeasurementError:
-        """Return the error for a cause; facts: as of `RockingError`."""
+        """Return the error for a cause, with the facts of `RockingError`."""
         return MeasurementError(cause, **facts).at(self.name)
 
     @cached_property
@@ -54,7 +54,7 @@ class Film:
 
     @cached_property
     def quiet(self) -> slice:
-        """Frames with the smallest changes; the last of several equally quiet intervals."""
+        """Frames with the smallest changes; of several equally quiet intervals, the last."""
         width = min(max(3, round(_QUIET / float(np.median(np.diff(self.time))))), self.changes.size)
         means = np.convolve(self.changes, np.full(width, 1.0 / width), "valid")
         first = int(np.flatnonzero(means <= 1.1 * means.min())[-1])
@@ -72,7 +72,7 @@ class Film:
 
 
 class RestPicture:
-    """Pixels of a picture at edges, with their derivatives by rotation, shift and light."""
+    """Pixels at the edges of a picture, with their derivatives by rotation, shift and light."""
 
     def __init__(self, picture: FloatArray, mask: BoolArray, noise: float) -> None:
         smooth = ndimage.gaussian_filter(picture, _BLUR)
@@ -91,14 +91,14 @@ class RestPicture:
             gy, gx = down.ravel()[order], across.ravel()[order]
             moved = np.column_stack([gy * x - gx * y, gx, gy])
             units = np.array([1.0 / max(math.sqrt((x**2 + y**2).mean()), 1.0), 1.0, 1.0])
-            # a shift along a straight edge cannot be distinguished from noise: these directions are excluded
+            # directions along straight edges are excluded: a shift along an edge is not distinguishable from noise
             information, directions = np.linalg.eigh((moved * units).T @ (moved * units) / order.size)
             self.free = units[:, None] * directions[:, information > 5.0 * (_SLOPE * noise) ** 2 + _FLAT]
             self.slopes = np.column_stack([moved @ self.free, self.values, np.ones(order.size)])
             self.usable = self.free.size > 0
 
     def sampled(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Return the pixels in a frame after rotation, clockwise, and shift, and a mask of those inside."""
+        """Return the pixels in a frame after a clockwise rotation and a shift, and a mask of the pixels inside."""
         y, x = (self.places - self.centre).T
         c, s = math.cos(pose[0]), math.sin(pose[0])
         positions = np.stack([s * x + c * y + pose[2], c * x - s * y + pose[1]]) + self.centre[:, None]
@@ -106,7 +106,7 @@ class RestPicture:
         return ndimage.map_coordinates(frame, positions, order=1, mode="nearest"), inside
 
     def aligned(self, frame: Any, pose: FloatArray) -> tuple[FloatArray, FloatArray, float, float]:
-        """Return the best pose on a frame, residuals, their correlation, and the fraction outside."""
+        """Return the best pose in a frame, the residuals, the correlation, and the fraction of pixels outside."""
         light = np.array([1.0, 0.0])
         for _ in range(_STEPS):
             pixels, inside = self.sampled(frame, pose)
@@ -127,12 +127,12 @@ class RestPicture:
 
 @dataclass(frozen=True, eq=False)
 class PoseTrack:
-    """Rotation and shift of a picture in each frame, from the quiet frames in both directions until it is lost."""
+    """Rotation and shift of a picture in each frame, followed from the quiet frames in both directions."""
 
-    poses: FloatArray  # n, 3: rotation, clockwise [rad], and shift to the right and down [pixels]
+    poses: FloatArray  # clockwise rotation [rad], and shift to the right and down [pixels], shape (n, 3)
     first: int
     last: int  # first frame without a pose
-    own: BoolArray  # moving pixels
+    own: BoolArray  # mask of the moving pixels
 
     @classmethod
     def followed(cls, film: Film, mask: BoolArray) -> "PoseTrack | None":
@@ -168,17 +168,17 @@ VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 """Extensions of videos."""
 
 LIMITS = {"frames": 20_000, "pixels": 40_000_000, "widest": 640, "bytes": 150_000_000}
-"""Largest number of frames and of pixels of each; width and memory limit the reduced frames."""
+"""Largest number of frames and of pixels per frame, and largest width and memory of the reduced frames."""
 
 _OPENCV = ForeignReader(Path(__file__).with_name("video_frames.py"), "OpenCV", "cv2", seconds=120.0)
 _SIGNATURES = ((0, b"RIFF"), (0, b"\x1a\x45\xdf\xa3"), *((4, kind) for kind in (b"ftyp", b"moov", b"mdat", b"wide")))
 _FEWEST, _ROUNDS = 12, 2
-_ALL, _BASE = 0.7, 0.15  # fraction of the picture; of the height of the moving region
-_SWAYS, _STEADY = 0.3, 1.0  # pixels; ratio to changes from frame to frame, 0.7 for noise
+_ALL, _BASE = 0.7, 0.15  # largest moving fraction of the picture; excluded fraction of the height of the moving region
+_SWAYS, _STEADY = 0.3, 1.0  # limits of camera motion: in pixels, and / changes from frame to frame (0.7 for noise)
 
 
 def rotation_from_video(path: Path, region: Sequence[float] | None, frame_rate: float | None) -> RotationSeries:
-    """Return the rotation of a body in a video; region: of the body at rest, left, top, width, height [pixels]."""
+    """Return the rotation of a body in a video; `region` of the body at rest: left, top, width, height [pixels]."""
     if frame_rate is not None:
         frame_rate = checks.positive("frame_rate", frame_rate, "1/s")
     film = read_film(path)
@@ -209,7 +209,7 @@ def rotation_from_video(path: Path, region: Sequence[float] | None, frame_rate: 
             )
     turned, camera_doubts = _camera(film, ~ndimage.binary_dilation(moving | body, iterations=4), a, b)
     time = film.time
-    if frame_rate is not None:  # slow motion
+    if frame_rate is not None:  # the stated rate replaces that of a video in slow motion
         time = time * (time.size - 1) / (time[-1] - time[0]) / frame_rate
     doubts.append(
         "a camera direction 10 degrees off the normal of the plane reduces rotations by 1.5 %; the intervals "
@@ -239,7 +239,7 @@ def read_film(path: Path) -> Film:
     """Return the frames of a file."""
     if not path.is_file():
         raise MeasurementError("not a plain file" if path.exists() else "no such file").at(str(path))
-    with path.open("rb") as file:  # a text that names other files is not a video
+    with path.open("rb") as file:  # refuse a text file that names other files
         head = file.read(12)
     if not any(head[at : at + len(kind)] == kind for at, kind in _SIGNATURES):
         raise MeasurementError("the first bytes are not those of a video", hint="the file may be damaged").at(path.name)

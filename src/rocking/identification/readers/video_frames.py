@@ -9,7 +9,7 @@ NEEDED = 12
 
 
 def answer(request: dict[str, Any]) -> tuple[dict[str, Any], list[Any]]:
-    """Return the scale of the frames, the frames and their times [s]; an error beyond the limits of the request."""
+    """Return the scale of the frames, the frames and their times [s]; beyond the limits of the request, an error."""
     capture = cv2.VideoCapture(request["path"], cv2.CAP_FFMPEG)
     most, pixels, widest, room = (request[name] for name in ("frames", "pixels", "widest", "bytes"))
     count = min(max(int(capture.get(cv2.CAP_PROP_FRAME_COUNT)), 1), most)

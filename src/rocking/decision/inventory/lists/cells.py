@@ -1,6 +1,6 @@
 """Read cells of a list: measures with units, approximate values and intervals, and measures of several sizes."""
 
-# ruff: noqa: RUF001 - signs and words of other alphabets are meant
+# ruff: noqa: RUF001 - signs and words of other alphabets are intended
 
 import re
 import unicodedata
@@ -15,12 +15,12 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Message
 
 ABOUT = 0.05
-"""Half width of the interval of an approximate measure, "ca. 120" or "120?", over the measure [-]."""
+"""Half width of the interval of an approximate measure, such as "ca. 120" or "120?", divided by the measure [-]."""
 
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:([.,])([0-9]+))?(?:[eE][+-]?[0-9]+)?")
-# three digits after the mark may be thousands, unless the digits before it exclude them
+# three digits after a mark can be thousands, unless the digits before the mark exclude thousands
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
-# certainly thousands: blanks, apostrophes, one mark twice, or two different marks
+# separators that are certainly for thousands: blanks, apostrophes, one mark twice, or two different marks
 _GROUPED = re.compile(
     r"(?<![0-9.,'])(?:[1-9](?: [0-9]{3})+(?:[.,][0-9]+)?"
     r"|[1-9][0-9]{0,2}(?:(?:[\u00a0\u202f\u2009'\u2019][0-9]{3})+(?:[.,][0-9]+)?"
@@ -48,9 +48,9 @@ class DecimalMark:
     """The decimal mark of a table, from all of its numbers.
 
     ``12,5`` has a decimal comma; ``1,234`` and ``1.234`` are ambiguous. Their mark separates decimals if another
-    number of the table has this decimal mark, and no number has the other one. It separates thousands if a number
-    such as ``1.234,5`` does, or if the other numbers of the column are near. If commas separate the fields, the
-    decimal mark is a point, unless a decimal comma contradicts it.
+    number of the table has this decimal mark, and no number has the other decimal mark. Their mark separates
+    thousands if it does in a number such as ``1.234,5``, or if the other numbers of the column have a similar size.
+    If commas separate the fields, the decimal mark is a point, unless a number has a decimal comma.
 
     >>> mark = DecimalMark(["12,5", "1,234", "7 cm"])
     >>> mark.number("width_cm", "1,234")
@@ -89,20 +89,20 @@ class DecimalMark:
         return checks.number(name, float(text.replace(",", ".")))
 
     def is_settled_by_column(self, name: str, cell: str) -> bool:
-        """Return True if only the other numbers of the column show that a mark separates thousands."""
+        """Return True if the mark separates thousands, and only the other numbers of the column prove this."""
         text = cell.strip()
         mark = re.sub(r"[0-9+-]", "", text)
         by_table = mark in self.groups or self._separates_decimals(mark)
         return bool(_THOUSANDS.fullmatch(text)) and not by_table and self._settles(name, text)
 
     def _separates_decimals(self, mark: str) -> bool:
-        """Return True if the other numbers of the table show that a mark separates decimals."""
+        """Return True if the other numbers of the table prove that a mark separates decimals."""
         if mark == ",":
             return self.commas and not self.points
         return not self.commas and (self.points or self.comma_delimited)
 
     def _settles(self, name: str, text: str) -> bool:
-        """Return True if the other numbers of a column are near a number with thousands, and far from its decimals."""
+        """Return True if the other numbers of a column are near the value with thousands and far from the decimals."""
         others = [
             float(cell.replace(",", "."))
             for cell in self.columns.get(name, ()) if _NUMBER.fullmatch(cell) and not _THOUSANDS.fullmatch(cell)
@@ -124,14 +124,14 @@ def _ambiguous(title: str, text: str, readings: tuple[str, str], first: str = ""
     )
 
 
-_ENOUGH, _NEAR = 3, 30.0  # numbers of a column that decide on another one, and their largest ratio to it [-]
+_ENOUGH, _NEAR = 3, 30.0  # smallest number of other numbers in a column for a decision, and their largest ratio [-]
 _LONGEST = 200
-_SAME = 0.02  # a measure in centimetres and in inches, rounded [-]
+_SAME = 0.02  # largest relative difference between rounded values in centimetres and in inches [-]
 _OTHERWISE = 0.5  # largest relative difference of two alternative sizes [-]
 _ABOUT = "|".join(sorted(words_of(WORDS["about"]), key=len, reverse=True))
 _WITH = "|".join(words_of(WORDS["with"]))
 _UNKNOWN = words_of(WORDS["unknown"])
-_FRACTION = r"[0-9]{1,2}/(?:2|3|4|8|16|32|64)(?![0-9])"  # as of inches: 120/130 is none
+_FRACTION = r"[0-9]{1,2}/(?:2|3|4|8|16|32|64)(?![0-9])"  # fractions of inches; 120/130 is not a fraction
 _ONE = rf"{_FRACTION}|[0-9]+(?:[.,][0-9]+)?(?: {_FRACTION})?"
 _UNIT = rf"(?:(?!(?:{_WITH})\b)[^\W\d]{{1,15}}\.?|['\"])"
 _QUANTITY = rf"(?:{_ONE})\s*(?:{_UNIT}\s*(?:(?:{_ONE})\s*{_UNIT})?)?"
@@ -139,7 +139,7 @@ _ABOUT_FIRST = re.compile(rf"(?:~|≈|±|(?:{_ABOUT})(?=[\s.0-9])\.?)\s*(?=\S)")
 _BETWEEN = re.compile(rf"({_QUANTITY})\s*(-|–|—|/|bis|to|until|a|hasta|εως|至|~)\s*({_QUANTITY})")
 _BESIDE = re.compile(rf"({_QUANTITY})\s*\(=?\s*({_QUANTITY})[^\d()]*\)")
 _IN_BRACKETS = re.compile(rf"[(\[]([^()\[\]]*\d[^()\[\]]*)[)\]]\s*({_UNIT})?")
-# a foot before a number is that of the object, and "in" a word
+# "foot" before a number means the foot of the object, and "in" is a word
 _UNIT_FIRST = re.compile(r"(mm|cm|m|kg|g|lbs?)\.?\s*(\D{0,20}\d.*)")
 _DOUBT = re.compile(rf"\s*(?:\?+|[(\[][^\d()\[\]]*[)\]]|\b(?:ca|circa|approx)\.?|\b(?:{_WITH})\b[^\d()]*)$")
 _GIVE_OR_TAKE = re.compile(rf"({_QUANTITY})\s*(?:±|\+ ?/ ?-|\+-)\s*({_QUANTITY})")
@@ -154,7 +154,7 @@ class CellMeasure:
     """Measure in a cell, in SI units."""
 
     value: float
-    half_width: float = 0.0  # of the interval, if approximate
+    half_width: float = 0.0  # half width of the interval of an approximate measure
     across: bool = False  # True for a diameter
 
 
@@ -170,7 +170,7 @@ def is_missing(cell: Cell) -> bool:
 def measure(
     title: str, cell: Cell, factor: float | None, mark: DecimalMark, units: Mapping[str, float] = LENGTH_UNITS
 ) -> CellMeasure:
-    """Return the measure in a cell; factor: SI factor of numbers without a unit, or None; units: allowed units."""
+    """Return the measure in a cell; `factor` is the SI factor of numbers without a unit, or None."""
     if isinstance(cell, Shown):
         unit_measure = measure(title, cell.unity, factor, mark, units)
         return CellMeasure(cell * unit_measure.value, cell * unit_measure.half_width, unit_measure.across)
@@ -193,17 +193,17 @@ def measure(
 
 
 def _two(title: str, text: str, quantity: Callable[[str, str], float]) -> tuple[float, float] | None:
-    """Return the smaller and the larger of two measures in a text; twice the first if they agree."""
+    """Return the smaller and the larger of two measures in a text; if they agree, the first measure twice."""
     if (match := _BETWEEN.fullmatch(text)) and not (match[2] == "/" and re.match(_FRACTION, text)):
         low, high = quantity(match[1], match[3]), quantity(match[3], "")
-        if match[2] == "/" and low > high > 0.0:  # front and back, in any order
+        if match[2] == "/" and low > high > 0.0:  # measures of front and back, in any order
             low, high = high, low
         if not low < high:
             raise InvalidValueError(
                 "{title} must go from the smaller to the larger, got {cell}", title=title, cell=f"{text!r:.40}"
             )
         return low, high
-    if match := _BESIDE.fullmatch(text):  # the same size in another unit, or an alternative
+    if match := _BESIDE.fullmatch(text):  # a size with the same size in another unit, or with an alternative size
         value, other = quantity(match[1], ""), quantity(match[2], match[1])
         if abs(value - other) > _OTHERWISE * value:
             raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text!r:.40}")
@@ -236,7 +236,7 @@ def _without_about(text: str) -> tuple[str, bool]:
 def _quantity(
     title: str, text: str, factor: float | None, mark: DecimalMark, units: Mapping[str, float], neighbour: str
 ) -> float:
-    """Return a number with its unit, or feet with inches; neighbour: text with the unit of a number without one."""
+    """Return a number with its unit, or feet with inches; `neighbour` contains the unit of a number without unit."""
     pairs = _PAIR.findall(text) if re.fullmatch(_QUANTITY, text) else []
     factors = [units.get(_unit(word), 0.0) for _, word in pairs]
     if not pairs or (
@@ -323,7 +323,7 @@ def parts(
     for k, piece in enumerate(pieces):
         label = _LABEL.match(piece)
         side = side_of(plain(label[1]), language) if label else ""
-        labels.append("width" if side == "length" in labels else side)  # longer and shorter side: L 90, l 40
+        labels.append("width" if side == "length" in labels else side)  # two lengths: L 90, l 40
         pieces[k] = piece[label.end() :] if label and side else piece
     labelled = set(labels) | ({"width", "depth"} if "diameter" in labels else set())
     left = [side for side in order or ("height",) if side not in labelled] if order or "diameter" in labels else []

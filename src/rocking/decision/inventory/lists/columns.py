@@ -1,6 +1,6 @@
 """Meaning of the columns of a list, from a header of one or more rows in the language of most titles."""
 
-# ruff: noqa: RUF001 - signs and words of other alphabets are meant
+# ruff: noqa: RUF001 - signs and words of other alphabets are intended
 
 import csv
 import difflib
@@ -38,7 +38,7 @@ MEASURED = {*SIZES, "size", "body_file"}
 _MEASURES = (*LENGTHS, "weight")
 _WITH_UNIT = {*_MEASURES, "size"}
 _FIELDS = {"weight": ("mass",), "base": ("base_width", "base_depth"), "base_diameter": ("base_width", "base_depth")}
-# by the titles of a group and of its column
+# keys: quantities in the title of a group and in the title of its column
 _IN_GROUP = {
     ("base", "width"): "base_width", ("base", "depth"): "base_depth", ("base", "length"): "base_depth",
     ("base", "diameter"): "base_diameter", ("base", "height"): "", ("width", "base"): "base_width",
@@ -71,7 +71,7 @@ def words_of(text: str) -> set[str]:
     """Return the words of a comma-separated text, with both spellings of umlauts."""
     both = (text, text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue"))
     spelled = {plain(word) for spelling in both for word in spelling.split(",")}
-    return spelled | {word.replace("ß", "ss") for word in spelled if not word.startswith("maß")}  # Masse is the weight
+    return spelled | {word.replace("ß", "ss") for word in spelled if not word.startswith("maß")}  # "Masse" is weight
 
 
 _HEADERS = {
@@ -89,9 +89,9 @@ _TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token i
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
 _FILLERS = frozenset(words_of(WORDS["fillers"]))
 _OTHERS, _WITHOUT = words_of(WORDS["others"]), words_of(WORDS["without"])
-_BEGINNINGS = tuple(word for word in _OTHERS if len(word) > 4)  # Sockelmaße, Rahmengröße
+_BEGINNINGS = tuple(word for word in _OTHERS if len(word) > 4)  # for words such as Sockelmaße, Rahmengröße
 _INSTEAD = {word: stem for stem, text in WORDS["instead"].items() for word in words_of(text)}
-_PHRASES: dict[str, set[str]] = {}  # of all languages
+_PHRASES: dict[str, set[str]] = {}  # phrases of all languages
 for _words in _HEADERS.values():
     for _word, _field in _words.items():
         _PHRASES.setdefault(_word, set()).add(_field)
@@ -102,10 +102,10 @@ _TRANSLATED = re.compile(r"[/|\n\u2013\u2014]| - ")
 class InventoryColumn:
     """Meaning of a column."""
 
-    stem: str  # quantity of its title
+    stem: str  # quantity in the title
     fields: tuple[str, ...]  # its fields of `InventoryObject`, in the order of the sizes in its cells
     factor: float | None  # SI factor of its numbers; None if the cells or a column contain the units
-    title: str  # its name in the file
+    title: str  # title of the column in the file
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,10 @@ class Header:
 
     columns: tuple[InventoryColumn | None, ...]  # None for an ignored column
     language: str
-    titles: tuple[str, ...]  # of all columns
+    titles: tuple[str, ...]  # titles of all columns
 
     def stem(self, index: int) -> str:
-        """Return the quantity of a column; empty if ignored or beyond the last one."""
+        """Return the quantity of a column; empty for an ignored column or beyond the last column."""
         column = self.columns[index] if index < len(self.columns) else None
         return column.stem if column else ""
 
@@ -147,7 +147,7 @@ def _bare(tokens: Sequence[str]) -> tuple[list[str], str]:
     kept = list(tokens)
     while kept and kept[-1] in _FILLERS - UNITS.keys():
         kept.pop()
-    unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # at the end: a foot width is no width in feet
+    unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # last word: "foot width" has no unit
     return kept, unit
 
 
@@ -162,7 +162,7 @@ def _stem_in(tokens: list[str], fields: Mapping[str, str]) -> tuple[str, str]:
 
 
 def _stem(title: str, language: str) -> tuple[str, str]:
-    """Return the quantity of a title in a language, another or two languages, and its unit; empty if unknown."""
+    """Return the quantity of a title in one or two languages, and its unit; empty if unknown."""
     tokens = plain(title).split()
     tables = (_HEADERS[language], _HEADERS["en"], *_HEADERS.values())
     match = next((match for fields in tables if (match := _stem_in(tokens, fields))[0]), ("", ""))
@@ -171,10 +171,10 @@ def _stem(title: str, language: str) -> tuple[str, str]:
     if any(word.startswith("inv") for word in tokens) and all(
         word.startswith("inv") or len(word) < 4 for word in tokens
     ):
-        return "number", ""  # N. d'inv., Inv.-Nr. alt
+        return "number", ""  # such as N. d'inv., Inv.-Nr. alt
     bare = re.sub(r"\([^()]*\)|\[[^\[\]]*\]", " ", title)
     stem = _stem(bare, language)[0] if plain(bare) != plain(title) else ""
-    return ("", "") if stem in _WITH_UNIT else (stem, "")  # brackets may contain the part of the object
+    return ("", "") if stem in _WITH_UNIT else (stem, "")  # brackets can contain a component of the object
 
 
 def stem_of(title: str, language: str) -> str:
@@ -199,12 +199,12 @@ def _translated(title: str) -> tuple[str, str]:
 
 
 def _phrased(tokens: Sequence[str]) -> set[str]:
-    """Return the fields of words that are a sequence of phrases of any language, all of one field."""
+    """Return the fields of words that are a sequence of phrases in any language; all phrases have one field."""
     ends: list[set[str]] = [{""}, *(set() for _ in tokens)]
     for k, word in enumerate(tokens):
         if word in _FILLERS or (
             word in UNITS and word not in _TELLING and "" not in ends[k]
-        ):  # a unit follows its quantity
+        ):  # a unit comes after its quantity
             ends[k + 1] |= ends[k]
         for j in range(k + 1, min(k + 5, len(tokens)) + 1):
             ends[j] |= {
@@ -229,7 +229,7 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
     for k, token in enumerate(tokens):
         side = side_of(token, language)
         if side and (not run or (k > 1 and tokens[k - 1] == "x")):
-            run.append("width" if side == "length" in run else side)  # longer and shorter side: L x l
+            run.append("width" if side == "length" in run else side)  # two lengths: longer L, shorter l
         elif token != "x":
             run = [side] if side else []
         best = max(best, list(run), key=len)
@@ -237,7 +237,7 @@ def order_of(title: str, language: str = "en") -> tuple[str, ...]:
 
 
 def side_of(token: str, language: str = "en") -> str:
-    """Return the size of a letter or word; empty if it is none."""
+    """Return the size for a letter or word; empty if it means no size."""
     if token == "ø":
         return "diameter"
     quantity = _HEADERS[language].get(token) or WORDS["sides"].get(token) or _stem(token, language)[0]
@@ -245,7 +245,7 @@ def side_of(token: str, language: str = "en") -> str:
 
 
 Titles = Sequence[str | Sequence[str]]
-"""Titles of each column: a title, or a title per row of the header, groups of columns first."""
+"""Titles of each column: one title, or one title per row of the header, groups of columns first."""
 
 
 def levels_of(title: str | Sequence[str]) -> tuple[str, ...]:
@@ -265,7 +265,7 @@ def title_of(title: str | Sequence[str]) -> str:
 
 
 def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header:
-    """Return the meaning of the titles of a list in the best matching language; mapped: meanings from the user.
+    """Return the meaning of the titles of a list in the best matching language; `mapped` are meanings from the user.
 
     >>> header = header_of(["Objekt", "Höhe (cm)", ("Maße (cm)", "Breite"), ("Maße (cm)", "Tiefe")])
     >>> header.language, [column.fields[0] for column in header.columns]
@@ -289,12 +289,12 @@ def header_of(titles: Titles, mapped: Mapping[str, str] | None = None) -> Header
     stems = [column.stem if column else "" for column in columns]
     for k, column in enumerate(columns):
         if column and column.stem not in _MEASURES and column.stem in stems[:k]:
-            columns[k] = None  # the first of several columns is used
+            columns[k] = None  # only the first of several columns is used
     return Header(tuple(columns), language, tuple(named))
 
 
 def _in_order(titles: Titles, columns: list[InventoryColumn | None]) -> list[InventoryColumn | None]:
-    """Return columns with sides from a common title of their order, such as ``Maße (B x T x H)`` above three."""
+    """Return columns with sides from a common title, such as ``Maße (B x T x H)`` above three columns."""
     levels, sided = [levels_of(title) for title in titles], list(columns)
     for first, column in enumerate(columns):
         if column is None or column.stem != "size" or levels[first] in levels[:first]:
@@ -337,7 +337,7 @@ def _targets(titles: Titles, mapped: Mapping[str, str]) -> list[str | None]:
 
 
 def _language_of(titles: Titles) -> str:
-    """Return the language of most titles; of equal ones the first."""
+    """Return the language of most titles; for equal numbers, the first language."""
     pieces = list(dict.fromkeys(
         (position, piece)
         for title in titles for level in levels_of(title)
@@ -364,7 +364,7 @@ class _Level:
     stem: str
     unit: str
     order: tuple[str, ...]
-    tokens: tuple[str, ...]  # without its unit
+    tokens: tuple[str, ...]  # words of the title without its unit
 
     @classmethod
     @lru_cache(maxsize=4096)
@@ -377,7 +377,7 @@ class _Level:
             unit = unit or next(
                 (UNITS[word] for word in reversed(plain(title).split()) if word in UNITS and len(word) > 1), ""
             )
-        stated = not title_words or set(title_words) <= _FILLERS  # nothing but a unit
+        stated = not title_words or set(title_words) <= _FILLERS  # the title is only a unit
         return cls(stem, unit or (last if stated and not stem else ""), order, tuple(title_words))
 
     @property
@@ -405,7 +405,7 @@ def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn 
         levels[-1] = last = replace(last, stem="", unit=UNITS[plain(texts[-1])], order=(), tokens=())
     stem = ""
     for level in levels:
-        is_unit = stem == "count" and " ".join(level.tokens) in _INSTEAD  # Q.tà, n.
+        is_unit = stem == "count" and " ".join(level.tokens) in _INSTEAD  # such as Q.tà, n.
         stem = stem if level.is_neutral or is_unit else _IN_GROUP.get((stem, level.stem), level.stem)
     words_by_level = [level.tokens for level in levels if level.tokens]
     orders = (words_by_level, words_by_level[::-1]) if len(words_by_level) > 1 else ()
@@ -440,7 +440,7 @@ def _joined(titles: Sequence[Sequence[str]], language: str) -> str:
 
 
 def check_header(header: Header, titles: Titles, source: str, dismissed: Collection[str] = ()) -> None:
-    """Refuse a field of two columns, and an unknown column that resembles a size."""
+    """Raise an error for a field in two columns, and for an unknown column that resembles a size."""
     fields = [field for column in header.columns if column and column.stem != "size" for field in column.fields]
     for field in fields:
         if fields.count(field) > 1:
@@ -473,7 +473,7 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
     plain_title = plain(title)
     stem, _, unit = plain_title.rpartition(" ")
     if {_stem(title, language)[0], _stem(stem, language)[0]} & {"number", "note", "name", "weight", "size", "pedestal"}:
-        return  # it does not affect the result, or repeats other columns
+        return  # the column does not affect the result, or repeats other columns
     if _PEDESTAL.search(plain_title) and _HEIGHT.search(plain_title):
         return  # height of a support; the report lists the column as ignored
     close = difflib.get_close_matches(stem if stem and unit in UNITS else plain_title, _MEASURED, n=1, cutoff=0.8)
@@ -497,7 +497,9 @@ def _refuse_measure(title: str, source: str, language: str) -> None:
 
 
 def mapping_of(text: str | Mapping[str, str] | None) -> dict[str, str]:
-    """Return the user's map of own titles to package titles; empty: ignored; titles with a comma are quoted.
+    """Return the user's map of titles to titles of this package; an empty value ignores the column.
+
+    Titles with a comma are quoted.
 
     >>> mapping_of("Objekt=name, Maß B=width_cm, Rahmenbreite=")
     {'Objekt': 'name', 'Maß B': 'width_cm', 'Rahmenbreite': ''}

@@ -17,9 +17,9 @@ from rocking.decision.inventory.lists.columns import (
 )  # fmt: skip
 from rocking.decision.inventory.lists.sheets import Cell, Sheet, text_of
 
-_HIGHEST = 50  # largest number of rows above the header
+_HIGHEST = 50  # largest number of rows above the header [-]
 _TALLEST = 4
-_SAMPLE = 200  # examined rows below the header
+_SAMPLE = 200  # number of examined rows below the header [-]
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class LocatedHeader:
     first: int  # index of its first row in the table
     end: int  # index of the row below it
     header: Header
-    titles: tuple[tuple[str, ...], ...]  # by column, titles of column groups first
-    measures: int  # number of measures below
+    titles: tuple[tuple[str, ...], ...]  # titles by column, titles of column groups first
+    measures: int  # number of measures below the header
 
     @property
     def score(self) -> tuple[bool, int, int, int, int]:
@@ -43,7 +43,7 @@ class LocatedHeader:
 
 
 def find_header(sheet: Sheet, mapped: Mapping[str, str]) -> LocatedHeader | None:
-    """Return the header with the required columns, or with most known columns; None for an empty table."""
+    """Return the header with the required columns, or with the most known columns; None for an empty table."""
     return max(_candidates(sheet, mapped), key=lambda candidate: candidate.score, default=None)
 
 
@@ -65,7 +65,7 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[LocatedHead
 
 
 def _belongs(above: tuple[int, list[str]], below: tuple[int, list[str]]) -> bool:
-    """Return True if an adjacent row above a header row belongs to it: text without numbers, and no title."""
+    """Return True if the row above a header row belongs to the header: it has text without numbers, and is no title."""
     is_text = not any(text[:1].isdigit() for text in above[1])
     return above[0] + 1 == below[0] and is_text and not _is_title_line(above[1], below[1])
 
@@ -85,7 +85,7 @@ def _titles(rows: Sequence[tuple[int, list[str]]], spans: Mapping[tuple[int, int
 
 
 def _ordered(titles: tuple[tuple[str, ...], ...], below: Sequence[Sequence[Cell]]) -> tuple[tuple[str, ...], ...]:
-    """Return titles with a title of an order, such as ``Maße (B x T x H)``, above all its number columns."""
+    """Return titles with a title such as ``Maße (B x T x H)`` above all number columns to which it applies."""
     ordered = list(titles)
     for first, levels in enumerate(titles):
         columns = range(first + 1, first + max(1, max((len(order_of(title)) for title in levels), default=0)))
@@ -97,7 +97,7 @@ def _ordered(titles: tuple[tuple[str, ...], ...], below: Sequence[Sequence[Cell]
 
 
 def _spread(table: list[list[str]], k: int, line: int, spans: Mapping[tuple[int, int], int]) -> list[str]:
-    """Return a row of a header with each title over all its columns: merged ones, or up to the next title."""
+    """Return a row of a header with each title repeated in its columns: merged columns, or up to the next title."""
     row = list(table[k])
     merged = {column: spans[line, column] for column in range(len(row)) if (line, column) in spans and row[column]}
     for column, count in merged.items():

@@ -62,11 +62,11 @@ class Inventory:
     ignored : tuple of str
         Columns that were not read.
     source : str
-        Name of the file, with the table of several ones, or an assumed encoding.
+        Name of the file, with the name of the table if there are several, or with an assumed encoding.
     language : str
         Language of its report: ``en``, ``de``, ``it`` and more.
     not_objects : tuple of NotAssessed
-        Rows that are no objects: titles, headings, sums, remarks, repeated headers.
+        Rows that are not objects: titles, headings, sums, remarks, repeated headers.
     stated : tuple of str or Message
         Used statements of the list outside its table: a unit, or the order of the sizes.
     header_lines : tuple of int
@@ -160,7 +160,7 @@ def parse_inventory(
     source : str
         Name of the inventory.
     find : callable, optional
-        Function from the name of a body file or photo to its path; without it such names are refused.
+        Function from the name of a body file or photo to its path. Without this function, such names are refused.
     map_columns : str or mapping of str to str, optional
         As for `read_inventory`.
     language : str, optional
@@ -236,7 +236,7 @@ class _Reader:
     location: LocatedHeader
     mapped: Mapping[str, str]
     find: Callable[[str], Path] | None
-    language: str | None  # of the report; that of the header if None
+    language: str | None  # language of the report; None for the language of the header
 
     def inventory(self) -> Inventory:
         self.header, source, titles = self.location.header, self.sheet.source, self.location.header.titles
@@ -282,7 +282,7 @@ class _Reader:
         return Inventory(tuple(objects), tuple(refused), ignored, source, language, not_objects, stated, lines)
 
     def _column(self, index: int) -> Iterator[str]:
-        """Yield the texts of a column; numbers of spreadsheets have no mark."""
+        """Yield the texts of a column; numbers of spreadsheets are omitted, because they have no decimal mark."""
         cells = (cell for _, row in self.rows for cell in row[index : index + 1])
         return (
             cell if isinstance(cell, str) else cell.unity if isinstance(cell, Shown) else str(int(cell))
@@ -311,7 +311,7 @@ class _Reader:
         return tuple(messages)
 
     def _check_units(self) -> None:
-        """Refuse lengths without a unit; ignore weights and pedestals without one, which do not affect the result."""
+        """Raise an error for lengths without a unit; ignore weights and pedestals without a unit."""
         if "units" in self.header.fields:
             return
         columns = list(self.header.columns)
@@ -385,7 +385,7 @@ class _Reader:
     def _read_size(self, values: RowValues, column: InventoryColumn, cell: Cell, factor: float | None) -> None:
         try:
             sizes = parts(column.title, cell, column.fields, factor, self.mark, self.header.language)
-        except InvalidValueError as error:  # raised only if no other column contains the size
+        except InvalidValueError as error:  # the error is raised only if no other column contains the size
             values.unknown |= dict.fromkeys(SIZES, error.sentence)
             values.remarks.append(ignored_remark(column.title, error.sentence))
             return

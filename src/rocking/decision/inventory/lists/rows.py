@@ -1,4 +1,4 @@
-"""Rows of a list: reasons why rows are no objects, and the sizes, shape and remarks of objects."""
+"""Rows of a list: reasons why rows are not objects, and the sizes, shape and remarks of objects."""
 
 import itertools
 import math
@@ -36,7 +36,7 @@ FIELD_NAMES = {
 
 
 class RowKinds:
-    """Classification of rows below a header that are no objects: headings, sums, remarks, repeated headers."""
+    """Classification of rows below a header that are not objects: headings, sums, remarks, repeated headers."""
 
     def __init__(self, sheet: Sheet, location: LocatedHeader, rows: Sequence[Row]) -> None:
         self.sheet, self.header = sheet, location.header
@@ -51,7 +51,7 @@ class RowKinds:
         self.after_gap = {line for previous, line in itertools.pairwise(lines) if line > previous + 1}
 
     def reason(self, line: int, cells: Sequence[Cell]) -> Message | None:
-        """Return the reason why a row is no object; None for a possible object."""
+        """Return the reason why a row is not an object; None for a possible object."""
         texts = _texts(cells)
         first, measured = next(iter(texts.values())), self._is_measured(cells)
         if self._is_title_row(cells):
@@ -72,7 +72,7 @@ class RowKinds:
         return self._reason_unmeasured(line, cells, texts)
 
     def _reason_unmeasured(self, line: int, cells: Sequence[Cell], texts: dict[int, str]) -> Message | None:
-        """Return the reason why a row without sizes and regular number is no object; None if it may be an object."""
+        """Return the reason why a row without sizes and regular number is not an object; None for a possible object."""
         first, own = next(iter(texts.values())), text_of(cells[next(iter(texts))])
         stems, alone = {self.header.stem(k) for k in texts}, len(texts) == 1
         if _begins_with(first, _FOOTERS) or own.startswith("*") or "___" in text_of_row(cells):
@@ -94,7 +94,7 @@ class RowKinds:
     def _is_title_row(self, cells: Sequence[Cell]) -> bool:
         texts = _texts(cells)
         if any(text[:1].isdigit() for text in texts.values()) and self._is_measured(cells):
-            return False  # most rows
+            return False  # fast exit for most rows
         repeated = sum(self._is_title(k, text) for k, text in texts.items())
         return repeated >= 0.7 * len(texts) or plain(text_of_row(cells)) in self.above
 
@@ -118,7 +118,7 @@ def _begins_with(text: str, beginnings: Collection[str]) -> bool:
 
 
 def _number_pattern(text: str) -> str:
-    """Return the pattern of an inventory number: 9 for its digits, A or a for its letters.
+    """Return the pattern of an inventory number, with 9 for digits and A or a for letters.
 
     >>> _number_pattern("A-17"), _number_pattern("1932.4 b")
     ('A-9', '9.9 a')
@@ -204,7 +204,7 @@ class RowValues:
                 self.approximate[other] = self.approximate[own]
         elif len(sides) < 2:
             return
-        if shape != "round" and min(fields["width"], fields["depth"]) > 0.0:  # other sizes are refused later
+        if shape != "round" and min(fields["width"], fields["depth"]) > 0.0:  # other values are refused later
             self._inscribe(shape, word)
         fields["shape"] = "round"
 
@@ -275,7 +275,7 @@ def body_of(name: str, units: Any, find: Callable[[str], Path] | None) -> dict[s
 
 
 def photo_of(name: str, find: Callable[[str], Path] | None) -> Path | None:
-    """Return the path of a picture; None if it is no picture, or not in the folder of the list or below."""
+    """Return the path of a picture; None for another file, or outside the folder of the list and its subfolders."""
     parts_of = PureWindowsPath(name).parts
     if find is None or PureWindowsPath(name).anchor or name.startswith("/") or ".." in parts_of:
         return None

@@ -16,7 +16,7 @@ from xml.parsers import expat
 from rocking.errors import InvalidValueError, RockingError, extra
 
 MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
-"""Limits of rows and of bytes, packed or unpacked; larger files are no inventories."""
+"""Largest numbers of rows and of bytes, packed or unpacked, of an inventory."""
 
 MOST_COLUMNS, _MOST_LINES, _MOST_SHEETS, _MOST_MERGED = 200, 1 << 20, 50, 1000
 
@@ -40,7 +40,7 @@ class Sheet:
 
     source: str  # name of the file, with table or encoding
     rows: list[Row]
-    delimiter: str = ""  # of text
+    delimiter: str = ""  # delimiter of a text file
     spans: Mapping[tuple[int, int], int] = field(default_factory=dict)  # number of merged columns by line and column
 
 
@@ -68,7 +68,7 @@ def sheets_in(content: bytes, source: str) -> Iterator[Sheet] | None:
                 raise InvalidValueError("unsupported file", hint="Use .xlsx, .ods or CSV UTF-8.").at(source)
     except (RockingError, ModuleNotFoundError):
         raise
-    except Exception as error:  # damaged files raise any error of their readers
+    except Exception as error:  # for a damaged file, the reader raises any error
         raise InvalidValueError(
             "a damaged workbook ({error})", error=type(error).__name__,
             hint="Open it in a spreadsheet and save it again.",
@@ -99,7 +99,7 @@ def _of_excel(archive: zipfile.ZipFile, content: bytes) -> Iterator[tuple[str, I
 def _lines(sheet: Any) -> Iterator[Row]:
     blank = None
     for line, cells in enumerate(sheet.iter_rows(max_row=_MOST_LINES, max_col=MOST_COLUMNS), start=1):
-        if cells is blank:  # up to a million equal rows
+        if cells is blank:  # a file can repeat a row a million times
             continue
         if all(cell.value is None for cell in cells):
             blank = cells
@@ -155,7 +155,7 @@ def _of_open_document(content: bytes) -> list[tuple[str, Iterable[Row], _Merged]
 
 
 class _OpenDocument:
-    """Parser of ``content.xml``; its tables may repeat cells and rows a million times."""
+    """Parser of ``content.xml``, whose tables can repeat cells and rows a million times."""
 
     def __init__(self) -> None:
         self.tables: list[tuple[str, list[Row], _Merged]] = []
@@ -219,7 +219,7 @@ def _held(rows: Iterable[Row]) -> list[Row]:
 
 
 def _filled(rows: Iterable[Row], merged: _Merged, source: str) -> list[Row]:
-    """Return rows of equal width; each row of vertically merged cells contains their value."""
+    """Return rows of equal width; the value of vertically merged cells is repeated in each of their rows."""
     rows = list(rows)
     _check_number(rows, source)
     width = max((len(cells) for _, cells in rows), default=0)
@@ -247,11 +247,11 @@ def _check_number(rows: Sized, source: str) -> None:
 
 
 ENCODINGS = ("cp1252", "cp1253", "cp1254", "gb18030", "mac_roman")
-"""Encodings of older spreadsheets; the header decides between them."""
+"""Encodings of older spreadsheets. The encoding with the best header is used."""
 
 
 def texts_in(content: bytes, source: str, encoding: str | None) -> Iterator[tuple[str, str]]:
-    """Yield the possible texts of a file with their encodings; only one if the encoding is known."""
+    """Yield the possible texts of a file with their encodings, or one text if the encoding is known."""
     marks = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
     stated = encoding or next((name for mark, name in marks.items() if content.startswith(mark)), None)
     wide = ("utf-16-le", "utf-16-be") if b"\0" in content[:2000] else ()
@@ -289,7 +289,7 @@ def tables_of(text: str) -> Iterator[tuple[str, list[list[str]], str]]:
 
 
 def rows_of(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
-    """Return the rows of CSV from the first non-empty one, with their first lines."""
+    """Return the rows of CSV from the first row that is not empty, with their first lines."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[tuple[int, list[str]]] = []
     line = 1
