@@ -96,7 +96,7 @@ def league_figure(rows: Sequence[LeagueRow], count: int) -> "Figure":
     for marker, band in zip(("v", "o", "^"), rows[0].by_band, strict=True):
         right.plot([row.by_band[band] for row in rows], rows_y, marker=marker, label=band, **HOLLOW)
     right.set_xscale("log")
-    right.set_xlabel("RMSE of r by slenderness [-]")
+    right.set_xlabel("RMSE of r,\nby slenderness [-]")
     right.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, columnspacing=0.6, handletextpad=0.1)
     for axes in (left, right):
         axes.grid(axis="y", color=PALE, linewidth=0.5)
