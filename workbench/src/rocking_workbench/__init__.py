@@ -1,1 +1,1 @@
-"""The local web application: a JSON API over the package, and pages that call it."""
+"""The local web application: a JSON API of the package, and pages that use this API."""

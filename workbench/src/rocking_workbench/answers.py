@@ -1,7 +1,7 @@
 """JSON answers without NaN or loss of digits, downloads, and their schema.
 
-The shapes describe; nothing is checked against them when a request is answered, which would cost more than the answer
-itself where the series are long. The tests check every one of them.
+The shapes only describe answers. No answer is checked against its shape during a request, because for long series the
+check would take more time than the answer. The tests check every shape.
 """
 
 import inspect
@@ -35,7 +35,7 @@ class MessageData(BaseModel):
 
 
 Point = tuple[float, float]  # x and y [m]
-Foot = Literal["left", "right"]  # foot of support or of impact
+Foot = Literal["left", "right"]  # pivot foot, or foot of an impact
 
 Kind = Literal[
     "invalid-value", "record", "body-file", "geometry", "unknown-model", "missing-extra", "not-found", "conflict",
@@ -59,7 +59,7 @@ MEDIA_TYPES = {
     "xml": "application/xml",
     "zip": "application/zip",
 }
-"""Media types by file extension; browsers save these files and never show them as a page."""
+"""Media types by file extension. Browsers save these files, and never show them as a page."""
 
 FILE_SENT: dict[str, Any] = {
     "requestBody": {
@@ -87,7 +87,7 @@ _ERRORS = {
 
 
 class JsonAnswer(JSONResponse):
-    """JSON of plain values and arrays, quick for long series; a NaN or an infinity is an error here."""
+    """JSON of plain values and arrays, fast for long series. NaN and infinity are errors."""
 
     def render(self, content: Any) -> bytes:
         if isinstance(content, answers.Answer):
@@ -95,7 +95,7 @@ class JsonAnswer(JSONResponse):
         elif isinstance(content, dict) and (messages := messages_of(content)):
             content = {**content, "messages": messages}
         data = to_json(content, inf_nan_mode="constants", fallback=_plain)
-        if b"NaN" in data or b"Infinity" in data:  # in a name perhaps; if it is a number, this refuses it
+        if b"NaN" in data or b"Infinity" in data:  # allowed in a name; a number raises an error
             json.dumps(content, allow_nan=False, default=_plain)
         return data
 
@@ -107,12 +107,12 @@ def _plain(value: Any) -> Any:
 
 
 def error_answer(status: int, kind: str, message: str) -> JsonAnswer:
-    """Return an error that has a sentence only."""
+    """Return an error that contains only a sentence."""
     return JsonAnswer({"error": {"kind": kind, "message": message}}, status_code=status)
 
 
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
-    """Return an error of this package as JSON, with Retry-After if a retry is useful."""
+    """Return an error of this package as JSON, with the header Retry-After if a retry is useful."""
     own = error if isinstance(error, Refused) else None
     kind = kind_of_status(own.status) if own else kind_of(error)
     document = {"kind": kind, **error.data()} | ({"needs": list(own.needs)} if own and own.needs else {})
@@ -130,12 +130,12 @@ def attachment(data: bytes, name: str) -> Response:
 
 
 def attachment_headers(name: str) -> dict[str, str]:
-    """Return headers that make browsers save a response under a safe file name."""
+    """Return headers with which browsers save a response under a safe file name."""
     return {"Content-Disposition": f'attachment; filename="{safe_name(name)}"', "X-Content-Type-Options": "nosniff"}
 
 
 class AnswerShape(BaseModel):
-    """A table of an answer, without further keys."""
+    """A table of an answer; unknown keys are errors."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -143,10 +143,10 @@ class AnswerShape(BaseModel):
 def shape(name: str, meaning: str, /, *more: Any, **fields: Any) -> Any:
     """Return a table of an answer.
 
-    more: a base table, and the names of quantities, with [] for lists of them.
-    fields: by key the type, (type, description), or (type, description, quantity). The quantity has the unit of the
-    key, "" for no unit. The default description of a key is that in `rocking.quantities`. A `Field` in place of the
-    description adds, for instance, a default.
+    `more` contains a base table, and names of quantities, with [] for lists of values. `fields` contains by key the
+    type, (type, description), or (type, description, quantity). The quantity gives the unit of the key; "" means no
+    unit. The default description of a key is that in `rocking.quantities`. A `Field` in place of the description can
+    add a default.
     """
     base = next((item for item in more if not isinstance(item, str)), AnswerShape)
     fields = {key: kind for names in more if isinstance(names, str) for key, kind in _of_names(names)} | fields
@@ -167,7 +167,7 @@ def _of_names(names: str) -> Iterator[tuple[str, Any]]:
 
 def shape_of(kind: type, name: str, *, without: tuple[str, ...] = (), **more: Any) -> Any:
     """Return a dataclass as a table of an answer; `Annotated[str, "description"]` contains the descriptions."""
-    # more: keys as in `shape`, in place of those of the dataclass
+    # `more` contains keys as in `shape`, which replace keys of the dataclass
     hints = {key: hint for key, hint in get_type_hints(kind, include_extras=True).items() if key not in without}
     types = {key: get_args(hint) if hasattr(hint, "__metadata__") else hint for key, hint in hints.items()}
     return shape(name, inspect.getdoc(kind) or "", **{**types, **more})
@@ -198,7 +198,7 @@ def answered(kind: Any, description: str, status: int = 200) -> dict[int | str, 
 
 
 def answered_with_file(description: str, *endings: str) -> dict[int | str, dict[str, Any]]:
-    """Return the declaration of a file that an endpoint returns; endings: extensions of its names."""
+    """Return the declaration of a file that an endpoint returns; `endings` are the extensions of its names."""
     name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
     file = {"schema": {"type": "string", "format": "binary"}}
     content = {MEDIA_TYPES[ending].partition(";")[0]: file for ending in endings}
@@ -260,7 +260,7 @@ ERRORS: dict[int | str, dict[str, Any]] = {
 
 
 def describe_api(app: FastAPI) -> None:
-    """Add the key of each call and the form of errors to the schema of the API."""
+    """Add the authentication key of calls and the form of errors to the schema of the API."""
     plain = app.openapi
     key = {"type": "http", "scheme": "bearer"}
     key["description"] = "The key from the file `api-key` in the data folder. Each start writes a new key."

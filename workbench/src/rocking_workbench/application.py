@@ -1,4 +1,4 @@
-"""The application: gate, endpoints, pages, put together."""
+"""The application: gate, endpoints and pages."""
 
 import mimetypes
 import os
@@ -48,7 +48,7 @@ _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "f
 _READING = threading.Lock()
 _WORDS = {404: "not found", 405: "the method is not allowed here"}
 STATIC = Path(__file__).parent / "static"
-_MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged, or built
+_MANUALS = (Path(__file__).parent / "manual", Path(__file__).parents[3] / "build" / "manual")  # packaged or built
 _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
 
@@ -88,7 +88,7 @@ def _refused(error: HTTPException) -> JsonAnswer:
 
 
 def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exception], Awaitable[JsonAnswer]]:
-    # async, without a worker thread: at shutdown the server does not wait for threads
+    # async without a worker thread, because the server does not wait for threads at shutdown
     async def handle(request: Request, error: Exception) -> JsonAnswer:
         return answer(error)
 
@@ -101,7 +101,7 @@ def _read_own_models() -> None:
 
 
 async def _own_models() -> None:
-    """Load the current restitution models of the user; invalid models are refused."""
+    """Load the current restitution models of the user; raise an error for invalid models."""
     if os.environ.get("ROCKING_MODELS"):
         await run_in_threadpool(_read_own_models)
 
@@ -134,7 +134,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
     )
     limits = settings.limits
     store = RecordStore(settings.folder, limits)
-    files = RecordStore(settings.folder, limits, "files", forgets=True)  # a question keeps those that it needs
+    files = RecordStore(settings.folder, limits, "files", forgets=True)  # each run keeps its files
     runner = Runner()
     app.state.rocking = AppState(
         settings=settings,
@@ -178,7 +178,7 @@ def _add_pages(app: FastAPI) -> None:
         ("text/css", ".css"),
         ("image/svg+xml", ".svg"),
     ):
-        mimetypes.add_type(kind, suffix)  # some systems register text/plain, which browsers reject
+        mimetypes.add_type(kind, suffix)  # replaces text/plain of some systems, which browsers reject
 
     @app.api_route("/api-docs", methods=["GET", "HEAD"], include_in_schema=False)
     def api_docs() -> FileResponse:

@@ -73,7 +73,7 @@ def _open(link: str) -> None:
 
 
 def _join(settings: "ServerSettings", *, quiet: bool) -> bool:
-    """Open the running server of the data folder; return False without a response."""
+    """Open the page of a running server of the data folder; return False if no server responds."""
     import json
     from urllib.request import Request, urlopen
 

@@ -33,7 +33,7 @@ _BY_STATUS = {
 
 
 class Refused(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
-    """A refusal with an HTTP status; seconds: waiting time before a retry [s]."""
+    """A refusal with an HTTP status; `seconds` is the waiting time before a retry [s]."""
 
     status = 422
 
@@ -97,7 +97,7 @@ def room_on_disk() -> Iterator[None]:
     """Raise `NoRoom` for errors of the disk."""
     try:
         yield
-    except OSError as error:  # its own words name files of the server
+    except OSError as error:  # the text of this error names files of the server
         raise NoRoom(
             "the server cannot store the file: {reason}", reason=error.strerror or "not writable",
             hint="free disk space, then send the file again",
@@ -105,11 +105,11 @@ def room_on_disk() -> Iterator[None]:
 
 
 def check_room(folder: Path, needed: int, limit: int, items: str) -> None:
-    """Refuse results larger than the free space of the disk or of their quota [bytes]."""
+    """Refuse results larger than the free space on the disk or in their quota [bytes]."""
     used = 0
     for folder_path, _, names in os.walk(folder):
         for name in names:
-            with suppress(OSError):  # others are deleted meanwhile, and are not missed
+            with suppress(OSError):  # files may be deleted meanwhile
                 used += Path(folder_path, name).lstat().st_size
     room = min(shutil.disk_usage(folder).free, limit - used)
     if needed > room:

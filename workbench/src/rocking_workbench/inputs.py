@@ -1,4 +1,4 @@
-"""Inputs of a user: body, motion, restitution, response, settings; their limits and conversions."""
+"""Inputs of a user (body, motion, restitution, response, settings) with limits and conversions."""
 
 import re
 import sys
@@ -58,8 +58,8 @@ Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of a
 Points = Annotated[int, Field(ge=10, le=2000)]
 """Number of pixels of a curve; each pixel keeps the lowest and the highest value."""
 
-LONGEST = 4 << 20  # bytes of a TOML file that is read
-_LIGHTEST = 1e-200  # products of smaller masses and moments leave the range of numbers that have all their digits
+LONGEST = 4 << 20  # largest TOML file [bytes]
+_LIGHTEST = 1e-200  # smallest mass or moment; products of smaller values are subnormal numbers
 _DEEPEST = 32
 _LARGEST = 2**63
 
@@ -102,7 +102,7 @@ class BodyInput(BlockInput, BodyFile, KnownTable):  # type: ignore[misc]  # made
 
 
 def _refuse_subnormal(value: Any, key: str = "") -> None:
-    """Refuse subnormal numbers, which have lost digits."""
+    """Refuse subnormal numbers, which have fewer digits."""
     match value:
         case float() if 0.0 < abs(value) < sys.float_info.min:
             smallest = f"{sys.float_info.min:.3g}"
@@ -142,7 +142,7 @@ def check_file(content: bytes, name: str) -> None:
         way_out = "save the outline alone in a separate drawing"
         refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
         refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
-    # a drawing may contain other entities; in text a comma or a bracket precedes each point
+    # a drawing can contain other entities; in a text, a comma or a bracket precedes each point
     points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
     refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
 
@@ -150,7 +150,7 @@ def check_file(content: bytes, name: str) -> None:
 def check_record(content: bytes) -> None:
     """Refuse a record file with too many numbers, before it is read."""
     if _MINISEED.match(content):
-        # samples according to the headers; no sample beyond the decoded ones
+        # number of samples in the headers; no further samples are decoded
         check_samples(
             sum(_announced(content[head.start() : head.start() + 48]) for head in _MINISEED.finditer(content))
         )
@@ -183,7 +183,7 @@ def _polygons(table: BodyFile) -> tuple[int, int, int]:
     regions = holes = vertices = 0
     for region in table.section.region if table.section else ():
         text = region.wkt or ""
-        # each polygon of a text begins with two brackets; commas separate its points
+        # in a text, each polygon begins with two brackets, and commas separate its points
         polygons = 1 if region.outline is not None else max(1, text.count("(("))
         regions += polygons
         holes += len(region.holes or ()) + max(0, text.count(",(") + text.count(", (") - polygons + 1)
@@ -222,7 +222,7 @@ MOTION_KEYS = frozenset({
     "pulse", "synthetic", "count", "member", "format", "units", "time_step", "component", "vertical", "scale", "seed",
     "pga", "pgv", "skip",
 })  # fmt: skip
-"""Keys of a motion that a request may use; none names a file of the server. Records are hashes."""
+"""Keys of a motion that a request may use. No key names a file of the server; records are hashes."""
 
 
 class MotionInput(OneMotionTable):
@@ -249,7 +249,7 @@ class Inputs(ResponseTables):
 
     model_config = _shown(_INPUTS)
 
-    # repeated, since the schema omits defaults of factories
+    # repeated, because the schema omits defaults of factories
     restitution: RestitutionTable = RestitutionTable(models=_MODELS)
     response: ResponseTable = ResponseTable()
     settings: SettingsTable = SettingsTable()
@@ -260,7 +260,7 @@ class Inputs(ResponseTables):
     def _few_restitutions(self) -> "Inputs":
         chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
         refuse_more(chosen, MOST_RESTITUTIONS, "up to {most} restitutions can be compared")
-        if self.response.friction:  # a friction of 0 is not in the table
+        if self.response.friction:  # a friction of 0 is omitted from the table
             raise InvalidValueError(
                 "response.friction: this analysis is without sliding. Use response.assumed_friction, or `rocking "
                 "simulate` for sliding"
@@ -316,7 +316,7 @@ class MotionRequest(JobTable):
 
 
 def parsed_toml(text: str) -> dict[str, Any]:
-    """Return the tables of a TOML text; integers fit into 64 bits."""
+    """Return the tables of a TOML text; integers above 64 bits are errors."""
     if len(text) > LONGEST:
         raise Refused(
             "a TOML file may have up to {limit} MiB, got {size:.1f}", limit=LONGEST >> 20, size=len(text) / 2**20
@@ -331,7 +331,7 @@ def parsed_toml(text: str) -> dict[str, Any]:
         if depth >= _DEEPEST:
             raise Refused("the TOML is nested deeper than {limit}", limit=_DEEPEST)
         for value in level:
-            if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that may be refused itself
+            if type(value) is int and not -_LARGEST <= value < _LARGEST:  # too long for a message
                 raise Refused("an integer in the TOML has {count} bits, 64 are allowed", count=value.bit_length())
             texts = [item for item in (value if isinstance(value, dict) else [value]) if isinstance(item, str)]
             if any("\0" in text for text in texts):
@@ -358,7 +358,7 @@ _SYNTHETIC: Remembered[Motion] = Remembered(16)
 
 
 def problem_from(inputs: Inputs, records: "RecordStore") -> ResponseProblem:
-    """Return the response problem of inputs, with its files read."""
+    """Return the response problem of inputs, with the content of its files."""
     motion = None if inputs.motion is None else motion_from(inputs.motion, records)
     return problem_of(inputs, body_from(inputs.body), motion)
 
@@ -369,7 +369,7 @@ def body_from(table: BodyInput) -> Body:
 
 
 def motion_from(table: MotionInput, records: "RecordStore") -> Motion:
-    """Return a motion, not scaled; recent motions are cached."""
+    """Return an unscaled motion; recent motions are cached."""
     if table.record is not None:
         how = (table.format, table.units, table.time_step, table.component, table.vertical)
         return records.motion(table.record, *how, skip=table.skip or 0)

@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking.errors import InvalidValueError
 
-LONGEST_CELL = 2000  # characters of a text that are kept in one cell
+LONGEST_CELL = 2000  # largest length of a text in one cell [characters]
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _STRANGE = re.compile(r"(?:[^A-Za-z0-9._-]|(?<![A-Za-z0-9])\.|\.(?![A-Za-z0-9]))+")
 _OURS = ("response.toml", "readme.txt")
@@ -34,7 +34,7 @@ def plain_line(text: str, longest: int = 160) -> str:
 
 
 def shown(text: str) -> str:
-    r"""Return words of a user as a title: one line of at most 120 characters, nothing hidden in it, never empty.
+    r"""Return a text of a user as a title: one line of 1 to 120 visible characters.
 
     >>> shown("a\u202eb\n  c")
     'ab c'
@@ -47,7 +47,7 @@ def shown(text: str) -> str:
 def safe_name(name: str, fallback: str = "rocking") -> str:
     """Return a file name that is harmless on every system: ASCII letters, digits, dot, dash and underscore.
 
-    It has at most 80 characters, and is never hidden, reserved or empty.
+    The name has at most 80 characters, and is never hidden, reserved or empty.
 
     >>> safe_name("../../Vase Nº 3 <b>.csv")
     'Vase-No-3-b.csv'
@@ -64,7 +64,7 @@ def safe_name(name: str, fallback: str = "rocking") -> str:
 
 
 def record_file_name(name: str, otherwise: str = "record.txt") -> str:
-    r"""Return a safe name of a record file: no folders, no pattern, no reserved name.
+    r"""Return a safe name of a record file, without folders, patterns and reserved names.
 
     >>> record_file_name(r"C:\records\Kobe 1995.AT2"), record_file_name("../../etc/passwd"), record_file_name("CON.txt")
     ('Kobe_1995.AT2', 'passwd', '_CON.txt')

@@ -1,4 +1,4 @@
-"""Uploaded records: folders by hash, notes with names, and cached motions."""
+"""Uploaded records in folders by hash, with notes of their names, and cached motions."""
 
 import hashlib
 import json
@@ -20,8 +20,8 @@ from rocking_workbench.settings import Limits
 from rocking_workbench.work import Remembered
 
 _DIGITS = frozenset("0123456789abcdef")
-_HELD = 128 * 1024 * 1024  # motions that are kept in memory [bytes]
-MOST_RECORDS = 5_000  # files that are kept at once
+_HELD = 128 * 1024 * 1024  # largest memory of cached motions [bytes]
+MOST_RECORDS = 5_000  # largest number of stored files
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,11 +68,11 @@ class RecordStore:
 
     @property
     def largest(self) -> int:
-        """Size of the largest file that is kept [bytes]."""
+        """Largest allowed size of a file [bytes]."""
         return self._limits.upload_bytes
 
     def add(self, content: bytes, name: str) -> StoredRecord:
-        """Store a file; the same bytes under another name are renamed."""
+        """Store a file. A stored file with equal bytes and another name is renamed."""
         self.check_upload(content)
         sha = hashlib.sha256(content).hexdigest()
         record = StoredRecord(sha, safe_name(name, "record"), len(content), datetime.now(UTC).isoformat(" ", "seconds"))
@@ -102,7 +102,7 @@ class RecordStore:
     def get(self, sha: str) -> StoredRecord:
         record = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
         path = self._place(record) if record else None
-        # neither the file nor its folder is a link
+        # a link in place of the file or of its folder is refused
         if record is None or path is None or path.is_symlink() or path.parent.is_symlink() or not path.is_file():
             raise NotFound("record {record}... is not stored here; upload the file again", record=str(sha)[:12])
         return record
@@ -112,7 +112,7 @@ class RecordStore:
         return self._place(self.get(sha))
 
     def content(self, sha: str) -> bytes:
-        """Return the bytes of a file, checked by hash."""
+        """Return the bytes of a file after a check of its hash."""
         path = self.path(sha)
         try:
             content = path.read_bytes()
@@ -147,7 +147,7 @@ class RecordStore:
 
         def read() -> GroundMotion:
             motion = read_motion(path, *how[:-1], skip=skip)
-            if sha not in motion.provenance[0]:  # read_motion notes the hash of the record
+            if sha not in motion.provenance[0]:  # the provenance of read_motion contains the hash of the record
                 raise RecordError("{file}: changed since the upload; upload the file again", file=path.name)
             return motion
 
@@ -157,7 +157,7 @@ class RecordStore:
         return self.folder / record.record / record.file_name
 
     def _keep(self, record: StoredRecord, content: bytes) -> None:
-        """Write a file and its note with private access; a failure leaves no files."""
+        """Write a file and its note with private access. A failure leaves no files."""
         path = self._place(record)
         fresh = not path.parent.exists()
         note = self.folder / f"{record.record}.json"
@@ -175,7 +175,7 @@ class RecordStore:
                 old.unlink()
 
     def _sweep(self) -> None:
-        """Remove unfinished files of an earlier server."""
+        """Remove incomplete files of an earlier server."""
         for folder in (self.folder, *(path for path in self.folder.iterdir() if is_hash(path.name))):
             if not folder.is_symlink():
                 remove_unfinished(folder)

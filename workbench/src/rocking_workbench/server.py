@@ -28,7 +28,7 @@ from rocking_workbench.settings import DEFAULT_PORT, LOOPBACK, ServerSettings
 from rocking_workbench.work import ComputationQueue
 
 _TRIED = 50
-# so that a restart finds its port free; on Windows the same option would let a stranger take it
+# A restart can use the port again. On Windows, SO_REUSEADDR would also allow other programs to use the port.
 _OPTION = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
 _EVERYWHERE = {"0.0.0.0", "::", ""}
 Step = Callable[[], Any]
@@ -38,7 +38,7 @@ _BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
 _TURN = 0.0005
-"""Switch interval of threads [s], a tenth of the default of Python."""
+"""Switch interval of threads [s]: a tenth of the default of Python."""
 KEY_FILE = "api-key"
 _NOTE = "server.json"
 
@@ -189,7 +189,7 @@ class DataFolder:
 
 def write_private(path: Path, text: str) -> Path:
     """Write a private file; an existing file is replaced."""
-    path.unlink(missing_ok=True)  # never through a link that somebody left there
+    path.unlink(missing_ok=True)  # do not write through a link
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(handle, "w", encoding="utf-8") as file:
         file.write(text)
@@ -201,8 +201,8 @@ class Started:
     """Address and keys of a started server."""
 
     url: str  # address of the page
-    token: str  # signs one browser in, once
-    port: int  # where it listens
+    token: str  # token for one sign-in
+    port: int  # port of the server
     key_file: Path  # file with the key for scripts
 
     @property
@@ -219,7 +219,7 @@ def serve(settings: ServerSettings, started: Callable[[Started], None], *, port:
         with contextlib.closing(listen(settings.host, wanted_port, search=port is None)) as door:
             left = _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
     if left.busy and threading.current_thread() is threading.main_thread():
-        # end without the threads that still compute: Python itself would wait for them, however long that takes
+        # end at once, because Python would wait for all threads that still compute
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(0)
@@ -234,14 +234,14 @@ def _run(
 
     def tell() -> None:
         started(Started(settings.origin, sessions.new_link(math.inf), settings.port, key_file))
-        # the schema is created after the first page is loaded, because its creation delays all other requests
+        # the schema is created after the first page is loaded, because this work delays all other requests
         timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, (app.openapi,))
         timer.daemon = True
         timer.start()
 
     sys.setswitchinterval(_TURN)
     server = _Server(_config(app), tell)
-    with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # end on request
+    with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # a signal ends the server
         server.run(sockets=[door])
     queue: ComputationQueue = app.state.rocking.heavy
     return queue
@@ -249,7 +249,7 @@ def _run(
 
 @contextlib.contextmanager
 def _ended_like_ctrl_c() -> Iterator[None]:
-    """Make SIGTERM end the server as Ctrl-C does."""
+    """Handle SIGTERM like Ctrl-C during the run of the server."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -279,7 +279,7 @@ def _config(app: Any) -> uvicorn.Config:
 
 
 class _Server(uvicorn.Server):
-    """A server that calls back when the first page can be opened."""
+    """A server that calls a function as soon as the first page can be opened."""
 
     def __init__(self, config: uvicorn.Config, tell: Callable[[], None]) -> None:
         super().__init__(config)
@@ -306,13 +306,13 @@ class _PatientProtocol(H11Protocol):
 
     def handle_events(self) -> None:
         super().handle_events()
-        if self.conn.their_state is not h11.IDLE:  # a head is whole, or the connection is a websocket's now
+        if self.conn.their_state is not h11.IDLE:  # the head is complete, or the connection is a websocket
             self._have_head()
         elif self.conn.trailing_data[0]:
             self._wait_for_head()
 
     def _wait_for_head(self) -> None:
-        if self._patience is None:  # further letters of the same head buy no time
+        if self._patience is None:  # further bytes of the same head do not extend the time
             self._patience = self.loop.call_later(_HEAD_SECONDS, self._lose_patience)
 
     def _have_head(self) -> None:

@@ -25,12 +25,12 @@ DEFAULT_PORT = 8765
 class Limits:
     """Limits of one server."""
 
-    upload_bytes: int = 32 * MEBIBYTE  # largest file that is taken [bytes]
+    upload_bytes: int = 32 * MEBIBYTE  # largest accepted file [bytes]
     project_bytes: int = 128 * MEBIBYTE  # largest file of a project [bytes]
     json_bytes: int = 2 * MEBIBYTE  # largest JSON document [bytes]
     json_depth: int = 32  # deepest nesting of a JSON document
-    bytes_in_flight: int = 256 * MEBIBYTE  # all request bodies that are held at once [bytes]
-    body_seconds: float = 30.0  # longest time in which a request body may arrive [s]
+    bytes_in_flight: int = 256 * MEBIBYTE  # largest total size of the request bodies in memory [bytes]
+    body_seconds: float = 30.0  # time limit for the transfer of a request body [s]
     target_bytes: int = 4096  # longest path and query of a request [bytes]
     records_bytes: int = 1024 * MEBIBYTE  # disk for uploaded records [bytes]
     studies_bytes: int = 8192 * MEBIBYTE  # disk for studies [bytes]
@@ -40,7 +40,7 @@ class Limits:
     studies_waiting: int = 8  # studies that may wait in the queue
     heavy_at_once: int = 2  # threads for long computations
     heavy_waiting: int = 32  # long computations that may wait in the queue
-    wrong_tokens: int = 10  # wrong tokens a minute before the door stays shut for a while
+    wrong_tokens: int = 10  # number of wrong tokens per minute before sign-in is blocked
     session_seconds: float = 12 * 3600.0  # idle time after which a browser must sign in again [s]
 
 
@@ -52,7 +52,7 @@ class ServerSettings:
     port: int = DEFAULT_PORT  # port to listen on
     folder: Path = field(default_factory=data_folder)  # data folder: records, studies, the key for scripts
     allow_remote: bool = False  # True to allow addresses that are accessible from other machines
-    workers: int | None = None  # processes per study; default: of the campaign
+    workers: int | None = None  # processes per study; None for the default of campaigns
     limits: Limits = Limits()  # size limits
 
     @property
@@ -71,8 +71,8 @@ class AppState:
     files: "RecordStore"  # other uploaded files: scans, sounds, lists
     projects: "ProjectStore"  # saved projects
     questions: "QuestionDesk"  # long computations
-    studies: "StudyManager"  # campaigns that run, wait or are done
-    sessions: "Sessions"  # who is signed in
+    studies: "StudyManager"  # running, queued and finished campaigns
+    sessions: "Sessions"  # sessions of browsers
     heavy: ComputationQueue  # threads for long computations
 
 

@@ -1,4 +1,4 @@
-"""Long computations: threads with a short queue, cached results."""
+"""Long computations in threads with a short queue, and cached results."""
 
 import asyncio
 import threading
@@ -14,7 +14,7 @@ from rocking_workbench.errors import Busy, Refused
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_SMALL = 200  # vertices up to which a body takes a few milliseconds
+_SMALL = 200  # largest number of vertices of a body with a computing time of a few milliseconds
 
 
 class ComputationQueue:
@@ -47,7 +47,7 @@ class ComputationQueue:
             return self._inside > 0
 
     def close(self) -> None:
-        """Start no further computation; running computations end by themselves."""
+        """Start no further computations; running computations continue to their end."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _leave(self, _: Any = None) -> None:
@@ -60,7 +60,7 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
     queue: ComputationQueue = request.app.state.rocking.heavy
     try:
         return await asyncio.wrap_future(queue.submit(function, *args, **kwargs))
-    except asyncio.CancelledError as error:  # only a server that ends cancels a request
+    except asyncio.CancelledError as error:  # a request is cancelled only at the end of the server
         message = "the server is shutting down; restart it, then compute again"
         raise Refused(message, status=503) from error
 
@@ -68,7 +68,7 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
 async def sized(
     request: HTTPConnection, vertices: int, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
 ) -> T:
-    """Compute in a thread; large bodies use the queue of long computations."""
+    """Compute in a thread, for large bodies in the queue of long computations."""
     if vertices <= _SMALL:
         return await run_in_threadpool(function, *args, **kwargs)
     return await heavy(request, function, *args, **kwargs)
@@ -83,7 +83,7 @@ class Remembered(Generic[T]):
         self._lock = threading.Lock()
 
     def get(self, key: Hashable, compute: Callable[[], T]) -> T:
-        """Return the result of a key, computed once; failures are not kept."""
+        """Return the result of a key, which is computed once; failures are not cached."""
         with self._lock:
             held = self._held.get(key)
             future: Future[T] = Future() if held is None else held
@@ -110,7 +110,7 @@ class Remembered(Generic[T]):
         return future.result()
 
     def known(self, key: Hashable) -> T | None:
-        """Return the cached result of a key, or None."""
+        """Return the cached result for a key, or None."""
         with self._lock:
             future = self._held.get(key)
         return future.result() if future is not None and future.done() else None

@@ -93,7 +93,7 @@ async def body_file(
 
 
 def described(body: Body, gravity: float, name: str | None) -> Answer:
-    """Return properties, outline and warnings of a body; gravity: acceleration of gravity [m/s2]."""
+    """Return properties, outline and warnings of a body at an acceleration of gravity [m/s2]."""
     answer = body.answer(gravity)
     warnings = [*answer["warnings"], *(outside_evidence(body, foot) for foot in FEET)]
     warnings = list(dict.fromkeys(sentence for sentence in warnings if sentence))
@@ -106,7 +106,7 @@ def _of_file(content: bytes, name: str, units: str | None, density: float | None
 
 
 def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
-    """Return the body of a file; density: default density of regions in a drawing [kg/m3]."""
+    """Return the body of a file; `density` is the default density of regions in a drawing [kg/m3]."""
     name = safe_name(name, "body")
     check_file(content, name)
     if name.lower().endswith(".toml"):

@@ -102,20 +102,20 @@ async def impact(request: Request, inputs: ImpactRequest) -> JsonAnswer:
 
 
 def answer(inputs: ImpactRequest) -> JsonAnswer:
-    """Return the coefficients of an impact; recent results are cached."""
+    """Return the coefficients of an impact. Recent results are cached."""
     key = inputs.model_dump_json(exclude_unset=True), *models().values()
     return _HELD.get(key, lambda: JsonAnswer(_facts(inputs)))
 
 
 def _facts(inputs: ImpactRequest) -> Answer:
     body = body_from(inputs.body)
-    # a homogeneous block is symmetric; equal values are given once
+    # a homogeneous block is symmetric, so equal values are listed once
     same = isinstance(body, Block) and body.known is None and body.stands_on_corners
     foot = "right" if inputs.foot == "both" and same else inputs.foot
     coefficients = ImpactAnswer.of(body, None, foot=foot, gravity=inputs.settings.gravity or g, identities=False)
     facts = coefficients.answer()
     rows = [row for table in coefficients.tables.values() for row in table]
-    warned: dict[str, dict[str, None]] = {}  # by sentence the models, each once
+    warned: dict[str, dict[str, None]] = {}  # models by sentence, each model once
     for row in rows:
         for sentence in row.warnings:
             warned.setdefault(sentence, {})[row.name] = None

@@ -239,7 +239,7 @@ def _models() -> list[dict[str, Any]]:
 
 
 def _dash(linestyle: str | tuple[int, tuple[int, ...]]) -> list[float]:
-    """Return a line of matplotlib as strokes and gaps of a line two pixels wide [px]."""
+    """Return a line style of matplotlib as lengths of strokes and gaps, for a line width of two pixels [px]."""
     return _DASHES[linestyle] if isinstance(linestyle, str) else [2.0 * length for length in linestyle[1]]
 
 
@@ -248,7 +248,7 @@ def _parameters(kind: Any) -> dict[str, dict[str, Any]]:
     parameters = {}
     for name, parameter in inspect.signature(kind).parameters.items():
         unit, text = PARAMETERS.get(name, ("-", name.replace("_", " ")))
-        # None: a value must be given
+        # None means that a value is required
         default = None if parameter.default is inspect.Parameter.empty else parameter.default
         unlimited = isinstance(default, float) and math.isinf(default)
         parameters[name] = {"unit": unit, "description": text, "default": UNLIMITED if unlimited else default}

@@ -74,7 +74,7 @@ MotionAnswered: Any = shape(
 async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
     """Return the keys of `rocking record show --json` except its spectrum.
 
-    `series` contains the extremes of every curve in `points` intervals, between the two times of `window` if given.
+    `series` contains the extremes of every curve in `points` intervals, between both times of `window` if stated.
     `spectrum` has 100 periods and 5 % damping. `measures` is a list.
     """
     return await heavy(request, _answer, inputs, state_of(request).records)
@@ -82,7 +82,7 @@ async def motion(request: Request, inputs: MotionRequest) -> JsonAnswer:
 
 def _answer(inputs: MotionRequest, records: RecordStore) -> JsonAnswer:
     if inputs.motion.record is not None:
-        records.get(inputs.motion.record)  # a deleted record is not found, even if its answer is cached
+        records.get(inputs.motion.record)  # raises an error for a deleted record, even if its answer is cached
     return _HELD.get(inputs.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(inputs, records)))
 
 
@@ -97,7 +97,7 @@ def _facts(inputs: MotionRequest, records: RecordStore) -> Answer:
     kept = thinned(curves.time, list(columns.values()), inputs.points, inputs.window)
     columns = {"time": curves.time, **columns}
     return record_answer(moved, samples, measures) | {
-        "name": motion.name,  # before it is scaled
+        "name": motion.name,  # name of the unscaled motion
         "scale": inputs.motion.scale,
         "peak_ground_acceleration": moved.peak,
         "series": {

@@ -23,8 +23,8 @@ from rocking_workbench.records import RecordStore, StoredRecord
 from rocking_workbench.settings import state_of
 from rocking_workbench.work import heavy
 
-_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # placeholders for missing values, to find all missing values at once
-_QUIETEST = 1e-100  # smaller accelerations have no energy: their squares vanish in floating point, whatever the unit
+_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # substitutes, to find all missing values at once
+_QUIETEST = 1e-100  # smaller accelerations are refused: in any unit, their squares vanish in floating point
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])
 _STATIONS = b"<FDSNStationXML"
@@ -97,7 +97,7 @@ def list_records(request: Request) -> JsonAnswer:
 async def look_at_record(
     request: Request, record: Sha, format: Word = None, units: Word = None, time_step: Step = None
 ) -> JsonAnswer:
-    """Return the content and missing data of a stored file; time_step if missing in the file [s]."""
+    """Return the content and missing data of a stored file; `time_step` is for a file without time step [s]."""
     stated = _stated(format, units, time_step)
     return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, stated))
 
@@ -125,7 +125,7 @@ def _looked(records: RecordStore, record: str, stated: dict[str, Any]) -> dict[s
 
 
 def record_facts(content: bytes, name: str, stated: dict[str, Any]) -> dict[str, Any]:
-    """Return the content of a file; stated: format, units and time_step [s], or None."""
+    """Return the content of a file; `stated` contains format, units and time_step [s], or None."""
     if _STATIONS in content[:4096]:
         raise RecordError(
             ("{name}: a StationXML file describes an instrument and contains no motion; {way}"),
@@ -213,7 +213,7 @@ def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
         raise RecordError("{name}: the acceleration is zero throughout", name=name)
     for component in record.components:
         factor = ACCELERATION_UNITS[component.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
-        with np.errstate(over="ignore"):  # overflow gives infinity, which is rejected
+        with np.errstate(over="ignore"):  # an overflow gives infinity, which is refused
             values = component.acceleration * factor
         try:
             GroundMotion(values, component.time_step)

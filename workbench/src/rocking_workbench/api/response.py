@@ -29,7 +29,7 @@ from rocking_workbench.settings import state_of
 from rocking_workbench.work import heavy
 
 router = APIRouter(prefix="/api", tags=["response"])
-MOST_SAMPLES = 500_000  # samples of a response whose forces and energy are computed here
+MOST_SAMPLES = 500_000  # largest number of samples for forces and energy
 
 MOST_TOGETHER = 3_000_000
 """Samples of all responses of one problem, including samples after overturning."""
@@ -126,9 +126,9 @@ ResponseAnswered: Any = shape(
 async def response(request: Request, inputs: ResponseRequest) -> JsonAnswer:
     """Return the keys of `rocking simulate --json` for every restitution, in the order of the request.
 
-    `series` contains the extremes of every curve in `points` intervals, between the two times of `window` if given. It
-    includes the states before and after every impact, and at every peak. `verdict` compares the outcomes of the models.
-    A restitution without a response for this body has `label` and `error`.
+    `series` contains the extremes of every curve in `points` intervals, between both times of `window` if stated.
+    `series` includes the states before and after every impact, and at every peak. `verdict` compares the outcomes of
+    the models. A restitution without a response for this body has `label` and `error`.
     """
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
@@ -140,8 +140,8 @@ def _answer(inputs: ResponseRequest, records: RecordStore) -> Answer:
 def responses_answer(
     problem: ResponseProblem, points: int, name: str | None = None, window: tuple[float, float] | None = None
 ) -> Answer:
-    """Return the responses for all restitutions; window: time window of the curves [s]."""
-    assert not isinstance(problem.motion, dict)  # the page has one component
+    """Return the responses for all restitutions; `window` is the time window of the curves [s]."""
+    assert not isinstance(problem.motion, dict)  # motions of the page have one component
     answers = responses_of(problem)
     verdict = ModelAgreement.of(
         {label: response for label, response in answers.items() if isinstance(response, Response)}
@@ -163,7 +163,7 @@ def responses_answer(
 
 
 def responses_of(problem: ResponseProblem) -> dict[str, Response | str]:
-    """Return responses by label, or the reason for a missing response; at least one response."""
+    """Return responses by label, with reasons for missing responses; without any response, raise an error."""
     answers: dict[str, Response | str] = {}
     samples = 0
     for label, restitution in problem.restitutions.items():
@@ -210,7 +210,7 @@ def _tried(problem: ResponseProblem, restitution: Any) -> Response | str:
 
 
 def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
-    """Return the curves of a response, `ResponseSeries`; window: time window [s]."""
+    """Return the curves of a response, `ResponseSeries`, in a time window [s]."""
     states, curves = _states(response)
     kept = thinned(states, list(curves.values()), points, window)
     time = states[kept]
@@ -224,14 +224,14 @@ def response_series(response: Response, points: int, window: tuple[float, float]
 
 
 def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """Return times and curves; values after a jump are one smallest time step later."""
+    """Return times and curves. Values after a jump have the next larger floating-point time."""
     dense_output = response.dense_output
     curves = _at_both_ends(response, dense_output)
     jumps = np.any([np.append(True, pairs[1:, 0] != pairs[:-1, 1]) for pairs in curves.values()], axis=0)
     turns, x = _turns(dense_output)
     late = np.nextafter(dense_output.start, np.inf)
     late[0] = dense_output.start[0]
-    # of those at one instant the first stays: the state before an event, at it
+    # for equal times, the first state is kept: the state before an event
     time = np.concatenate([dense_output.end, late[jumps], dense_output.start[turns] + x * dense_output.length[turns]])
     time, chosen = np.unique(time, return_index=True)
     turned = {
@@ -264,7 +264,7 @@ def _at_both_ends(response: Response, dense_output: DenseOutput) -> dict[str, Fl
 
 
 def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
-    """Return intervals with a reversal of rotation, and its position within, from 0 to 1."""
+    """Return intervals with a reversal of the rotation, and the position of the reversal in them, from 0 to 1."""
     at = np.flatnonzero(dense_output.velocity[:, 0] * dense_output.velocity[:, 1] < 0.0)
     c, (start, end) = dense_output.quintics()[at], dense_output.velocity[at].T
     x, power = start / (start - end), np.arange(6)
@@ -276,7 +276,7 @@ def _turns(dense_output: DenseOutput) -> tuple[np.ndarray, FloatArray]:
 
 
 def _moved(response: Response, time: FloatArray) -> FloatArray:
-    """Return the displacement of the ground, constant after the end of the motion."""
+    """Return the displacement of the ground, which is constant after the end of the motion."""
     motion = response.motion
     if motion is None:
         return np.zeros_like(time)
@@ -291,10 +291,10 @@ def thinned(
     """Return the indices of samples for a figure without a visible difference from all samples.
 
     The time range is divided into equal intervals, one per pixel. Each interval keeps its first and last sample, the
-    lowest and highest of every curve, and one without a number. The curve covers the same pixels as all samples (Jugel
-    et al. 2014, Proc. VLDB 7:797).
+    samples of the lowest and highest value of every curve, and one sample without a number. The curve covers the same
+    pixels as all samples (Jugel et al. 2014, Proc. VLDB 7:797).
 
-    The indices increase; with at most two samples per interval, they are all in the window.
+    The indices increase. With at most two samples per interval, all samples of the window are kept.
     """
     first, last = (time[0], time[-1]) if window is None else window
     begin, end = np.searchsorted(time, first, side="right") - 1, np.searchsorted(time, last) + 1
@@ -311,7 +311,7 @@ def thinned(
 
 
 def _ends_of_runs(curve: FloatArray, rows: IntArray, run: IntArray) -> IntArray:
-    """Return the rows of the lowest and the highest value in every run."""
+    """Return the rows of the lowest and the highest value in every group of successive rows."""
     order = np.lexsort((curve[rows], run))
     starts = np.flatnonzero(np.diff(run[order], prepend=-2, append=-2)[:-1])
     last = np.append(starts[1:], order.size)[: starts.size] - 1

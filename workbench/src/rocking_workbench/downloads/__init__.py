@@ -1,1 +1,1 @@
-"""Exports: pictures, tables, report, animation, and inputs as a file of the command line."""
+"""Exports: figures, tables, report, animation, and inputs as a file for the command line."""

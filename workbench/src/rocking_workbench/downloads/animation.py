@@ -48,7 +48,7 @@ def _main() -> int:
     from rocking.plots import animate_gif
     from rocking.plots.response import shown_until
 
-    # the parent's own response, through a pipe that nobody else writes to
+    # safe to unpickle: the pipe contains only data of the parent process
     response = pickle.loads(sys.stdin.buffer.read())
     try:
         speed = max(1.0, float(np.ceil(100.0 * shown_until(response) / (_FRAME * (_MOST_FRAMES - 2)))) / 100.0)

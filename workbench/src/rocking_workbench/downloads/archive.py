@@ -1,4 +1,4 @@
-"""Inputs, record and commands in one archive, and archives of users unpacked within limits."""
+"""Inputs, record and commands in one archive, and unpacking of archives of users within limits."""
 
 import hashlib
 import io
@@ -24,7 +24,7 @@ from rocking_workbench.records import RecordStore
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _ORDINARY_FILE = 0o644 << 16
-MOST_FILES = 8  # files of an archive; ours have three at most
+MOST_FILES = 8  # largest number of files of an archive; archives of this package have at most three
 _BEGINNINGS = (b"PK\x03\x04", b"PK\x05\x06")
 _ENTRY = b"PK\x01\x02"
 _MOST_ENTRIES = 56
@@ -44,7 +44,7 @@ def bundle_of(evaluation: Evaluation) -> bytes:
 
 
 def add_file(archive: ZipFile, name: str, data: bytes) -> None:
-    """Add a file with a fixed time, so that the archive depends on the inputs only."""
+    """Add a file with a fixed time, so that the archive depends only on the inputs."""
     entry = ZipInfo(name, _EARLIEST)
     entry.compress_type, entry.external_attr, entry.create_system = ZIP_DEFLATED, _ORDINARY_FILE, 3
     archive.writestr(entry, data)
@@ -100,7 +100,7 @@ def _inputs_from_archive(archive: "Archive", records: RecordStore) -> Inputs:
 
 
 def _record_of(text: str) -> str:
-    """Return the record file name in inputs, or an empty text."""
+    """Return the name of the record file in inputs, or an empty text."""
     motion: Any = parsed_toml(text).get("motion")
     word = motion.get("record") if isinstance(motion, dict) else None
     return word if isinstance(word, str) else ""
@@ -114,7 +114,7 @@ def _text(data: bytes) -> str:
 
 
 def _finder(records: RecordStore) -> FindRecord:
-    """Return a function that finds the hash of a record by hash or name, newest first."""
+    """Return a function that gives the hash of a record from its hash or name; for equal names, the newest record."""
 
     def find(word: str) -> str | None:
         try:
@@ -132,7 +132,7 @@ class Archive:
     """The files of a ZIP archive by name."""
 
     def __init__(self, data: bytes, most_files: int = MOST_FILES) -> None:
-        # before all of them are read; a packed record may hold the four bytes by chance
+        # the check comes before reading the entries; a packed record can contain the four bytes by chance
         if data.count(_ENTRY) > _MOST_ENTRIES + most_files:
             raise TooLarge("an archive may contain up to {limit} files", limit=most_files)
         try:
@@ -161,7 +161,7 @@ class Archive:
         return tuple(self._entries)
 
     def content(self, name: str, most: int) -> bytes:
-        """Return a file, unpacked; most: largest size [bytes]."""
+        """Return an unpacked file; `most` is the largest allowed size [bytes]."""
         try:
             with self._archive.open(self._entries[name]) as file:
                 content = file.read(most + 1)
@@ -174,7 +174,7 @@ class Archive:
 
 def _check_entry(entry: ZipInfo) -> None:
     name = plain_line(entry.filename, 60)
-    # orig_filename is the name in the archive; the other name is cut at a NUL
+    # orig_filename is the name in the archive; filename ends at the first NUL
     if (
         entry.orig_filename != entry.filename
         or set(entry.filename) & set("/\\:\0")

@@ -1,4 +1,4 @@
-"""Documents for export: report, animation, input files; and import of input files."""
+"""Export of documents (report, animation, input files), and import of input files."""
 
 import datetime
 from functools import partial
@@ -46,7 +46,7 @@ async def report(
 async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
 ) -> Answer:
-    """Return the animation of one response: a self-contained page, or a GIF."""
+    """Return the animation of one response as a self-contained page or as a GIF."""
     evaluation = Evaluation(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(evaluation.chosen(restitution)))
@@ -82,7 +82,7 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     response_class=JsonAnswer,
 )
 async def inputs_read(request: Request) -> JsonAnswer:
-    """Return the inputs of an input file or archive; the record of an archive is stored."""
+    """Return the inputs of an input file or archive, and store the record of an archive."""
     data = await request.body()
     return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 

@@ -29,7 +29,7 @@ class Evaluation:
 
     @property
     def name(self) -> str:
-        """Name of the body, possibly empty."""
+        """Name of the body; may be empty."""
         return plain_line(self.inputs.body.name or "", 100)
 
     @property
@@ -122,7 +122,7 @@ class Evaluation:
 
 
 def _named_plainly(motion: Motion) -> Motion:
-    """Return a motion with a safe name and safe provenance."""
+    """Return a motion with name and provenance that are safe in files."""
     if not isinstance(motion, GroundMotion):
         return motion
     name, provenance = plain_line(motion.name), tuple(plain_line(line, 500) for line in motion.provenance)

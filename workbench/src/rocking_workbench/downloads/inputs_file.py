@@ -47,7 +47,7 @@ def record_name(inputs: Inputs) -> str | None:
 
 
 def commands(inputs: Inputs) -> list[str]:
-    """Return commands for the same result: with the input file, and with options if possible."""
+    """Return commands for the same result: one with the input file, and one with options if possible."""
     if inputs.motion is None and inputs.response.initial_rotation is None:
         return []
     command = simulate_words(plain_inputs(inputs), record_name(inputs))
@@ -131,7 +131,7 @@ def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str 
     body, start, restitution = _body(inputs["body"]), _start(inputs, record), _restitution(inputs)
     if body is None or start is None or restitution is None:
         return None
-    if "--units" in start:  # those of body and record are one option
+    if "--units" in start:  # the units of body and record are one option
         position = start.index("--units")
         body[-1] += f",{start[position + 1]}"
         start = start[:position] + start[position + 2 :]
@@ -191,6 +191,6 @@ def _options(values: Mapping[str, Any]) -> list[str]:
     for name, value in values.items():
         if value is not None:
             option, text = f"--{name.replace('_', '-')}", repr(value) if isinstance(value, float) else str(value)
-            # with = between, a value may begin with a dash
+            # with "=", a value can begin with a dash
             options += [f"{option}={text}"] if text.startswith("-") else [option, text]
     return options

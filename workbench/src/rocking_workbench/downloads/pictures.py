@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ENOUGH = 2700  # points of a curve: one per pixel of the widest figure
+_ENOUGH = 2700  # largest number of points of a curve: one per pixel of the widest figure
 ONE_AT_A_TIME = RLock()  # serializes all figures
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
-_BEYOND = 2.2  # shown rotation of an overturning body / slenderness angle
-_SMALL = 0.2  # fraction of the slenderness angle below which rotations fill the panel, without +-1
+_BEYOND = 2.2  # largest shown rotation of an overturning body / slenderness angle
+_SMALL = 0.2  # fraction of the slenderness angle below which rotations fill the panel, without lines at +-1
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 
@@ -40,7 +40,7 @@ def figure_of(picture: str, evaluation: Evaluation) -> "Figure":
     match picture:
         case "motion":
             figure, scale = ground_motion_picture(evaluation.motion), evaluation.scale
-            # the name of a motion speaks of the one that it was before it was scaled
+            # the name belongs to the unscaled motion
             return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {evaluation.motion.name}")
         case "response" if len(evaluation.responses) > 1:
             return comparison_picture(evaluation.responses)
@@ -71,14 +71,14 @@ def drawn(make: "Callable[[], Figure]") -> bytes:
 def draw_to(make: "Callable[[], Figure]", path: Path) -> None:
     """Draw a picture into a file."""
     with ONE_AT_A_TIME:
-        # names may be in any script: a box in place of a letter is no reason to stop
+        # names can be in any script; a box in place of a letter is accepted
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from", category=UserWarning)
         warnings.filterwarnings("ignore", message=r"Matplotlib currently does not support", category=UserWarning)
         write(_thinned(make()), path)
 
 
 def _thinned(figure: "Figure") -> "Figure":
-    """Thin long curves; extremes stay."""
+    """Thin long curves; their extremes are kept."""
     for line in (line for axes in figure.axes for line in axes.get_lines()):
         x, y = (np.asarray(values, dtype=np.float64) for values in line.get_data(orig=False))
         if x.size > 2 * _ENOUGH and (np.diff(x) >= 0.0).all():
@@ -182,7 +182,7 @@ def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
 
 
 def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
-    """Return colour and dash by label: those of the model, once per family, or spare ones."""
+    """Return colour and dash by label: those of the model, used once per family, otherwise spare ones."""
     looks: dict[str, dict[str, object]] = {}
     taken: set[str] = set()
     styles = model_styles()

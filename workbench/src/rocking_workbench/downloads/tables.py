@@ -36,7 +36,7 @@ from rocking_workbench.work import heavy
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
 Kind = Literal["csv", "xlsx", "mat", "nc"]
 
-MOST_CELLS = 2_000_000  # cells of a workbook; more would take minutes to write and longer to open
+MOST_CELLS = 2_000_000  # largest number of cells of a workbook; more cells take minutes to write and longer to open
 
 router = APIRouter(prefix="/api", tags=["take away"], default_response_class=Answer)
 
@@ -67,7 +67,7 @@ def _named_table(content: str, kind: str, evaluation: Evaluation, restitution: i
 
 def table_of(content: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
     """Return a table as a file."""
-    if content == "response" and kind != "xlsx":  # the file that the library writes: numbers under names of its own
+    if content == "response" and kind != "xlsx":  # file of the library, with its own names of quantities
         response = evaluation.chosen(restitution)
         write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
         with TemporaryDirectory(prefix="rocking-response-") as folder:
@@ -98,7 +98,7 @@ def _one_table(content: str, evaluation: Evaluation) -> Table:
 
 
 def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
-    """Return the properties of a body; gravity: acceleration of gravity [m/s2]."""
+    """Return the properties of a body at an acceleration of gravity [m/s2]."""
     answer = body.answer(gravity)
     (left, right), (x, y) = answer["foot_positions"], answer["centre"]
     rows = [
@@ -192,7 +192,7 @@ def outcomes_table(responses: Mapping[str, Response], about: dict[str, str]) -> 
 
 
 def as_table(about: dict[str, str], columns: "Mapping[str, tuple[str, Iterable[Cell] | np.ndarray]]") -> Table:
-    """Return columns, each a unit (empty for text, ``-`` for numbers without one) and values, as a table."""
+    """Return columns as a table; a column is a unit (empty for text, ``-`` for pure numbers) and values."""
     plain = {key: plain_line(value, LONGEST_CELL) for key, value in about.items()}
     return Table("row", {name: _column(unit, values) for name, (unit, values) in columns.items()}, plain, no_unit="-")
 

@@ -1,4 +1,4 @@
-"""A project as one file: inputs, records and files, and the jobs of its studies."""
+"""A project as one file with inputs, records, other files, and the jobs of its studies."""
 
 import io
 import json
@@ -25,7 +25,7 @@ from rocking_workbench.studies.job_document import JobDocument
 if TYPE_CHECKING:
     from rocking_workbench.settings import AppState
 
-MOST_FILES, MOST_STUDIES = 1_000, 100  # files of a project, and studies that one brings
+MOST_FILES, MOST_STUDIES = 1_000, 100  # largest numbers of files and of studies of a project
 _WHAT = "project.json"
 _FORMAT = "rocking project 1"
 _DEEPEST = 32
@@ -57,7 +57,7 @@ def project_file(state: "AppState", project: Project) -> bytes:
     contents, records, files = dict[str, bytes](), dict[str, str](), dict[str, str]()
     for sha in _hashes([document, studies]):
         for store, names in ((state.records, records), (state.files, files)):
-            with suppress(NotFound):  # deleted; the project reports it at its use
+            with suppress(NotFound):  # a deleted file is omitted; the project reports the missing file later
                 names[sha], contents[sha] = store.get(sha).file_name, store.content(sha)
     stream = io.BytesIO()
     with ZipFile(stream, "w") as archive:
@@ -107,7 +107,7 @@ def project_from_file(state: "AppState", data: bytes) -> Project:
             count=len(project_file.studies),
         )
     for study in project_file.studies:
-        JobDocument.of(study.job)  # before anything is kept
+        JobDocument.of(study.job)  # raises an error before any file is stored
     _keep_files(state, archive, project_file)
     project = state.projects.create(project_file.name, migrated_document(project_file.document), "from a file")
     try:

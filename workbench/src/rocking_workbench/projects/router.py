@@ -51,13 +51,13 @@ class ProjectChange(_Request):
 
 
 class ProjectStep(_Request):
-    """A step that follows a version."""
+    """A change with the version on which it is based."""
 
     version: Version
 
 
 class ProjectName(ProjectStep):
-    """Another name."""
+    """The new name of a project."""
 
     name: Name
 

@@ -20,9 +20,9 @@ from rocking_workbench.plain_text import shown
 from rocking_workbench.settings import Limits
 
 MOST_PROJECTS = 1_000
-MOST_STATES = 2_000  # of a project; beyond them the oldest go
+MOST_STATES = 2_000  # largest number of states of a project; then the oldest states are deleted
 LARGEST = 1 << 20  # largest project as JSON [bytes]
-KEPT_DAYS = 90  # so long a deleted project can be brought back [d]
+KEPT_DAYS = 90  # time in which a deleted project can be restored [d]
 _FORMAT = 1
 _TABLES = """
 CREATE TABLE projects (
@@ -42,7 +42,7 @@ class Project:
     name: Annotated[str, "display name"]
     created: Annotated[str, "time in UTC"]
     changed: Annotated[str, "time of the last change in UTC"]
-    version: Annotated[int, "number of changes"]  # a change states the version on which it is based
+    version: Annotated[int, "number of changes"]  # a change contains the version on which it is based
     state: Annotated[int, "number of the current state"]
     can_undo: bool
     can_redo: bool
@@ -71,7 +71,7 @@ def _alone(method: Callable[..., Project]) -> Callable[..., Project]:
 
 
 class ProjectStore:
-    """All projects of a data folder; safe to use from several threads."""
+    """All projects of a data folder; thread-safe."""
 
     def __init__(self, folder: Path, limits: Limits) -> None:
         path = Path(folder) / "projects.sqlite"
@@ -232,7 +232,7 @@ class ProjectStore:
         return self.get(project)
 
     def _lead(self, project: str, before: int, after: int) -> None:
-        """Store the redo target of a state, and make that state current."""
+        """Store the next state of a state for redo, and make the next state current."""
         self._database.execute("UPDATE states SET after = ? WHERE project = ? AND number = ?", (after, project, before))
         self._database.execute("UPDATE projects SET here = ? WHERE id = ?", (after, project))
 

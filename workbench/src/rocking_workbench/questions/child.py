@@ -1,8 +1,8 @@
 """A command that a server runs: `python -m rocking_workbench.questions.child`.
 
-The process loads common modules until it reads a line with a folder and the arguments of a command. Then it runs
-`rocking COMMAND ARGUMENTS ...` in the folder, with limits, and opens only files there. It ends with the server, because
-its standard input is a pipe.
+The process loads common modules until it reads a line with a folder and the arguments of a command. Then the process
+runs `rocking COMMAND ARGUMENTS ...` in this folder with limits, and opens only files in the folder. The process ends
+with the server, because its standard input is a pipe.
 """
 
 import json
@@ -15,7 +15,7 @@ from pathlib import Path
 from runpy import run_module
 from typing import Any
 
-_MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], time of processors [s], a file [bytes]
+_MEMORY, _SECONDS, _FILE = 8 << 30, 1800, 512 << 20  # limits: memory [bytes], CPU time [s], file size [bytes]
 _COMMON = (
     "typer", "rocking.spec.documents.prediction", "rocking.decision.prediction", "rocking.spec.construction",
     "rocking.bodies.formats", "rocking.restitution.from_file", "matplotlib.backends.backend_pdf",
@@ -50,7 +50,7 @@ def main() -> None:
 
 
 def _answer(folder: str, file: str, answer: str, log: str, own: str, arguments: list[str]) -> None:
-    """Run a command in a folder; answer, log and library output are files there."""
+    """Run a command in a folder; answer, log and output of libraries are files in this folder."""
     os.chdir(folder)
     for number, name in ((1, answer), (2, log)):
         descriptor = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
@@ -62,11 +62,11 @@ def _answer(folder: str, file: str, answer: str, log: str, own: str, arguments: 
     from rocking.restitution.from_file import register_own
 
     try:
-        register_own()  # the owner's own models, which lie outside
+        register_own()  # the user's models, which are outside the folder
     except RockingError as error:
         sys.stderr.write(json.dumps({"error": error.data()}))
         sys.exit(2)
-    models = os.environ.get("ROCKING_MODELS")  # the command reads this file again: a user may have edited it
+    models = os.environ.get("ROCKING_MODELS")  # the command reads this file again
     keep_inside(Path.cwd(), store(), Path(os.environ["MPLCONFIGDIR"]), *([Path(models)] if models else []))
     sys.argv[1:] = arguments
     run_module("rocking", {"unnamed_file": file}, "__main__")

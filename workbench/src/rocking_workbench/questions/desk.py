@@ -1,4 +1,4 @@
-"""Runs of commands: inputs are checked, stored and queued; answers and output files are returned."""
+"""Runs of commands: checks, storage and queue of inputs, and return of answers and output files."""
 
 import json
 import os
@@ -45,19 +45,19 @@ OUTPUTS: dict[str, tuple[str, ...]] = {
 }
 """Commands and their output files."""
 
-WITHOUT_FILE = "reproduce"  # the command that takes none, and writes a folder
+WITHOUT_FILE = "reproduce"  # command without input file, which writes a folder
 QUESTION, NOTE, ANSWER, OWN = "question.toml", "state.json", "answer.json", ".own"
 """Files and folders of a run."""
-_MOST_STARTS = 3  # restarts of a run after an end of the server
+_MOST_STARTS = 3  # largest number of starts of a run that ends together with the server
 State = Literal["waiting", "running", "done", "refused", "stopped"]
 _RENAMED = {
     "cor": "restitution", "minimum": "overturning-pga", "convert": "record convert", "motions": "record batch",
     "paper": "reproduce",
 }  # fmt: skip
-"""Commands of schema 1 that have another name since."""
-FOLDER = "records"  # of a question, in which the files of a set are
+"""Commands of schema 1 that have other names now."""
+FOLDER = "records"  # folder of a run for the files of a record set
 MOST_QUESTIONS, MOST_WAITING, MOST_FILES = 500, 16, 1000
-_ROOM = 32 << 20  # that a question may need on the disk [bytes]
+_ROOM = 32 << 20  # required free disk space for a run [bytes]
 _OWN = {"matplotlibrc", NOTE, ANSWER, LOG, QUESTION, *(name for names in OUTPUTS.values() for name in names)}
 
 
@@ -110,10 +110,10 @@ class QuestionRun(Run):
 
     @classmethod
     def opened(cls, path: Path) -> Self | None:
-        """Return a run of an earlier server; one that ended several servers is refused."""
+        """Return a run of an earlier server; a run with which several servers ended is refused."""
         folder = QuestionFolder(path)
         note = folder.read()
-        if note is None or note.id != path.name:  # possibly of a later version: kept unchanged
+        if note is None or note.id != path.name:  # possibly of a later version, so unchanged
             return None
         run = cls(folder, note)
         if note.state == RUNNING and note.starts >= _MOST_STARTS:
@@ -123,7 +123,7 @@ class QuestionRun(Run):
         return run
 
     def begin(self) -> None:
-        """Count the start before a process runs, which may end the server."""
+        """Count the start before the process runs, because the process may end the server."""
         self.note = replace(self.note, starts=self.note.starts + 1)
         super().begin()
 
@@ -132,7 +132,7 @@ class QuestionRun(Run):
         shutil.rmtree(self.folder.path / OWN, ignore_errors=True)
         if self.cancelled:
             self.become("stopped", "stopped")
-        elif process is not None and closed:  # regular shutdown: do not count this start
+        elif process is not None and closed:  # do not count a start that ended in a regular shutdown
             self.become(WAITING, starts=self.note.starts - 1)
         elif process is not None:
             seconds = time.monotonic() - self.started
@@ -177,7 +177,7 @@ class QuestionDesk:
         project: str = "",
         format: str = "",
     ) -> HostedQuestion:
-        """Queue a run; files: hashes of uploaded files, by their names in the tables."""
+        """Queue a run; `files` contains hashes of uploaded files, by their names in the tables."""
         if command not in OUTPUTS:
             raise Refused(parameter="command", allowed=f"one of {', '.join(OUTPUTS)}", value=command)
         if format and (command != "record convert" or format not in formats()):
@@ -252,7 +252,7 @@ class QuestionDesk:
         self._let_go()
 
     def prepare(self) -> None:
-        """Start the process of the next run in advance, to load its modules."""
+        """Start the process of the next run in advance, so that the process loads its modules."""
         with self.runner.lock, suppress(OSError):
             ahead = self._ahead
             if self.runner.closed or (ahead and ahead.code is None and ahead.environment == os.environ):
@@ -309,7 +309,7 @@ class QuestionDesk:
 
 
 def refuse_outside(tables: dict[str, Any]) -> None:
-    """Refuse texts of a run that name code or paths outside its folder."""
+    """Refuse texts of a run that name code, or paths outside its folder."""
     for level in levels(tables):
         for word in level:
             if not isinstance(word, str):

@@ -69,7 +69,7 @@ def _facts(question: HostedQuestion) -> dict[str, Any]:
 
 @router.post("/files", openapi_extra=FILE_SENT, summary="Send a file", responses=answered(RecordKept, "The file."))
 async def add_file(request: Request, name: Annotated[str, Query(max_length=500)] = "file") -> JsonAnswer:
-    """Store a scan, sound, list or table by hash; it is read by the run."""
+    """Store a scan, sound, list or table by hash; the run reads the file."""
     content = await request.body()
     return JsonAnswer(asdict(await run_in_threadpool(state_of(request).files.add, content, name)))
 
@@ -78,7 +78,7 @@ async def add_file(request: Request, name: Annotated[str, Query(max_length=500)]
     "/questions", status_code=202, summary="Queue a run", responses=answered(QuestionFacts, "The item is queued.", 202)
 )
 async def ask_question(request: Request, item: NewQuestion) -> JsonAnswer:
-    """Queue a run; its answer is the output of the command with --json."""
+    """Queue a run. Its answer is the output of the command with --json."""
     if item.project:
         await run_in_threadpool(state_of(request).projects.get, item.project)
     question = await run_in_threadpool(
@@ -100,7 +100,7 @@ async def get_question(request: Request, question: str) -> JsonAnswer:
 
     def whole() -> dict[str, Any]:
         desk = _desk(request)
-        run = desk.get(question)  # once: it may be done a moment later
+        run = desk.get(question)  # read the state once, because the run may finish a moment later
         answer = desk.answer(question) if run.state == "done" else None
         return {
             **_facts(run), "toml": desk.tables(question), "answer": None if answer is None else json.loads(answer)

@@ -1,1 +1,1 @@
-"""Long runs in processes of their own: folders that survive the server, a queue, progress, stop and restart."""
+"""Long runs in separate processes: folders that survive the server, queue, progress, stop and restart."""

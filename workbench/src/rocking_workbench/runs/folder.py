@@ -21,7 +21,7 @@ RUNNING: Final = "running"
 DONE: Final = "done"
 _ID = re.compile(r"[0-9a-f]{16}\Z")
 _DELETED = ".deleted-"
-_LONGEST_LOG = 1 << 20  # end of a log that is read [bytes]
+_LONGEST_LOG = 1 << 20  # length of the end of a log that is read [bytes]
 
 
 def new_id() -> str:
@@ -38,11 +38,11 @@ def is_id(text: str) -> bool:
 class RunFolder:
     """The folder of a run."""
 
-    path: Path  # where it is; its name is that of the run
+    path: Path  # path of the folder; the last component is the name of the run
 
     NOTE: ClassVar[str]  # name of the file with the state
-    SCHEMA: ClassVar[int]  # of the notes on the disk; without a number it is 1
-    FORMAT: ClassVar[TypeAdapter[Any]]  # of a note
+    SCHEMA: ClassVar[int]  # schema of the notes on the disk; 1 for a note without number
+    FORMAT: ClassVar[TypeAdapter[Any]]  # type of a note
 
     @property
     def id(self) -> str:
@@ -76,7 +76,7 @@ class RunFolder:
         disk.write_new(self.path / self.NOTE, data.encode())
 
     def read(self) -> Any:
-        """Return the note; None if missing, unreadable or of a later version."""
+        """Return the note, or None if the note is missing, unreadable or of a later version."""
         try:
             data = json.loads((self.path / self.NOTE).read_bytes())
             if data.pop("schema", 1) > self.SCHEMA:
@@ -90,7 +90,7 @@ class RunFolder:
         return data
 
     def refusal(self, start: int = 0) -> dict[str, Any] | None:
-        """Return the last error in the log from a position on, as data without the path of the folder."""
+        """Return the last error in the log after a position, as data without the path of the folder."""
         try:
             with (self.path / LOG).open("rb") as log:
                 log.seek(max(start, log.seek(0, os.SEEK_END) - _LONGEST_LOG))
@@ -104,15 +104,15 @@ class RunFolder:
         return None
 
     def remove(self) -> None:
-        """Remove the folder, safe against interruption."""
+        """Remove the folder; an interrupted removal is finished later."""
         aside = self.path.with_name(f"{_DELETED}{self.id}")
-        with suppress(FileNotFoundError):  # somebody was quicker
+        with suppress(FileNotFoundError):  # another thread may have removed the folder
             self.path.rename(aside)
         shutil.rmtree(aside, ignore_errors=True)
 
 
 def folders_in(folder: Path, *files: str) -> Iterator[Path]:
-    """Yield the folders of earlier runs with one of the files; remove others, and finish interrupted removals."""
+    """Yield the folders of earlier runs that contain one of the files; remove all other folders."""
     disk.make_folder(folder)
     folder.chmod(0o700)
     for path in list(folder.iterdir()):

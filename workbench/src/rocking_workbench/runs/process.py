@@ -8,13 +8,13 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-GRACE = 0.4  # time that a process has between the request to stop and its end [s]
+GRACE = 0.4  # time between the request to stop and the forced end of a process [s]
 STOPPED = 3  # exit code of a stopped process
-LOG = "log.txt"  # in the folder of a run
+LOG = "log.txt"  # file name in the folder of a run
 
 
 class RunProcess:
-    """A process group that computes: a module and its arguments; with a folder, errors go to its log."""
+    """A process group that runs a module with arguments. If a folder is given, errors are written to its log."""
 
     def __init__(
         self, *command: str, nice: int, grace: float = GRACE, folder: Path | None = None, **environment: str
@@ -26,24 +26,24 @@ class RunProcess:
                 [sys.executable, "-P", "-m", *command], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log,
                 cwd=folder, start_new_session=True, env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
             )  # fmt: skip
-        with suppress(OSError, AttributeError):  # some systems have no such priority
+        with suppress(OSError, AttributeError):  # some systems have no priorities of processes
             os.setpriority(os.PRIO_PROCESS, self._process.pid, os.getpriority(os.PRIO_PROCESS, 0) + nice)
 
     @property
     def code(self) -> int | None:
-        """Exit code; None while it runs, negative if ended by a signal."""
+        """Exit code; None while the process runs, negative after a signal."""
         return self._process.poll()
 
     def send(self, line: bytes) -> None:
-        """Write to its standard input; an ended process is noticed by its exit code."""
+        """Write to the standard input. An ended process causes no error here, and is detected by its exit code."""
         with suppress(OSError):
             self._process.stdin.write(line + b"\n")  # type: ignore[union-attr]
             self._process.stdin.flush()  # type: ignore[union-attr]
 
     def stop(self) -> int:
-        """Interrupt the process, kill its group after the grace, and return the exit code."""
+        """Interrupt the process, kill its group after the grace time, and return the exit code."""
         if self.code is None and self._grace:
-            with suppress(OSError, ValueError):  # some systems have no such signal
+            with suppress(OSError, ValueError):  # some systems do not support this signal
                 self._process.send_signal(signal.SIGINT)
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(self._grace)
@@ -67,5 +67,5 @@ def end_with_the_server() -> None:
     if sys.platform == "win32":
         os._exit(STOPPED)
     else:
-        # the workers too: the group is this process's own
+        # the group contains only this process and its workers
         os.killpg(os.getpgrp(), signal.SIGKILL) if os.getpgrp() == os.getpid() else os._exit(STOPPED)

@@ -1,4 +1,4 @@
-"""Runs of every kind: one queue, one thread that starts and watches processes, and the progress for the page."""
+"""Runs of all kinds: one queue, one thread that starts and watches processes, and the progress for the page."""
 
 import logging
 import math
@@ -14,7 +14,7 @@ from rocking_workbench.runs.folder import RUNNING, WAITING, RunFolder, folders_i
 from rocking_workbench.runs.process import RunProcess
 
 LOOK = 0.2  # interval between checks of running runs [s]
-SAVE_AGAIN = 2.0  # time after which a state is written again that the disk did not take [s]
+SAVE_AGAIN = 2.0  # waiting time after a failed write of a state [s]
 IDLE = 900.0  # time without runs after which `at_idle` is called [s]
 _LOG = logging.getLogger(__name__)
 R = TypeVar("R", bound="Run")
@@ -22,19 +22,19 @@ R = TypeVar("R", bound="Run")
 
 @dataclass
 class Run:
-    """A run; each kind of run is a subclass."""
+    """A run. Each kind of run is a subclass."""
 
-    GONE: ClassVar[str]  # message on an unknown run
-    FULL: ClassVar[dict[str, Any]]  # error on a full queue
-    FILES: ClassVar[tuple[str, ...]]  # a complete folder has a file or folder with one of these names
-    NICE: ClassVar[int]  # added to the nice value of the server; a lower number starts first
+    GONE: ClassVar[str]  # error message for an unknown run
+    FULL: ClassVar[dict[str, Any]]  # error for a full queue
+    FILES: ClassVar[tuple[str, ...]]  # a complete folder contains one of these files or folders
+    NICE: ClassVar[int]  # addition to the nice value of the server; runs with a lower number start first
     SECONDS: ClassVar[float] = math.inf  # longest time of a process [s]
 
     folder: RunFolder
-    note: Any  # a frozen dataclass with name, project, time of creation, state and message, as on the disk
-    process: RunProcess | None = None  # computes the run now
+    note: Any  # frozen dataclass of the file: name, project, time of creation, state and message
+    process: RunProcess | None = None  # present process of the run
     started: float = 0.0  # start of the process on a clock [s]
-    cancelled: bool = False  # cancelled, left: True if a user stops or deletes it
+    cancelled: bool = False  # cancelled: True after a stop by the user; left: True after deletion
     left: bool = False
     saved: bool = True  # True if the state is on the disk
 
@@ -58,7 +58,7 @@ class Run:
         return False
 
     def finish(self, process: RunProcess | None, *, closed: bool) -> None:
-        """Set the state after the end of a process, or of a run without one; closed: the server ends."""
+        """Set the state after the end of a run, with or without a process; `closed` is True if the server ends."""
         raise NotImplementedError
 
     def fail(self, reason: str) -> None:
@@ -80,7 +80,7 @@ class Run:
             self.folder.write(self.note)
             self.saved = True
         except OSError as error:
-            self.saved = isinstance(error, FileNotFoundError)  # there is no folder to write it in, nor will there be
+            self.saved = isinstance(error, FileNotFoundError)  # a removed folder needs no state
 
 
 class Runner:
@@ -90,8 +90,9 @@ class Runner:
         self.lock = threading.RLock()
         self.closed = False
         self.at_idle: Callable[[], None] = lambda: None
-        self.published: dict[type[Run], dict[str, Any]] = {}  # facts of the runs of a kind, newest first
-        self.listeners: set[tuple[type[Run], Callable[[], None]]] = set()  # called after changes, from any thread
+        self.published: dict[type[Run], dict[str, Any]] = {}  # facts of the runs by kind, newest first
+        # functions that are called after changes, from any thread
+        self.listeners: set[tuple[type[Run], Callable[[], None]]] = set()
         self._at_once = at_once
         self._kinds: dict[type[Run], tuple[int, Callable[[Any], RunProcess], threading.Lock]] = {}
         self._runs: dict[str, Run] = {}
@@ -99,7 +100,7 @@ class Runner:
         self._thread: threading.Thread | None = None
 
     def add(self, kind: type[R], folder: Path, longest: int, start: Callable[[R], RunProcess]) -> None:
-        """Add a kind with its runs of an earlier server; longest: number of queued runs."""
+        """Add a kind with its runs of an earlier server; `longest` is the largest number of queued runs."""
         with self.lock:
             self._kinds[kind] = longest, start, threading.Lock()
             for path in folders_in(folder, *kind.FILES):
@@ -115,7 +116,7 @@ class Runner:
         return run
 
     def enter(self, kind: type[R], make: Callable[[], R], *, brought: bool = False) -> R:
-        """Put a run in the queue; imported runs ignore its length."""
+        """Put a run in the queue; the limit of the queue does not apply to imported runs."""
         longest, _, alone = self._kinds[kind]
         with alone:
             count = sum(isinstance(run, kind) for run in self._queued())
@@ -162,7 +163,7 @@ class Runner:
                 run.finish(process, closed=self.closed)
 
     def changed(self) -> None:
-        """Publish changes, and process the queue now."""
+        """Publish changes, and process the queue immediately."""
         with self.lock:
             dead = self._thread is None or not self._thread.is_alive()
             if dead and not self.closed:
@@ -203,7 +204,7 @@ class Runner:
                 for run in self._running():
                     self._tend(run)
                 self._begin_next()
-                with self.lock:  # write again after a full disk
+                with self.lock:  # write unsaved states again after a full disk
                     for run in self._runs.values():
                         run.save()
                     saved = all(run.saved for run in self._runs.values())
@@ -233,7 +234,7 @@ class Runner:
             return [run for run in self._runs.values() if run.process is not None]
 
     def _queued(self) -> list[Run]:
-        """Return the queued runs in the order of their starts."""
+        """Return the queued runs in the order in which they start."""
         with self.lock:
             queued = (run for run in self._runs.values() if run.note.state == WAITING)
             return sorted(queued, key=lambda run: (run.NICE, _age(run)))

@@ -1,4 +1,4 @@
-"""The gate: checks of the head of every request and websocket."""
+"""The gate: checks of the head of every request and of every websocket handshake."""
 
 import logging
 import re
@@ -46,8 +46,8 @@ JSON, BYTES = "application/json", "application/octet-stream"
 class RequestHead:
     """The head of a request or of a websocket handshake."""
 
-    method: str  # in capitals; "WEBSOCKET" for a handshake
-    target: str  # path of the request line, not decoded
+    method: str  # method in capitals; "WEBSOCKET" for a handshake
+    target: str  # path in the request line, not decoded
     query: str  # query after the question mark
     scheme: str  # "http" or "https"
     headers: Mapping[str, str]  # lower-case name -> value
@@ -102,7 +102,7 @@ def check_method(head: RequestHead) -> None:
 
 
 def check_target(head: RequestHead, most: int) -> None:
-    """Refuse paths with other characters than letters, digits, dots, dashes and slashes; most: length limit [bytes]."""
+    """Refuse paths that are too long, or contain characters other than letters, digits, dots, dashes and slashes."""
     if len(head.target) + len(head.query) > most:
         raise Refused("path and query are longer than {limit} bytes", limit=most, status=414)
     if not _PATH.fullmatch(head.target):
@@ -150,12 +150,12 @@ def check_site(head: RequestHead) -> None:
 
 
 def content_type(head: RequestHead) -> str:
-    """Return the type of a body in lower case, without its parameters; empty if none is given."""
+    """Return the type of a body in lower case, without its parameters; empty without a type."""
     return head.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 def check_content(head: RequestHead) -> None:
-    """Refuse bodies of other types, in another charset, or packed."""
+    """Refuse bodies of other types, bodies in another charset, and compressed bodies."""
     kind = content_type(head)
     if head.headers.get("content-encoding", "identity").lower() != "identity":
         raise Refused("the body must not be compressed", status=415)
@@ -194,7 +194,7 @@ CHECKS: dict[str, Check] = {
 
 _PAGE = (Path(__file__).parents[1] / "static" / "index.html").read_text(encoding="utf-8")
 _IMPORTS = re.findall(r'<script type="importmap">(.*?)</script>', _PAGE, re.DOTALL)
-# the only inline script of the page: the import map
+# hash of the only inline script of the page: the import map
 _KNOWN = [f"'sha256-{b64encode(sha256(script.encode()).digest()).decode()}'" for script in _IMPORTS]
 CONTENT_POLICY = "; ".join((
     "default-src 'none'",
@@ -207,7 +207,7 @@ CONTENT_POLICY = "; ".join((
     "form-action 'none'",
     "frame-ancestors 'none'",
 ))  # fmt: skip
-# Pages of the manual have no input; they contain styles and a form for a page of the manual.
+# Pages of the manual have no input. They contain styles, and a form that opens a page of the manual.
 MANUAL_POLICY = CONTENT_POLICY.replace("form-action 'none'", "form-action 'self'").replace(
     "style-src 'self'", "style-src 'self' 'unsafe-inline'"
 )
@@ -229,7 +229,7 @@ _LOG = logging.getLogger("rocking_workbench")
 
 
 class Gate:
-    """Pass requests of the own page and of scripts with the key only."""
+    """Pass only requests of the application's page, and of scripts with the key."""
 
     settings: ServerSettings
     own: frozenset[str]

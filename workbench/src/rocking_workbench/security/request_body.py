@@ -1,4 +1,4 @@
-"""The body of a request: limited in size, read completely and checked as JSON."""
+"""Reading of the body of a request, with a limit of its size and a check of its JSON."""
 
 import asyncio
 import json
@@ -15,7 +15,7 @@ from rocking_workbench.errors import Busy, Refused, TooLarge
 from rocking_workbench.security.gate import BYTES, SAFE, RequestHead, content_type
 from rocking_workbench.settings import MEBIBYTE, Limits
 
-PROJECT_FILE = "/api/projects/import"  # where a file may hold all records of a project
+PROJECT_FILE = "/api/projects/import"  # address that accepts a file with all records of a project
 _DRAINED = 64 * MEBIBYTE
 _LONG_JSON = 1 << 16
 _BRACKETS = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{}]', re.DOTALL)
@@ -92,7 +92,7 @@ async def _pieces(receive: Receive) -> AsyncIterator[bytes]:
 
 
 async def _drain(pieces: AsyncIterator[bytes]) -> None:
-    """Read the remaining body, since browsers show a refusal only after sending."""
+    """Read the remaining body, because browsers show a refusal only after they have sent the body."""
     drained = 0
     async for piece in pieces:
         drained += len(piece)

@@ -1,4 +1,4 @@
-"""Signing in: one-time links become cookies that scripts cannot read; sessions, and the key for scripts."""
+"""Sign-in: one-time links, session cookies that scripts of a page cannot read, and the key for scripts."""
 
 import hashlib
 import hmac
@@ -26,7 +26,7 @@ _MOST_SESSIONS = 64
 _MOST_LINKS = 16
 _LINK_SECONDS = 900.0
 _MINUTE = 60.0
-_KEPT_EVERY = 600.0  # after so long it is noted on disk that a session lives [s]
+_KEPT_EVERY = 600.0  # interval at which the last use of sessions is stored on disk [s]
 _KEPT = TypeAdapter(dict[Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")], FiniteFloat])
 
 
@@ -46,7 +46,7 @@ Link: Any = shape("Link", "A sign-in link for another browser.", url=str)
 def sign_in(request: Request, token: SignIn) -> SignedIn:
     """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict.
 
-    Returns True; the cookie is in the head of the answer.
+    The answer is True, and its head contains the cookie.
     """
     state = state_of(request)
     answer = JsonAnswer({"signed_in": True})
@@ -58,7 +58,7 @@ def sign_in(request: Request, token: SignIn) -> SignedIn:
         secure=request.url.scheme == "https",
         path="/",
     )
-    return answer  # the schema documents SignedIn, the answer carries the cookie
+    return answer  # with the cookie; SignedIn is only for the schema
 
 
 @router.get("", summary="Check the session")
@@ -88,7 +88,7 @@ def cookie_name(port: int) -> str:
 
 
 def is_signed_in(request: HTTPConnection) -> bool:
-    """Return True if a request has the cookie of a live session or the key for scripts."""
+    """Return True if a request has the cookie of a valid session, or the key for scripts."""
     state = state_of(request)
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
@@ -102,9 +102,9 @@ def new_token() -> str:
 
 
 class Sessions:
-    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key.
+    """Access rights: of browsers after sign-in with a one-time link, and of scripts with the key.
 
-    Sessions are kept in a file, as digests from which no cookie can be made, so that they survive a restart.
+    A file stores the sessions for a restart. The file contains digests, from which no cookie can be computed.
     """
 
     def __init__(self, limits: Limits, clock: Callable[[], float] = time.time, kept: Path | None = None) -> None:
@@ -119,7 +119,7 @@ class Sessions:
         self.key = new_token()
 
     def new_link(self, seconds: float = _LINK_SECONDS) -> str:
-        """Return a token that signs one browser in, once; seconds: time for which it is good, perhaps infinite [s]."""
+        """Return a token for one sign-in; `seconds` is its time of validity, which may be infinite [s]."""
         token = new_token()
         with self._lock:
             while len(self._links) >= _MOST_LINKS:
@@ -128,7 +128,7 @@ class Sessions:
         return token
 
     def sign_in(self, token: str) -> str:
-        """Use a token up, and return the value of a cookie: a new one every time, whatever the browser had before."""
+        """Invalidate a token, and return the value of a new cookie."""
         with self._lock:
             now = self._clock()
             if len(self._wrong) == self._wrong.maxlen and now - self._wrong[0] < _MINUTE:
@@ -147,7 +147,7 @@ class Sessions:
         return value
 
     def knows(self, value: str | None) -> bool:
-        """Return whether a cookie is that of a live session, which it keeps alive."""
+        """Return True if the value is the cookie of a valid session, and extend this session."""
         with self._lock:
             session = _known(value, self._sessions)
             if session is None:
@@ -162,7 +162,7 @@ class Sessions:
         return True
 
     def knows_key(self, key: str) -> bool:
-        """Return whether this is the key for scripts."""
+        """Return True for the key for scripts."""
         return hmac.compare_digest(_digest(key), _digest(self.key))
 
     def sign_out(self, value: str | None) -> None:
@@ -171,7 +171,7 @@ class Sessions:
             self._write()
 
     def _read(self) -> dict[bytes, float]:
-        """Return the sessions of an earlier server; none where there are none, or the clock was turned back."""
+        """Return the valid sessions of an earlier server; a session with a time in the future is not valid."""
         try:
             kept = _KEPT.validate_json(self._kept.read_bytes()) if self._kept else {}
         except (OSError, ValueError):
@@ -181,7 +181,7 @@ class Sessions:
         return {bytes.fromhex(key): seen for seen, key in live[-_MOST_SESSIONS:]}
 
     def _write(self) -> None:
-        """Store the sessions for this user only; without disk space, a restart needs a new sign-in."""
+        """Store the sessions in a private file. If the disk is full, a restart requires a new sign-in."""
         self._written = self._clock()
         if self._kept is not None:
             with suppress(OSError):

@@ -1,1 +1,1 @@
-"""Studies of the web application as campaigns: launch, progress, cancel, resume, results and export."""
+"""Studies of the web application, which run as campaigns: launch, progress, cancel, resume, results and export."""

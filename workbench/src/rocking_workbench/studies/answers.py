@@ -8,10 +8,10 @@ from rocking_workbench.answers import Messages, QuantityAnswer, Units, shape
 from rocking_workbench.api.response import ResponseFacts
 from rocking_workbench.inputs import Inputs
 
-Number = float | None  # null where there is no finite number
+Number = float | None  # null without a finite number
 Interval = tuple[Number, Number]
 Counts = list[list[list[int]]]
-"""By restitution, then rows along y; or by restitution, body and scale."""
+"""Values by restitution, then by row along y; or by restitution, body and scale."""
 
 _OUTCOME = "0 not lifted, 1 stands, 2 overturned, 3 not computed"
 _MODE = "-3 not computed, -2 not lifted, -1 stands, n >= 0 overturns after n impacts"

@@ -1,7 +1,7 @@
 """The process of a study: `python -m rocking_workbench.studies.child FOLDER WORKERS`.
 
-The process ends with the server, because its standard input is a pipe that closes with the server. Exit codes: 0 done,
-2 refused, 3 stopped (finished histories are safe).
+The process ends with the server, because its standard input is a pipe from the server. Exit codes: 0 done, 2 refused,
+3 stopped (finished histories are stored).
 """
 
 import json
@@ -47,14 +47,14 @@ def _compute(study: Path, workers: int) -> None:
     begun = (campaign / JOB).is_file()
     folder = JobFolder.open(campaign, study) if begun else JobFolder.create(campaign, Job.read(study / JOB))
     histories = folder.job.study.histories
-    # the fast engine has threads of its own; the reference engine needs processes to be quicker than one core
+    # the fast engine has its own threads; the reference engine needs processes for more than one core
     alone = workers == 1 or fast_engine.chosen(histories.engine, histories.law) == "fast"
     deadline = time.monotonic() + _PATIENCE
     while True:
         try:
             folder.run("serial" if alone else "processes", workers=workers)
         except CampaignBusyError:
-            # the process of a server that was killed lets go within a second
+            # the process of a killed server releases the campaign within a second
             if time.monotonic() > deadline:
                 raise
             time.sleep(0.1)

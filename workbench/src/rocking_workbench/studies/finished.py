@@ -26,13 +26,13 @@ Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "svg", "xml"]
 class OpenStudy:
     """A finished study with its results."""
 
-    id: str  # its name in addresses
-    folder: StudyFolder  # where it is
+    id: str  # name of the study in URLs
+    folder: StudyFolder  # folder of the study
     opened: "JobFolder"  # the campaign with its job
 
     @classmethod
     def of(cls, folder: StudyFolder) -> "OpenStudy":
-        """Open a study; results are read on demand."""
+        """Open a study. Results are read on demand."""
         from rocking.campaigns.jobs import JobFolder
 
         try:
@@ -96,7 +96,7 @@ class OpenStudy:
 
     @property
     def size(self) -> int:
-        """Memory of the results, roughly [byte]."""
+        """Approximate memory of the results [byte]."""
         return 170 * int(self.job.study.histories.count) + (1 << 20)
 
 
@@ -108,7 +108,7 @@ def written(
     restitution: int,
     crossing_curves: Crossing | None = None,
 ) -> None:
-    """Write a finished study to a file; a picture shows incremental curves, or compares restitutions."""
+    """Write a finished study to a file. A figure contains incremental curves, or a comparison of restitutions."""
     labels = list(study.job.problem.restitutions)
     if not 0 <= restitution < len(labels):
         raise NotFound(

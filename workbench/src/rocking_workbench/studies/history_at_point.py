@@ -35,7 +35,7 @@ _ACROSS = {
     "histories": ("scale", "body"),
     "minimum-acceleration": ("point", "body"),
 }
-"""Dimensions of a kind that the picture has along x and y; those of a map are its axes."""
+"""Dimensions along x and y in the figure of a kind of study; for a map, its axes."""
 
 _OF_RECORDS = ("format", "units", "time_step", "component", "vertical")
 _OF_FAMILIES = ("pga", "pgv", "time_step")
@@ -46,7 +46,7 @@ _STARTS = {"rotation": "rotation", "angular_velocity": "velocity"}
 """Initial conditions, by the names of rows."""
 
 _CLOSE = 1e-12
-POINTS = 1000  # samples of the curves
+POINTS = 1000  # number of samples of the curves
 
 _STORED = ("outcome", "mode", "impacts", "peak_rotation", "peak_ratio", "overturning_time")
 
@@ -56,8 +56,8 @@ class HistoryPlace:
     """A history of a study."""
 
     number: int
-    index: dict[str, int]  # its place along every axis of the study, and along ``motion`` also where there is only one
-    restitution: int  # number of the restitution among those that are compared
+    index: dict[str, int]  # index along every axis of the study, and always along ``motion``
+    restitution: int  # index of the restitution among the compared restitutions
 
     @classmethod
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
@@ -85,13 +85,13 @@ class Variation:
     """Inputs of one simulation."""
 
     body: Body
-    table: dict[str, Any]  # the same, as inputs
-    label: str  # the restitution in words
-    restitution: Any  # the same, as `simulate` takes it
-    choice: dict[str, Any] | None  # the same, as inputs; None if not possible
-    scale: float  # factor on the motion as the study has it [-]
-    stretch: float = 1.0  # factor on its time [-]
-    rotation: float = 0.0  # theta [rad] and theta' [rad/s] at the start
+    table: dict[str, Any]  # body as a table of inputs
+    label: str  # name of the restitution
+    restitution: Any  # restitution as an argument of `simulate`
+    choice: dict[str, Any] | None  # restitution as a table of inputs; None if not possible
+    scale: float  # factor on the motion of the study [-]
+    stretch: float = 1.0  # factor on the time of the motion [-]
+    rotation: float = 0.0  # rotation [rad] and angular velocity [rad/s] at the start
     angular_velocity: float = 0.0
 
     @classmethod
@@ -151,7 +151,7 @@ def _choice(study: OpenStudy, point: HistoryPlace) -> tuple[str, Any, dict[str, 
     tables += [{"value": value} for value in ([] if table.value is None else [table.value]) + (table.values or [])]
     if table.left is not None:
         tables.append({"left": table.left, "right": table.right})
-    tables.append(None)  # a draw at every impact: its number is not among the inputs
+    tables.append(None)  # inputs cannot contain a sampled coefficient per impact
     return label, restitution, tables[number]
 
 
@@ -179,12 +179,12 @@ def _motion_at(study: OpenStudy, number: int, stretch: float) -> tuple[Motion, d
     source |= {key: getattr(table, key) for key in keys if getattr(table, key) is not None}
     if stretch == 1.0:
         return motion, source, scale
-    assert isinstance(motion, GroundMotion)  # pulses are above
+    assert isinstance(motion, GroundMotion)  # pulses were handled before
     return replace(motion, time_step=motion.time_step * stretch), None, scale
 
 
 def stretched_words(text: str, stretch: float) -> str:
-    """Return a pulse, in words, whose time is stretched by a factor [-] while its acceleration stays."""
+    """Return the text of a pulse with its time multiplied by a factor [-] and its acceleration unchanged."""
     if stretch == 1.0:
         return text
     name, _, tail = text.partition(":")
@@ -199,8 +199,8 @@ def stretched_words(text: str, stretch: float) -> str:
 
 def cell_of(study: OpenStudy, point: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
     """Return the simulation of a point, `HistoryAnswer`."""
-    # ``difference`` is of the peak rotations of the study and of the response here, which take other steps to the
-    # same accuracy
+    # ``difference`` is the difference between the peak rotation of the study and that of the response, which has other
+    # time steps of equal accuracy
     cell: dict[str, Any] = {
         **Answer({"stored": stored(study, point), "answer": None, "difference": None}).plain(), "inputs": None,
     }  # fmt: skip
@@ -245,7 +245,7 @@ def _responded(
     )
     start = {name: getattr(variation, name) for name in _STARTS}
     options = {**problem.settings.stated, "engine": engine, "stream": point.number, **start}
-    with warnings.catch_warnings():  # the answer shows its doubts
+    with warnings.catch_warnings():  # the answer contains the warnings
         warnings.simplefilter("ignore", PureRockingWarning)
         return problem, simulate(variation.body, motion, variation.restitution, scale=scale, **options)
 

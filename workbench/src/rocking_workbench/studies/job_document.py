@@ -29,7 +29,7 @@ _BODY_KEYS = {
     "slenderness_angle", "semi_diagonal", *BodyInput.model_fields, *RegionTable.model_fields,
     *(key for table in TABLES.values() for key in table.model_fields),
 } - {*_FILES, "layers"}  # fmt: skip
-"""Keys of a body that a request may use; none names a file of the server."""
+"""Keys of a body that a request may use. No key names a file of the server."""
 
 _DEEPEST, _MOST_VALUES = 12, 500_000
 
@@ -43,8 +43,8 @@ def launched_kinds() -> tuple[str, ...]:
 class JobDocument:
     """A job: received tables and checked document."""
 
-    tables: dict[str, Any]  # as it came; records are named by their hashes
-    document: StudyQuestion  # the same, checked
+    tables: dict[str, Any]  # received tables, with records named by their hashes
+    document: StudyQuestion  # checked tables
 
     @classmethod
     def of(cls, tables: object) -> "JobDocument":
@@ -79,7 +79,7 @@ class JobDocument:
 
     @property
     def needs_long(self) -> bool:
-        """True if its motions are checked in its own process only."""
+        """True if the motions are checked only in the process of the study."""
         return self.document.needs_motions and self.document.motion_count > _QUICKLY_MADE
 
     @property
@@ -94,7 +94,7 @@ class JobDocument:
 
     @property
     def histories(self) -> int:
-        """Number of simulations, of an adaptive study in the first round."""
+        """Number of simulations; for an adaptive study, in the first round."""
         return math.prod(self.document.sizes)
 
     @property
@@ -117,7 +117,7 @@ def _listed(value: Any) -> list[Any]:
 
 def _check_extent(tables: Any) -> None:
     """Refuse jobs with too many values or too deep nesting."""
-    count = -1  # the job itself is none of its values
+    count = -1  # the job itself does not count
     for depth, level in enumerate(levels(tables)):
         count += len(level)
         if count > _MOST_VALUES:
@@ -143,7 +143,7 @@ def _refuse_files(tables: dict[str, Any]) -> None:
             if key not in _BODY_KEYS:
                 raise InvalidValueError("body: unknown key {key!r:.60}", key=key)
     for word in chain.from_iterable(levels(tables.get("restitution"))):
-        if isinstance(word, str) and file_of(word.strip()):  # it would be run
+        if isinstance(word, str) and file_of(word.strip()):  # a file would be run as code
             raise InvalidValueError(
                 "restitution: {model!r:.60} names a file, which is not allowed here", model=word,
                 hint="use rocking campaign",
@@ -176,7 +176,7 @@ def _checked_regions(table: dict[str, Any]) -> int:
     """Return the number of regions of a body, 0 for an invalid body."""
     try:
         body = BodyInput.model_validate(table)
-    except ValidationError:  # the job is read later on, and refused in its own words
+    except ValidationError:  # the error follows when the job is read
         return 0
     texts = [region.wkt or "" for region in body.section.region] if body.section else []
     return sum(max(1, text.count("((")) for text in texts)

@@ -20,7 +20,7 @@ from rocking_workbench.studies.study_folder import CANCELLED, FAILED, INTERRUPTE
 from rocking_workbench.work import Remembered
 
 _RESULTS, _ANSWERS = 256 * 2**20, 64 * 2**20  # memory for results and for answers [byte]
-_BYTES = 100  # disk for a history, generously [byte]
+_BYTES = 100  # upper estimate of the disk space of a history [byte]
 _FULL = {errno.ENOSPC, errno.EDQUOT} if hasattr(errno, "EDQUOT") else {errno.ENOSPC}
 
 
@@ -43,7 +43,7 @@ class StudyManager:
         self.queue.add(HostedStudy, self._folder, limits.studies_waiting, self._start)
 
     def create(self, name: str | None, job: object, project: str = "", *, brought: bool = False) -> str:
-        """Put a new study in the queue; imported studies ignore its length."""
+        """Put a new study in the queue; the limit of the queue does not apply to imported studies."""
         document = JobDocument.of(job)
         count = document.most
         if count > self._limits.histories:
@@ -94,7 +94,7 @@ class StudyManager:
             )
 
     def resume(self, study: str) -> None:
-        """Put a study in the queue again; it continues."""
+        """Put a study in the queue again; the study continues from its finished simulations."""
 
         def again() -> HostedStudy:
             with self.queue.lock:

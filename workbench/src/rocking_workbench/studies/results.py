@@ -24,15 +24,15 @@ from rocking.version import __version__
 from rocking_workbench.studies.finished import OpenStudy
 from rocking_workbench.studies.study_folder import StudyFolder
 
-NAME = f"result-{__version__}-{SCHEMA}.json"  # other versions may contain other keys
+NAME = f"result-{__version__}-{SCHEMA}.json"  # results of other versions may have other keys
 _LARGEST = 20_000
-_PACKED = 100_000  # smallest number of values of a map table that is sent as bytes
+_PACKED = 100_000  # smallest number of values of a map that are sent as bytes
 _WHOLE = ("uint8", "int8", "uint16", "int16", "int32")
 _FINE = 120
 
 
 def plain(value: Any) -> Any:
-    """Return tables and arrays as plain values, with None where there is no finite number."""
+    """Return tables and arrays as plain values, with None for values that are not finite."""
     match value:
         case dict():
             return {str(name): plain(item) for name, item in value.items()}
@@ -89,7 +89,7 @@ def kept_result(folder: StudyFolder) -> bytes | None:
 
 def keep_result(study: OpenStudy) -> bytes:
     """Compute and store the result of a finished study."""
-    data = to_json(result_of(study))  # the process of a study needs no more of an answer than its bytes
+    data = to_json(result_of(study))  # only the bytes are kept in memory
     disk.write_new(study.folder.path / NAME, data)
     return data
 
@@ -114,7 +114,7 @@ def product_result(study: OpenStudy) -> dict[str, Any]:
     """Return the counts of plain histories."""
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
     computed = modes != -3
-    with warnings.catch_warnings():  # where no motion leaves the body standing there is no median
+    with warnings.catch_warnings():  # no median if all motions overturn the body
         warnings.simplefilter("ignore", RuntimeWarning)
         median = np.nanmedian(np.where(computed & (modes < 0), peaks, np.nan), axis=1)
     return {
@@ -217,7 +217,7 @@ def _corners(grid: np.ndarray) -> np.ndarray:
 
 
 def _middles(edges: np.ndarray, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the middles of edges, numbered as `edge_numbers` does."""
+    """Return the middles of edges, with the numbers of `edge_numbers`."""
     (j, i), upright = np.divmod(edges // 2, x.size), edges % 2
     return np.stack([0.5 * (x[i] + x[i + 1 - upright]), 0.5 * (y[j] + y[j + upright])], axis=-1)
 
@@ -287,7 +287,7 @@ def _curve(fit: Any, fine: FloatArray, shared: Any) -> dict[str, Any]:
     try:
         low, high = fit.band(fine, 0.95, "profile" if fit.counts.cluster_trials is None else "bootstrap")
     except InvalidValueError as error:
-        # a curve from few motions has no confidence band; the points are shown instead
+        # too few motions for a confidence band; the application shows the points
         return {**curve, "band": str(error)}
     return {**curve, "low": low, "high": high, "band": "95 % of the curve at each level"}
 

@@ -34,7 +34,7 @@ uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
 _ONE = answered(StudyFacts, "State and progress.")
 SHORTEST = 0.2  # smallest interval between two messages [s]
-MOST = 64  # browsers informed at the same time
+MOST = 64  # largest number of connected browsers
 _TRY_LATER = 1013
 
 
@@ -224,7 +224,7 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
     def tell() -> None:
-        with contextlib.suppress(RuntimeError):  # the loop has ended, the browser with it
+        with contextlib.suppress(RuntimeError):  # the event loop has ended
             loop.call_soon_threadsafe(changed.set)
 
     async def send() -> None:

@@ -35,11 +35,11 @@ class StudyPace:
         self._speed, self._pace = Speed(), 0.0
 
     def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
-        """Store the number of finished histories and the work of all workers [s]; now: time of a clock [s]."""
-        # returns histories per second over the last seconds [1/s], and work per second since the first finished
-        # histories [-]; 0 before the first ones
+        """Store the number of finished histories and the work of all workers [s]; `now` is the time of a clock [s]."""
+        # Returns histories per second over the last seconds [1/s], and work per second since the first finished
+        # histories [-]. Both are 0 before the first histories.
         instant = time.monotonic() if now is None else now
-        # a study finishes in blocks: only checks with new histories count
+        # histories are finished in blocks, so only calls with new histories count
         if not self._looks or done > self._looks[-1][1]:
             if self._looks:
                 self._pace = self._speed.look(work, instant)
@@ -64,16 +64,16 @@ class HostedStudy(Run):
 
     folder: StudyFolder
     note: Meta
-    begun: int = 0  # begun, done: histories of the rounds that have begun, and finished ones, at the last look [-]
+    begun: int = 0  # begun, done: histories of the started rounds, and finished histories, at the last update [-]
     done: int = 0
     rate: float = 0.0  # histories per second at the last update [1/s]
-    estimate: Estimate | None = None  # time that is left, at the last look; None while that is not known
-    unreadable: bool = False  # True if the state on the disk is unreadable, and left unchanged
+    estimate: Estimate | None = None  # remaining time at the last update; None if unknown
+    unreadable: bool = False  # True for an unreadable state on the disk, which is not changed
     _pace: StudyPace = field(default_factory=StudyPace)
 
     @classmethod
     def opened(cls, path: Path) -> Self:
-        """Return a study of an earlier server; an unreadable study is shown, and left unchanged."""
+        """Return a study of an earlier server; an unreadable study is shown, and not changed."""
         folder = StudyFolder(path)
         created = instant(datetime.fromtimestamp(path.lstat().st_mtime, UTC))
         unknown = Meta(f"study {path.name}", "unknown", created, 0, FAILED, _UNREADABLE)
@@ -86,7 +86,7 @@ class HostedStudy(Run):
         return study
 
     def begin(self) -> None:
-        """Forget the speed of an earlier process."""
+        """Reset the speed, which was that of an earlier process."""
         self._pace, self.rate, self.estimate = StudyPace(), 0.0, None
         super().begin()
 
@@ -94,7 +94,7 @@ class HostedStudy(Run):
         """Update the progress; return True if complete."""
         try:
             status, complete = self.folder.status()
-        except (RockingError, OSError):  # the ledger is incomplete, damaged or missing: its process reports it
+        except (RockingError, OSError):  # the process reports an incomplete, damaged or missing ledger
             return False
         if status is not None:
             self.begun, self.done = status.histories, status.histories_done
@@ -124,7 +124,7 @@ class HostedStudy(Run):
         self.become(FAILED, f"{reason}; resume it")
 
     def _reason(self, process: RunProcess) -> str:
-        """Return the refusal of the process, or the path of its log."""
+        """Return the error of the process, or the path of its log."""
         if refusal := self.folder.refusal(process.log_start):
             return str(refusal["message"])[:_LONGEST_SENTENCE]
         how = "was ended by the system" if (process.code or 0) < 0 else "ended unexpectedly"
@@ -134,7 +134,7 @@ class HostedStudy(Run):
     def facts(self) -> dict[str, Any]:
         """State and progress for answers."""
         running = self.note.state == RUNNING
-        total = max(self.note.histories, self.begun)  # total of an adaptive study: not known in advance
+        total = max(self.note.histories, self.begun)  # the total of an adaptive study is unknown in advance
         left = self.estimate if running else None
         return {
             "id": self.folder.id,

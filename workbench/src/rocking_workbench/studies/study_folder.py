@@ -32,13 +32,13 @@ FAILED: Final = "failed"
 class Meta:
     """Data of a study outside its campaign."""
 
-    name: str  # name, kind: printable name and type of computation
+    name: str  # name: printable name; kind: type of computation
     kind: str
-    created: str  # when it was made, as of ISO 8601
+    created: str  # time of creation in ISO 8601
     histories: int  # number of histories
     state: Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"] = WAITING
     message: str = ""  # result message; empty if there is none
-    project: str = ""  # to which it belongs, by its name in addresses; empty if to none
+    project: str = ""  # identifier of its project; empty without a project
 
 
 class StudyFolder(RunFolder):
@@ -61,8 +61,8 @@ class StudyFolder(RunFolder):
                 kept = {sha256: self._keep_record(sha256, records.path(sha256)) for sha256 in job.records}
                 disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
                 if not job.needs_long:
-                    with np.errstate(all="ignore"):  # overflow gives infinity, which is rejected by its key
-                        count = Job.read(self.path / JOB).study.histories.count  # checks bodies, motions, axes, levels
+                    with np.errstate(all="ignore"):  # an overflow gives infinity, which is refused with its key
+                        count = Job.read(self.path / JOB).study.histories.count  # checks all inputs
                     if count != meta.histories:
                         raise InvalidValueError(
                             "job has {count} histories, not {expected}", count=count, expected=meta.histories
@@ -88,7 +88,7 @@ class StudyFolder(RunFolder):
         return campaign.status, campaign.complete
 
     def _keep_record(self, sha256: str, source: Path) -> str:
-        """Keep a record, and return its path in the study."""
+        """Copy or link a record into the study, and return its path."""
         name = f"{RECORDS}/{sha256}/{record_file_name(source.name)}"
         try:
             self.keep(name, source)
