@@ -23,7 +23,7 @@ class Known:
     """Known centre of mass and moment of inertia; None if unknown."""
 
     centre: Point | None = None  # centre of mass in the local frame [m]
-    moment_of_inertia: float | None = None  # polar, about the centre of mass [kg m2]
+    moment_of_inertia: float | None = None  # polar moment of inertia about the centre of mass [kg m2]
 
     @classmethod
     def of(cls, centre: Any, moment_of_inertia: Any, origin: Point = (0.0, 0.0)) -> "Known | None":
@@ -82,7 +82,7 @@ class Known:
         return PlaneMoments(homogeneous.mass, x, y, wide, polar - wide)
 
     def mirrored(self, twice_axis: float = 0.0) -> "Known":
-        """Return the mirrored values; twice_axis: twice the position of the vertical mirror axis [m]."""
+        """Return the mirrored values; `twice_axis` is twice the position of the vertical mirror axis [m]."""
         return self if self.centre is None else replace(self, centre=(twice_axis - self.centre[0], self.centre[1]))
 
     def scaled(self, size: float, density: float) -> "Known":
@@ -115,7 +115,7 @@ def largest_gyration(vertices: FloatArray, x: float, y: float) -> float | None:
     """Return the largest squared radius of gyration of masses in the hull about (x, y) [m2]; None outside the hull."""
     low, high, centre = vertices.min(axis=0), vertices.max(axis=0), np.array([x, y])
     corners = vertices[((vertices == low) | (vertices == high)).all(axis=1)]
-    if len(np.unique(corners, axis=0)) == 4:  # the hull is the box
+    if len(np.unique(corners, axis=0)) == 4:  # the hull of the vertices is their bounding box
         return float(((centre - low) * (high - centre)).sum())
     return _largest_of_polygon(vertices, centre)
 

@@ -15,7 +15,7 @@ class PlaneMoments:
     """Zeroth, first and central second moments of a 2D mass distribution."""
 
     mass: float  # integral of dm [kg], or of dA [m2] for a bare ring; negative for a hole
-    x: float  # x, y: centre [m]
+    x: float  # x, y: coordinates of the centre [m]
     y: float
     xx: float  # xx, yy: integrals of (x - centre)**2 dm and of (y - centre)**2 dm [kg m2]
     yy: float

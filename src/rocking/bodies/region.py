@@ -213,7 +213,7 @@ class Region:
         self._set(outer, checks.density("density", density), inner)
 
     def _set(self, outline: FloatArray, density: float, holes: Sequence[FloatArray]) -> None:
-        # outline counter-clockwise, holes clockwise, for the sum of the boundary integrals
+        # the outline is counter-clockwise and holes are clockwise, so that boundary integrals can be added
         object.__setattr__(self, "outline", _turned(outline, 1.0))
         object.__setattr__(self, "density", density)
         object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))

@@ -130,7 +130,7 @@ def seal(data: bytes) -> str:
 
 
 def range_of(data: bytes) -> tuple[int, int]:
-    """Return the first history of a shard and the history after its last one."""
+    """Return the first history of a shard, and the history after the last history."""
     header = _read_header(data, _payload_at(data))
     ends = header.get("first"), header.get("last")
     if not all(isinstance(end, int) for end in ends):

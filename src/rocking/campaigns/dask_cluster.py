@@ -115,7 +115,7 @@ class _Window:
         return landed
 
     def _kept(self, future: Any, chunk: Chunk) -> Done | None:
-        """Write the returned shard; None if the cluster lost it."""
+        """Write the returned shard; return None if the cluster lost the shard."""
         if future.status in {"cancelled", "lost"}:
             return None
         try:

@@ -91,7 +91,7 @@ def make_folder(folder: Path) -> None:
 
 
 def refuse_used(folder: Path, mark: str, allowed: set[str], hint: str) -> None:
-    """Refuse a folder with the file of a campaign, or with other files than the allowed ones."""
+    """Refuse a folder that contains the file of a campaign, or files that are not allowed."""
     entries = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")}
     if mark in entries:
         raise CampaignMismatchError("a campaign is here already", hint=hint).at(str(folder))
@@ -200,7 +200,7 @@ class FolderLock:
 
 
 def holder(folder: Path) -> str | None:
-    """Return the process and machine of a running campaign; None without a run."""
+    """Return the process and machine of a running campaign, or None if no process runs the campaign."""
     try:
         handle = os.open(folder / NAME, os.O_RDONLY)
     except OSError:
@@ -222,7 +222,7 @@ if sys.platform == "win32":
     import msvcrt
 
     def _take(handle: int) -> bool:
-        os.lseek(handle, 1 << 20, os.SEEK_SET)  # a lock far behind the text, which others can read
+        os.lseek(handle, 1 << 20, os.SEEK_SET)  # lock a byte far behind the readable text
         try:
             msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
         except OSError:
@@ -240,7 +240,7 @@ else:
         return True
 
     def _let_go_in_child() -> None:
-        """Release the lock in a forked worker, which may outlive its parent."""
+        """Release the lock in a forked worker, because the worker may run longer than its parent."""
         for handle in _held:
             with suppress(OSError):
                 os.close(handle)

@@ -40,7 +40,7 @@ Retried = Callable[[Chunk, str], None]
 
 
 class Interruption:
-    """Records the first Ctrl-C or SIGTERM; the second one has its usual effect.
+    """Records the first Ctrl-C or SIGTERM; the second signal has its usual effect.
 
     Signals arrive in the main thread only.
 
@@ -270,7 +270,7 @@ class Serial(Executor):
                     return
                 begun = begin()
                 yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, done[0]), results), done[1])
-                if stop():  # the next chunk is discarded
+                if stop():  # after a stop, the next chunk is discarded
                     return
                 begun = begun or begin()  # `chunks` may now return the remaining piece of the last chunk
         finally:

@@ -84,7 +84,7 @@ def _noise(factor: int, size: float) -> FloatArray:
 
 
 def _rows(count: int, mechanics: Mechanics) -> Rows:
-    """Return bodies from squat to slender; the last one is invalid for all engines."""
+    """Return bodies from squat to slender; the last body is invalid for all engines."""
     k = np.arange(_EACH)[-count:]
     alpha = 0.0625 + 0.03125 * (k * 5 % 13)
     values = {

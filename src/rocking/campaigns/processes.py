@@ -28,7 +28,7 @@ _GUARD = 'check the memory; a script that starts processes needs if __name__ == 
 
 
 class Failure(NamedTuple):
-    """A chunk that failed, and the reason; number: error number of the disk, if any."""
+    """A chunk that failed, and the reason; `number` is the error number of the disk, if there is one."""
 
     chunk: Chunk
     reason: str

@@ -31,7 +31,7 @@ class EarlierRun:
     plan: Plan
     ledger: Ledger
     adopted: int = 0  # number of adopted shards: the run ended after writing and before recording them
-    # sentences on damaged and missing shards
+    # sentences about damaged and missing shards
     set_aside: list[str] = field(default_factory=list)
     # sorted pieces of unfinished chunks, by chunk number
     pieces: dict[int, list[Chunk]] = field(default_factory=dict)
@@ -102,7 +102,7 @@ class EarlierRun:
         data = self._intact(chunk)
         if data is None:
             return False
-        disk.sync_folder(path_of(self.folder, chunk).parent)  # for a run killed after renaming
+        disk.sync_folder(path_of(self.folder, chunk).parent)  # necessary if the run was killed after renaming
         record = LedgerEntry(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
         (self.ledger.record_piece if chunk.parent else self.ledger.record)(record)
         self.adopted += 1

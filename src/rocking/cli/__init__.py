@@ -107,7 +107,7 @@ def _refusal(error: Any) -> "RockingError":
 
 
 class _Notes:
-    """Print a warning as a note, each sentence once; Python's own "once" resets when a filter changes."""
+    """Print warnings as notes, each sentence once. The filter "once" of Python resets after a change of filters."""
 
     def __init__(self) -> None:
         self.sentences: set[str] = set()

@@ -66,7 +66,7 @@ RECORD = {
 SUBCOMMANDS = ("record", "measurements", "campaign")
 PLUGINS = "rocking.commands"
 """Entry-point group of commands from other distributions: a name and its function."""
-ABSENT = {"serve": "rocking-workbench"}  # distribution of a command, for the error if it is absent
+ABSENT = {"serve": "rocking-workbench"}  # distribution of each command, named in the error for an absent distribution
 _GENERIC = {"histories", "bifurcation", "orbits", "lyapunov", "basins"}  # options follow from the table of the study
 _MODULES = {"assess": "predict", "models": "catalogues", "record formats": "catalogues"}
 

@@ -41,7 +41,7 @@ def is_file(text: str) -> bool:
     """Return True if the file exists."""
     try:
         return bool(text) and Path(text).exists()
-    except (OSError, ValueError):  # no file can have such a name
+    except (OSError, ValueError):  # a file with such a name cannot exist
         return False
 
 
@@ -96,7 +96,7 @@ def parsed_sets(texts: Sequence[str] | None, allowed: Iterable[str]) -> Tables:
 
 
 def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: bool = False) -> Tables:
-    """Return the tables of a file with the keys of ``--set``; lists: a list of one table counts as a table."""
+    """Return the tables of a file with the keys of ``--set``; with `lists`, a list of one table counts as a table."""
     tables = {"schema": SCHEMA, **migrated(dict(tables))}  # options use the present keys
     changed = dict(tables)
     for table, keys in sets.items():
@@ -117,7 +117,7 @@ def with_sets(tables: Mapping[str, Any], sets: Mapping[str, Tables], *, lists: b
 def document_file(
     context: "typer.Context", word: str | None, tables: Collection[str], allowed: Collection[str] = (), has: str = ""
 ) -> Path | None:
-    """Return the input file, TOML with [body] or another table, or None; allowed: options accepted with a file."""
+    """Return the input file (TOML with [body] or another table) or None; `allowed` are options accepted with it."""
     if word is None or not {*tables, "body"} & set(tables_in(Path(word)) or ()):
         return None
     allowed = {"body", "objects", "motions", "threads", "output", "as_json", "sets", "details", *allowed}
@@ -130,7 +130,7 @@ def document_file(
 
 
 class Arguments:
-    """Arguments of a command, and the tables of its input; tables: those that --set can change."""
+    """Arguments of a command, and the tables of its input; --set can change the tables in `tables`."""
 
     def __init__(self, context: "typer.Context", *tables: str) -> None:
         self.context, self.options = context, context.params
@@ -238,7 +238,7 @@ class Arguments:
         return {"units": "m", **self.table("body", {"units": self.length, **values})}
 
     def motion_table(self, word: str, keys: Collection[str] | None = None) -> Tables:
-        """Return the table of one motion; keys: the keys of `--set motion` to include, by default all."""
+        """Return the table of one motion; `keys` are the included keys of `--set motion`, by default all."""
         source = _place(word)
         units = self.acceleration if keys is None or "units" in keys else None
         table = self.table("motion", {**source, "units": units}, dict.fromkeys(source, word), keys)

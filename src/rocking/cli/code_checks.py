@@ -175,7 +175,7 @@ class CodesAnswer:
         from rocking.cli.study import source_lines
 
         result = self.result
-        outcomes, count = result.overturned[result.overturned == result.overturned], len(result.motions)  # without NaN
+        outcomes, count = result.overturned[result.overturned == result.overturned], len(result.motions)  # no NaN
         motions = result.motions[0] if count == 1 else f"{count}"
         page.facts([
             ("bodies", "; ".join(result.bodies)), ("motions", f"{motions}, {'; '.join(result.levels)}"),

@@ -51,7 +51,7 @@ class Exports:
         return {name for name, _ in self.files}
 
     def spare(self, *sources: str | Path) -> None:
-        """Refuse to overwrite an input file; sources: files as typed, such as x=FILE#COMPONENT."""
+        """Refuse to overwrite an input file; `sources` are files as typed, such as x=FILE#COMPONENT."""
         names = [name for word in map(str, sources) for name in (word, word.partition("=")[2])]
         read = {Path(source).resolve() for name in names for source in (name, name.rpartition("#")[0]) if source}
         if overwritten := next((path for _, path in self.files if path.resolve() in read), None):
@@ -67,7 +67,7 @@ class Exports:
                 self.kinds[name].write(answer, path)
             except MissingExtraError:
                 raise
-            except ImportError as error:  # some libraries detect a missing module only while they write
+            except ImportError as error:  # some libraries detect a missing module only during writing
                 raise MissingExtraError("cannot write {path}: {reason}", path=path, reason=str(error)) from error
         return [path for _, path in self.files]
 
@@ -132,7 +132,7 @@ def _report(answer: Any, path: Path) -> None:
 
 
 DRAWN = Export(PICTURES, draw, "matplotlib")
-# for results with a report and exported tables (`rocking.exported`)
+# files of results with a report and exported tables (`rocking.exported`)
 REPORTED = {
     "picture": Export((".png", ".svg"), draw, "matplotlib"),
     "report": Export((".pdf", ".html"), _report, "matplotlib"),
@@ -164,7 +164,7 @@ def _write_dataset(answer: Any, path: Path) -> None:
     write_dataset(answer.dataset, path)
 
 
-# for results that are a dataset
+# files of results that are a dataset
 DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf": Export((".nc",), _write_dataset)}
 
 

@@ -21,7 +21,7 @@ _RARE = {
     "help_all", "start_height", "start_velocity", "normal_restitution", "check_identities", "address", "executor",
     "damping", "min_barrier", "bisections", "samples",
 }  # fmt: skip
-"""Options that only --help-all shows."""
+"""Rare options, which only --help-all shows."""
 _METAVARS = {
     "output": "FILE", "sets": "KEY=VALUE", "restitution": "MODEL", "motions": "MOTION", "motion": "MOTION",
     "units": "UNITS",

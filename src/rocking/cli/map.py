@@ -254,7 +254,7 @@ class MapAnswer:
         return [(a, b, self.compared.flips_between(a, b)) for a, b in combinations(self.compared.labels, 2)]
 
     def extent(self) -> dict[str, Any] | None:
-        """Return the ranges of x and y with overturning, and the point of lowest y; None without overturning."""
+        """Return the ranges of x and y with overturning, and the point of lowest y, or None if nothing overturns."""
         import numpy as np
 
         if self.arrays.points is not None:

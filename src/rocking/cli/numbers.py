@@ -58,7 +58,7 @@ def row(name: str, text: str, unit: str, spacing: str = "linear") -> tuple[Float
 
 
 def numbers_in(name: str, text: str) -> list[float]:
-    """Return numbers separated by commas; name: the option, for the error message."""
+    """Return numbers separated by commas; `name` is the option for the error message."""
     try:
         return [float(word) for word in text.split(",")]
     except ValueError as error:
@@ -127,7 +127,7 @@ def number_or_name(text: str | None) -> float | str | None:
 
 
 def recommendation_values(recommendation: Any) -> dict[str, Any]:
-    """Return the values of a recommendation; empty for None."""
+    """Return the values of a recommendation, or no values for None."""
     return {} if recommendation is None else {"recommendation": recommendation.answer()}
 
 

@@ -59,7 +59,7 @@ def keys(
 
 
 def takes(*groups: Options, before: str = "sets") -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Add options to a command in front of one of its own; `Arguments` reads the added options."""
+    """Add options to a command before one of its own options; `Arguments` reads the added options."""
 
     def with_options(command: Callable[..., None]) -> Callable[..., None]:
         own = dict(signature(command).parameters)
@@ -83,7 +83,7 @@ def takes(*groups: Options, before: str = "sets") -> Callable[[Callable[..., Non
 
 
 def _type_of(field: "FieldInfo") -> Any:
-    """Return the type of the option of a key: that of the field for a number without unit or a flag, else text."""
+    """Return the type of the option of a key: for a number without unit or a flag that of the field, otherwise text."""
     kinds, (_, unit) = kinds_of(field), meaning_and_unit(field.description or "")
     return kinds[0] if len(kinds) == 1 and kinds[0] in {int, float, bool} and not UNITS.get(unit) else str
 
@@ -186,7 +186,7 @@ def count(usual: int, panel: str = SHAKING) -> Any:
 
 
 def output(kinds: dict[str, Any] | str) -> Any:
-    """Return the option `--output` of a command; kinds: kinds of its files, or the help text."""
+    """Return the option `--output` of a command; `kinds` are the kinds of its files, or the help text."""
     from rocking.cli.exports import described
 
     text = kinds if isinstance(kinds, str) else described(kinds)

@@ -29,7 +29,7 @@ class CommandAnswer(Protocol):
     """Result of a command."""
 
     def answer(self) -> "Answer":
-        """Return all values in SI units; None for missing values."""
+        """Return all values in SI units, and None for missing values."""
 
     def show(self, page: "Page") -> None:
         """Write the result on a page."""
@@ -77,7 +77,7 @@ class Page:
         dense: bool = False,
         unfolded: Container[int] = (),
     ) -> None:
-        """Write a table; left: names of text columns. bold: bold rows. unfolded: columns without line breaks."""
+        """Write a table with text columns `left`, bold rows `bold`, and columns `unfolded` without line breaks."""
         from rich.table import Table
         from rich.text import Text
 
@@ -109,7 +109,7 @@ class Page:
         most: int = MOST_ROWS,
         **layout: Any,
     ) -> None:
-        """Write the first rows of a table of an answer, and the number of further rows; names: its columns."""
+        """Write the first rows of a table of an answer with the columns `names`, and the number of further rows."""
         from rocking.answers import Display
 
         columns = (display or Display()).table(rows, names)

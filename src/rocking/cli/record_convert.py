@@ -104,7 +104,7 @@ def record_convert(
         pairs = _pairs(table, files)
     if not all(isinstance(motion, GroundMotion) for pair in pairs.values() for motion in pair):
         raise UsageError("Give a record file, got the pulse {pulse!r:.80}", pulse=record[0])
-    # formats that state no unit keep the unit of the file
+    # formats without a stated unit keep the unit of the file
     unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)
     deliver(Conversion(pairs, unit, written), exports, as_json=as_json)
@@ -129,7 +129,7 @@ class Conversion:
     """A record before and after its steps."""
 
     pairs: dict[str, "tuple[GroundMotion, GroundMotion]"]  # components by axis; empty axis for a single component
-    units: str  # unit of files in formats that state no unit
+    units: str  # unit in files whose format states no unit
     files: tuple[str, ...]
 
     @property

@@ -48,7 +48,7 @@ class SolidAnswer:
     def of(
         cls, solid: Solid, models: list[str] | None, gravity: float, length: str, recommendation: Any = None
     ) -> "SolidAnswer":
-        """Compute the impacts; gravity: acceleration of gravity [m/s2]."""
+        """Compute the impacts at an acceleration of gravity [m/s2]."""
         gravity_value = checks.positive("gravity", gravity, "m/s2")
         chosen = [spatial_model(name) for name in models or spatial_models()]
         if solid.known is not None and models is None:

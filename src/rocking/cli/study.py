@@ -94,7 +94,7 @@ def histories_in(problem: StudyProblem, *, compared: bool = False) -> int:
 def body_and_motion(
     arguments: Arguments, kind: str, own: dict[str, Any], restitution: Sequence[str] | None
 ) -> StudyProblem:
-    """Return a study of one body and one motion; own: own table of the study."""
+    """Return a study of one body and one motion; `own` is the own table of the study."""
     _, named = arguments.body_and_motions()
     if not named:
         raise UsageError(NO_MOTION)
@@ -114,7 +114,7 @@ def of_body(
     restitution: Sequence[str] | None,
     motions: list[dict[str, Any]],
 ) -> StudyProblem:
-    """Return a study of one body under several motions; own: own table of the study."""
+    """Return a study of one body under several motions; `own` is the own table of the study."""
     stated = restitution or ()
     if twice := next((text for text in stated if stated.count(text) > 1), None):
         raise UsageError("{parameter} {model} is given twice", parameter="--restitution", model=twice[:60])

@@ -182,7 +182,7 @@ class Remedies:
     # total force of the anchors along the left and the right edge; 0 without uplift [N]
     tension: dict[str, float]
     shear: float  # horizontal force on all anchors [N]
-    # wider, lower: extension of the base on each side, and lowering of the centre of mass
+    # wider: extension of the base on each side; lower: lowering of the centre of mass
     wider: LengthChange
     lower: LengthChange
     # smallest isolator period above which no uplift occurs [s], and the isolator displacement [m]; None if uplift

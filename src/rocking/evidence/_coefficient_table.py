@@ -62,7 +62,7 @@ def interval_for(
 def _misfit(model: RestitutionModel, data: DataSet) -> tuple[float, float]:
     """Return the scatter of the measurements around a model; for unfitted models from stored values."""
     first, *misfit = _kept_misfits(data).get(model.label, (math.nan,))
-    # one prediction is compared, which detects another model with the same label
+    # a compared prediction detects another model with the same label
     if abs(first - model.of_slenderness(data.slenderness[:1])[0]) < 1e-12:
         return misfit[0], misfit[1]
     return _fitted(model.of_slenderness(data.slenderness).tobytes(), data)

@@ -163,7 +163,7 @@ class LeagueRow:
     """Errors of one contender on measurements."""
 
     name: str  # name in the league
-    model: RestitutionModel  # model, with its fitted values
+    model: RestitutionModel  # model with fitted values
     parameters: tuple[str, ...]  # names of the fitted parameters
     rmse: float  # rmse, bias: of r, model minus experiment [-]
     bias: float
@@ -178,7 +178,7 @@ class LeagueRow:
     bic: float  # BIC of the likelihood with rounding and a scatter that grows with the energy loss; lower is better
     by_group: dict[str, float]  # RMSE by data set [-]
     by_band: dict[str, float]  # RMSE by slenderness band [-]
-    # 95 % paired bootstrap interval of RMSE minus that of KED [-]; not resolved if it includes zero
+    # 95 % paired bootstrap interval of the RMSE minus the RMSE of KED [-]; not resolved if zero is inside
     ahead_of_ked: tuple[float, float]
 
     @property
@@ -238,7 +238,7 @@ def _row(contender: Contender, data: DataSet) -> LeagueRow:
     all_rows, without_row = np.ones(len(data), dtype=bool), list(~np.eye(len(data), dtype=bool))
     without_group = [~rows for rows in groups.values()]
     if contender.parameters and len(groups) == 1:
-        without_group = []  # no rows remain for the fit
+        without_group = []  # no result, because no rows remain for the fit
     model, *partial_fits = contender.fit(data, [all_rows, *without_row, *without_group])
     r = model.of_slenderness(data.slenderness)
     low, high = np.quantile(resampled((r - measured) ** 2, drawn(data)), [0.025, 0.975]).tolist()

@@ -45,7 +45,7 @@ class Claim:
     """A claim of the paper, with the verdict from the published measurements."""
 
     section: str  # section of the paper
-    quote: str  # the claim, in the paper's words or close to them
+    quote: str  # the claim in the words of the paper, or in similar words
     verdict: str  # "holds", "holds in part", "does not hold", "not resolved" or "not testable"
     evidence: str  # the numbers
     test: str  # method of the test

@@ -54,7 +54,7 @@ class Comparison(Difference):
 
     first: float  # first, second: root mean square errors [-]
     second: float
-    by_group: "dict[str, Comparison]"  # comparison within each data set
+    by_group: "dict[str, Comparison]"  # comparisons within the data sets
 
     def sentence(self, first_name: str, second_name: str) -> str:
         numbers = (

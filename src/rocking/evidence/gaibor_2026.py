@@ -281,7 +281,7 @@ def _cascade(branch: list[Bifurcation], number: int) -> tuple[FloatArray, dict[s
         rows[:, 2] *= 1.0 + 1e-9 * np.arange(16)  # nearly equal starts, which chaos makes independent
         system = orbit.system.changed("amplitude", float(values[at]))
         result = lyapunov_exponents(system, starts=rows, settled=500, kept=1000)
-        if len(result.finite) > 3:  # if fewer orbits remain, the chaos is transient, because orbits overturn later
+        if len(result.finite) > 3:  # with fewer remaining orbits, the chaos is transient: orbits overturn later
             exponents = (float(result.values[0] / p), float(result.standard_errors[0] / p))
             break
     names = ("chaos_step", "chaos_width", "largest_exponent", "largest_exponent_error")

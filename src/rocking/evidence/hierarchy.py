@@ -57,7 +57,7 @@ class LeftOut:
     measurements: int  # number of measurements
     inside: int  # number of measurements within their intervals for a single measured body
     interval_width: float  # mean width of these intervals [-]
-    probability: float  # predicted probability of a lower mean than that of the group [-]
+    probability: float  # predicted probability of a mean below the mean of the group [-]
 
     def answer(self) -> Answer:
         """Return the results of the group."""

@@ -46,7 +46,7 @@ def body(name: str) -> Body | Solid:
 
     example = _of(name, "body")
     example_body = read_body(path(example.name), **example.options)
-    assert not isinstance(example_body, Restrained)  # no example has restraints
+    assert not isinstance(example_body, Restrained)  # the examples have no restraints
     return example_body
 
 

@@ -54,7 +54,7 @@ def soft_soil(seed: int) -> GroundMotion:
 
 def three_components(seed: int) -> dict[str, GroundMotion]:
     """Return similar motions along x and y, 0.4 g and 0.35 g, and z of higher frequency, 0.2 g."""
-    # components of different seeds are different
+    # different seeds give different components
     components = {"x": (0.4, 3.0), "y": (0.35, 3.0), "z": (0.2, 8.0)}
     return {
         axis: _scaled_to_pga(peak, _shaking(3 * seed + k, length=12.0, frequency=frequency, corner=0.15))
@@ -68,7 +68,7 @@ def pulse() -> GroundMotion:
 
 
 def _shaking(seed: int, length: float, frequency: float, corner: float) -> GroundMotion:
-    """Return filtered noise; length: significant duration [s]; frequency: at its middle, corner: of a filter [Hz]."""
+    """Return filtered noise with a significant duration [s], a frequency in the middle and a corner frequency [Hz]."""
     middle = 0.6 * length
     modulation = modulation_from_intensity(1.0, length, middle)
     shaper = NonstationaryFilter(frequency, slope=-0.3 * frequency / length, middle=middle, damping=0.3)
@@ -137,7 +137,7 @@ class Example:
 def _body(
     name: str, shaking: str, title: str, *, options: Mapping[str, Any] | None = None, ending: str = "toml"
 ) -> Example:
-    """Return a body example; shaking: arguments of `rocking simulate` after the body."""
+    """Return a body example; `shaking` contains arguments of `rocking simulate` after the body."""
     file, options = f"{name}.{ending}", options or {}
     stated = "".join(f" --{key} {value}" for key, value in options.items())
     commands = f"rocking restitution {file}{stated}", f"rocking simulate {file} {shaking}{stated} --output {name}.png"
@@ -161,7 +161,7 @@ def _job(name: str, command: str, title: str) -> Example:
 
 
 def _campaign(name: str, ending: str, title: str) -> Example:
-    """Return a job of several bodies or restitution models with its own folder; ending: extension of the export."""
+    """Return a job of several bodies or models with its own folder; `ending` is the extension of the export."""
     commands = (
         f"rocking campaign run {name}.toml --output {name}",
         f"rocking campaign export {name} --output {name}.{ending}",
@@ -309,13 +309,13 @@ def record_text(motions: Mapping[str, GroundMotion]) -> str:
 
 
 def contents(example: Example, motions: Mapping[str, Mapping[str, GroundMotion]]) -> dict[str, bytes]:
-    """Return the contents of the files of an example by name; motions: by the names of records."""
+    """Return the contents of the files of an example by name; `motions` contains motions by the names of records."""
     own = {Path(file).name: (HERE / file).read_bytes() for file in example.files}
     return own | {f"{name}.csv": record_text(components).encode() for name, components in motions.items()}
 
 
 def written(files: Mapping[str, bytes], folder: Path, *, force: bool) -> list[Path]:
-    """Write files into a folder and return their paths; existing files with other content raise an error first."""
+    """Write files into a folder and return their paths; raise an error if a file with other content exists."""
     paths = {folder / name: content for name, content in files.items()}
     if not folder.is_dir():
         raise InvalidValueError("no folder {folder!r} for {files}", folder=str(folder), files=", ".join(files))

@@ -197,7 +197,7 @@ def fit_times(measurement: ImpactTimes, prior: Knowledge) -> tuple[Track, Poster
     fit, observer = _fitted(track, measurement.times, prior, noise, frequency)
     while fit.no_scatter < 0.5 and track.clicks.size > _FEWEST:
         # an apparent scatter of r may come from a bounce in place of a missed impact
-        sizes = np.abs(fit.standardized_residuals(observer))[1:]  # without the first time, which determines the foot
+        sizes = np.abs(fit.standardized_residuals(observer))[1:]  # the first time is kept for the foot
         if sizes.max() < _LARGEST_RESIDUAL:
             break
         worst = int(np.argmax(sizes)) + 1

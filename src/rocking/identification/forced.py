@@ -219,7 +219,7 @@ def _forced(posterior: ForcedPosterior, friction: IntervalEstimate) -> ForcedRoc
 
 
 def _predictable_time(problem: Forced, x: FloatArray) -> float:
-    """Return the time after which a change of r by 1e-4 changes the response by 10 % of its peak [s]; NaN if never.
+    """Return the time until a change of r by 1e-4 changes the response by 10 % of its peak [s]; NaN if never.
 
     The change is of first order, by the tangent dynamics.
     """

@@ -133,7 +133,7 @@ def _continued_fits(
         at, x = sliding(problem, ln), x.copy()
         x[FRICTION] = ln
         fit = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)
-        if not fit.converged or fit.objective > min_objective + _ROSE:  # separated half cycles
+        if not fit.converged or fit.objective > min_objective + _ROSE:  # half cycles may be separated
             for softer, same in forced_start.ANNEALED:
                 x = fitted(at, x, noise, softer, same, _STEPS).x
             other = fitted(at, x, noise, scatter, SAME_TIME, _STEPS)

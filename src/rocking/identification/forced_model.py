@@ -98,7 +98,7 @@ class Forced:
             )
         pieces = [np.arange(a, b + 1) for a, b in zip(first, last, strict=True)]
         stride = max(1, math.ceil(sum(piece.size for piece in pieces) / _MOST))
-        pieces = [piece[:: max(1, min(stride, (piece.size - 1) // 2))] for piece in pieces]  # at least 2 per half cycle
+        pieces = [piece[:: max(1, min(stride, (piece.size - 1) // 2))] for piece in pieces]  # none is empty
         return np.concatenate(pieces), np.repeat(np.arange(len(pieces)), [piece.size for piece in pieces])
 
     @cached_property

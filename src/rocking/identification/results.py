@@ -121,7 +121,7 @@ class ForcedRocking:
     excluded_half_cycles: int  # number of excluded half cycles, which rocking alone does not explain
     used: float  # used, measured: duration of the used half cycles, and of the measurement [s]
     measured: float
-    # time after which a difference of 1e-4 in r changes the response from rest by 10 % of its peak; NaN if never [s]
+    # time after which a change of r by 1e-4 changes the response from rest by 10 % of its peak [s]; NaN if never
     predictable: float
 
     def answer(self) -> Answer:

@@ -78,8 +78,8 @@ class Equilibria:
     notes: tuple[str, ...]
     min_barrier: float
     hull: Polytope = field(repr=False)
-    surface: FloatArray = field(repr=False)  # relative to the centre of mass, shape (n, 3) [m]
-    basins: dict[int, int] = field(repr=False)  # pose index by stable facet
+    surface: FloatArray = field(repr=False)  # points of the surface relative to the centre of mass, shape (n, 3) [m]
+    basins: dict[int, int] = field(repr=False)  # index of the final pose by index of the stable facet
     links: tuple[tuple[int, int, Equilibrium], ...] = field(repr=False)  # two poses and their saddle, sorted by height
 
     @property

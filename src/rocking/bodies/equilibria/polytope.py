@@ -22,7 +22,7 @@ Surface = tuple[FloatArray, IntArray, IntArray]
 class Polytope:
     """A convex polyhedron with the centre of mass at the origin; edges are counter-clockwise on their left facet."""
 
-    vertices: FloatArray  # [m]; shape (n, 3)
+    vertices: FloatArray  # positions of the vertices [m]; shape (n, 3)
     normals: FloatArray  # outward unit normals of the facets [-]; shape (f, 3)
     heights: FloatArray  # distances of the facets from the centre [m]; shape (f,)
     ends: IntArray  # start and end vertex of each edge; shape (e, 2)
@@ -189,10 +189,10 @@ class Polytope:
             hits = np.flatnonzero(gap == smallest[owner])
             earliest = hits[np.flatnonzero(np.diff(owner[hits], prepend=-1))]  # Eq. 245
             edges, vertices, gap = edges[earliest], others[earliest], gap[earliest]
-            summit = ~np.isfinite(gap)  # local maximum of the height: any direction leads down
+            summit = ~np.isfinite(gap)  # at a local maximum of the height, any direction leads down
             turned = down + np.where(summit, 0.0, gap)[:, None] * lever
             down = turned / np.linalg.norm(turned, axis=1, keepdims=True)
-            # a valley between two vertices: continue along the edge, away from the projection of the centre
+            # in a valley between two vertices, continue along the edge, away from the projection of the centre
             valley = ~summit & (self.beyond[edges, 0] < 0.0) & (self.beyond[edges, 1] > 0.0)
             flat = self.feet[edges] - down * (down * self.feet[edges]).sum(axis=1, keepdims=True)
             ahead = (self.normals[self.sides[edges]] * flat[:, None]).sum(axis=2)
@@ -222,7 +222,7 @@ class Polytope:
 
 def polytope(points: FloatArray, centre: FloatArray, faces: IntArray | None = None) -> Polytope:
     """Return the convex hull of points about a centre; coplanar facets, within 1e-7 of the size, are merged."""
-    # faces: triangles of the surface; a convex surface is used without a search for the hull
+    # `faces` are triangles of the surface; a convex surface is used without a search for the hull
     around = points - centre
     flat = FLAT * float(np.ptp(around, axis=0).max())
     if faces is not None and (surface := _closed(around, faces)) is not None:

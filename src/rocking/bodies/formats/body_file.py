@@ -127,7 +127,7 @@ def parsed_toml(text: Any) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # the text of the exception contains line and column
         raise BodyFileError("Invalid TOML: {reason}", reason=str(error)) from error
-    except (ValueError, RecursionError) as error:  # integers with thousands of digits, or thousands of nested brackets
+    except (ValueError, RecursionError) as error:  # from too long numbers or too deep nesting
         raise BodyFileError("Unreadable TOML: {reason}", reason=str(error).partition(";")[0]) from error
 
 

@@ -98,7 +98,7 @@ def _parsed(text: str) -> Any:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
         raise BodyFileError("Invalid JSON: {reason}", reason=str(error)) from error
-    except (ValueError, RecursionError) as error:  # integers with thousands of digits, or thousands of nested brackets
+    except (ValueError, RecursionError) as error:  # from too long numbers or too deep nesting
         raise BodyFileError("Unreadable JSON: {reason}", reason=str(error).partition(";")[0]) from error
 
 

@@ -27,7 +27,7 @@ from rocking.conventions import LENGTH_UNITS, FloatArray, IntArray
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, MissingExtraError, how_to_install, located
 from rocking.messages import Message
 
-MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # by extension
+MESH_FORMATS = ("stl", "obj", "ply", "glb", "xyz")  # extensions of mesh files
 _UP = {"z": (0.0, 0.0, 1.0), "y": (0.0, 1.0, 0.0)}
 FEWEST_POINTS = 50  # smallest number of points of a cloud without faces [-]
 
@@ -155,7 +155,7 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
         raise MissingExtraError(how_to_install("reading meshes", "trimesh", error)) from error
     _check_stated(content, kind)
     try:
-        # from memory and without a resolver, which prevents access to other files
+        # trimesh reads from memory and without a resolver, which prevents access to other files
         scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
         pieces: list[Any] = scene.dump()
         vertices = np.concatenate([np.zeros((0, 3)), *(piece.vertices for piece in pieces)])

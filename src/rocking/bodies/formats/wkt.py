@@ -120,7 +120,7 @@ def _polygons(geometry: "BaseGeometry") -> "list[Polygon]":
 
 def _densities(density: Any, count: int) -> list[Any]:
     if isinstance(density, str) or not isinstance(density, (Sequence, np.ndarray)):
-        return [density] * count  # Region checks the value
+        return [density] * count  # `Region` checks the density
     if len(density) != count:
         raise BodyFileError(
             "The number of densities must be 1 or the number of polygons, {count}, got {densities}.",

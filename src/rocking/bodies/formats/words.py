@@ -64,7 +64,7 @@ def suggestion(word: str, names: Iterable[str]) -> str:
 
 def from_pydantic(problems: "Sequence[ErrorDetails]", units: Any = None, kind: type[E] = InvalidValueError) -> E:  # type: ignore[assignment]
     """Return the first error of a pydantic validation as a `RockingError`, with the number of further errors."""
-    # units: unit of the lengths
+    # `units` is the unit of the lengths
     path, cause = _path(problems[0]["loc"]), problems[0].get("ctx", {}).get("error")
     if isinstance(cause, RockingError):
         refusal = cause.copied(kind)
@@ -166,7 +166,7 @@ def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
         is_file, size = path.is_file(), path.stat().st_size
     except FileNotFoundError as error:
         raise BodyFileError("The file does not exist.") from error
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+    except (OSError, ValueError) as error:  # ValueError is raised for a NUL in the name
         raise BodyFileError("The file cannot be opened ({reason}).", reason=_reason(error)) from error
     if not is_file:
         raise BodyFileError("This is not a file.")

@@ -231,7 +231,7 @@ def _out_of_hull(part: Part) -> str:
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     try:
         planes = part.shape.hull.equations
-    except QhullError:  # too flat for a hull; the box is checked
+    except QhullError:  # the body is too flat for a hull, so only the box is checked
         return ""
     distance = float((planes[:, :3] @ (centre - middle) + planes[:, 3]).max())
     if distance > _PART_SLACK * float(np.ptp(vertices, axis=0).max()):

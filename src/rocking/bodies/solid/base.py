@@ -33,7 +33,7 @@ class Edge:
 class Base(ABC):
     """Base of a solid on the ground."""
 
-    height: float  # of the ground [m]
+    height: float  # height of the ground [m]
 
     @abstractmethod
     def margin(self, point: FloatArray) -> float:
@@ -61,9 +61,9 @@ class Base(ABC):
 class RoundBase(Base):
     """A circular base."""
 
-    centre: FloatArray  # (x, y) [m]
-    radius: float  # [m]
-    height: float = 0.0  # of the ground [m]
+    centre: FloatArray  # centre (x, y) [m]
+    radius: float  # radius of the circle [m]
+    height: float = 0.0  # height of the ground [m]
 
     @property
     def size(self) -> float:
@@ -98,7 +98,7 @@ class SupportPolygon(Base):
     """The convex hull of the contact points of a solid."""
 
     vertices: FloatArray  # corners of the hull, counter-clockwise seen from above [m]; shape (n, 2)
-    height: float = 0.0  # of the ground [m]
+    height: float = 0.0  # height of the ground [m]
 
     @property
     def size(self) -> float:
@@ -126,7 +126,7 @@ class SupportPolygon(Base):
         return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
 
     def opposite(self, which: int) -> Edge:
-        """Return the opposite edge parallel to the given one; raise an error if the body lands on a corner."""
+        """Return the opposite edge parallel to a given edge; raise an error if the body lands on a corner."""
         along = self.edge(which).direction
         for edge in self.edges:
             if dot(edge.direction, along) < -1.0 + 1e-12:

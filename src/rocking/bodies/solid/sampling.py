@@ -34,7 +34,7 @@ def samples(
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield Gauss points [m] of a closed surface in batches, with weighted outward normals [m2] (shape (n, 3))."""
     # Cells are split until each is smaller than its distance to the singular set, which contains the origin.
-    # bound: upper bound of the integrand at points, default 1 [-].
+    # `bound` is an upper bound of the integrand at points, by default 1 [-].
     for surface in surfaces:
         cells = surface.cells()
         for level in range(_MOST_LEVELS + 1):

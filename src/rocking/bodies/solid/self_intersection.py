@@ -125,7 +125,7 @@ def _halved(middles: FloatArray) -> IntArray:
     for depth in range(full.bit_length() - 1):
         groups = order.reshape(1 << depth, -1)
         places = padded[groups]
-        # one axis at a time, for speed
+        # a loop over the axes is faster
         axis = np.argmax([np.ptp(places[..., i], axis=1) for i in range(3)], axis=0)
         along = np.take_along_axis(places, axis[:, None, None], axis=2)[..., 0]
         order = np.take_along_axis(groups, np.argsort(along, axis=1, kind="stable"), axis=1).ravel()
@@ -189,6 +189,6 @@ def _beside(triangles: FloatArray) -> FloatArray:
     chosen = generator.choice(usable, count, replace=False, p=areas[usable] / areas[usable].sum())
     corner_weights = generator.dirichlet((4.0, 4.0, 4.0), count)
     points = np.einsum("kc,kci->ki", corner_weights, triangles[chosen])
-    # distance above the limit of touching faces
+    # this distance is above the limit of touching faces
     offsets = vectors[chosen] / areas[chosen, None] * (3.0 * DEPTH * size)
     return np.concatenate([points - offsets, points + offsets])

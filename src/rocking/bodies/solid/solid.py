@@ -419,7 +419,7 @@ class Solid:
         return result
 
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0, density: float = 1.0) -> "Solid":
-        # without checks: a similarity transformation of a valid body is valid
+        # no checks, because a similarity transformation of a valid body is valid
         result = object.__new__(Solid)
         result.name, result.repairs, result.turn = self.name, self.repairs, times(matrix, self.turn)
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin

@@ -65,7 +65,7 @@ def set_down(parts: Sequence[Part], pose: StablePose, size: float) -> tuple[list
 
 
 def stands(points: FloatArray, centre: FloatArray, tolerance: float) -> bool:
-    """Return True if the centre lies above the hull of the points up to a tolerance above the lowest one [m]."""
+    """Return True if the centre lies above the hull of all points within a tolerance above the lowest point [m]."""
     low = points[points[:, 2] <= points[:, 2].min() + tolerance, :2]
     try:
         return hull(low).margin(centre[:2]) > 1e-12 * float(np.ptp(points, axis=0).max())

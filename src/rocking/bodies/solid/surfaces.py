@@ -208,7 +208,7 @@ Footprint = tuple[FloatArray, tuple[tuple[FloatArray, float], ...]]
 
 
 class Shape(ABC):
-    """A closed volume in its own frame, with z along the axis of the shape; all methods use this frame."""
+    """A closed volume in its own frame, with z along the axis of the shape. All methods use this frame."""
 
     @abstractmethod
     def moments(self) -> SolidMoments:

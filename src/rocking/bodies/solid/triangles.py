@@ -10,7 +10,7 @@ from rocking.errors import GeometryError
 
 
 def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) -> tuple[FloatArray, IntArray]:
-    """Return checked points [m] and triangles; fewest: smallest number of triangles."""
+    """Return checked points [m] and triangles; `fewest` is the smallest allowed number of triangles."""
     points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 4:
         raise GeometryError(
@@ -43,7 +43,7 @@ def checked_triangles(vertices: ArrayLike, faces: ArrayLike, fewest: int = 4) ->
 
 
 def directed_edges(faces: IntArray) -> IntArray:
-    """Return the directed edges of faces, shape (3 m, 2): all first edges, then all second, then all third."""
+    """Return the directed edges of faces, shape (3 m, 2): all first edges, then all second and all third edges."""
     edges: IntArray = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return edges
 

@@ -31,7 +31,7 @@ class Meridian:
         return first[0] + (second[0] - first[0]) * fraction, first[1] + (second[1] - first[1]) * fraction
 
     def scaled(self, size: float) -> "Meridian":
-        """Return the piece with heights times `size`, and the same radii."""
+        """Return the piece with heights multiplied by `size`, and unchanged radii."""
         factors = np.array([[1.0, 1.0], [size, size]] if self.arc else [[1.0, size], [1.0, size]])
         return Meridian(self.data * factors, self.arc)
 
@@ -84,7 +84,7 @@ class Turned(Shape):
 
     def profile(self, chords: int = 48) -> tuple[FloatArray, FloatArray]:
         """Return radius [-] and height [m] of corners from the axis at the bottom to the axis at the top."""
-        # chords: number of chords of an arc
+        # `chords` is the number of chords of an arc
         ends = [piece.at(np.linspace(0.0, 1.0, chords + 1 if piece.arc else 2)[:-1]) for piece in self.meridians]
         last = self.meridians[-1].at(np.array([1.0]))
         radius, height = (np.concatenate([*(end[i] for end in ends), last[i]]) for i in range(2))

@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 
 MOST_UNITS = 20_000_000  # largest number of units [-]
 _SUBGRID = 3
-_Pieces = tuple[FloatArray, FloatArray, int]  # masses [kg], centres [m], order of convergence
+_Pieces = tuple[FloatArray, FloatArray, int]  # masses [kg], centres [m], and order of convergence of the pieces
 
 
 @dataclass(frozen=True, eq=False)

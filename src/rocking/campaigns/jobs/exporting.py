@@ -191,7 +191,7 @@ def _islands(folder: JobFolder) -> dict[str, list[str]]:
 
 
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
-    """Write the provenance into another file, with ``.provenance.json`` after the name of the first one."""
+    """Write the provenance into a file with the name of the given file and ``.provenance.json``."""
     path = beside.with_name(f"{beside.name}.provenance.json")
     disk.write_new(path, (json.dumps(provenance, indent=1, sort_keys=True) + "\n").encode())
     return path
@@ -336,7 +336,7 @@ def comparison_table(compared: Sensitivity, table: str) -> Table:
     columns = {}
     for name, index in zip(verdict.dims, np.indices(verdict.shape, sparse=True), strict=True):
         values = np.asarray(verdict[name].values)
-        # each text is stored once: repeated texts need far more space than numbers
+        # each text is stored once, because repeated texts need much more space than numbers
         labels = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
         columns[str(name)] = Column(np.broadcast_to(labels[index], verdict.shape).ravel())
     columns["verdict"] = Column(verdict.values.ravel(), meaning=str(verdict.attrs["long_name"]))
@@ -345,7 +345,7 @@ def comparison_table(compared: Sensitivity, table: str) -> Table:
 
 
 def _of_rows(row: str, rows: list[dict[str, Any]], meanings: Mapping[str, str]) -> Table:
-    """Return records with any keys as a table; NaN, or an empty text, for an absent key."""
+    """Return records with any keys as a table. An absent key gives NaN or an empty text."""
     columns: dict[str, Column] = {}
     for name in dict.fromkeys(name for record in rows for name in record):
         values = [record.get(name) for record in rows]

@@ -50,7 +50,7 @@ class TurnedMotion(Components):
     """A motion of several components, in the axes of a rotated solid."""
 
     unique_name: str
-    azimuth: float  # from the ground's x axis to the solid's x axis [rad]
+    azimuth: float  # angle from the ground's x axis to the solid's x axis [rad]
     in_plane: GroundMotion  # component in the plane of the plane body
 
     @property
@@ -69,7 +69,7 @@ class SolidHistories:
     def __init__(self, solid: Solid, motions: Any, azimuth: Any, friction: float, options: dict[str, Any]) -> None:
         self.components = [Components(*components_of(motions[k])) for k in range(len(motions))]
         for components in self.components:
-            ground_components(components)  # raises an error for other types
+            ground_components(components)  # this call raises an error for other types
         fixed = {"base": 0.0, "centre": 1.0, "offset": 0.0, "level": 0.0, "restitution": 0.0, "model_error": "off"}
         inputs = {"friction": friction, **fixed}
         self._mechanics, self._options = SampledInSpace(solid, self.components, inputs, options["gravity"]), options

@@ -176,7 +176,7 @@ class CodeComparison:
         good = np.isfinite(ratio)
         if not good.any():
             return Bias(math.nan, (math.nan, math.nan), math.nan, 0, 0)
-        sample = np.where(np.isinf(truth), -np.inf, ratio)  # below all other ratios
+        sample = np.where(np.isinf(truth), -np.inf, ratio)  # these ratios are below all other ratios
         sample[~good] = np.nan
         low, middle, high = np.maximum(quantiles(sample.ravel(), QUARTERS), 0.0).tolist()
         interval, scatter = (math.nan, math.nan), math.nan

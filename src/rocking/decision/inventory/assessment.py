@@ -74,7 +74,7 @@ class Verdict:
     """Result of an object."""
 
     item: InventoryObject  # the object
-    results: tuple[DirectionResult, ...]  # one per direction, with the selected restitution model
+    results: tuple[DirectionResult, ...]  # results by direction, with the selected restitution model
     compared: tuple[tuple[DirectionResult, ...], ...]  # results with the other models
     interval: tuple[float, float]  # interval of the overturning fraction in the worse direction [-]
     friction: float = math.inf  # coefficient of friction of an object in 3D; infinite for a plane object [-]

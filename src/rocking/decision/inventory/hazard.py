@@ -169,7 +169,7 @@ class Hazard:
 
 
 def _apart(record: Any) -> tuple[Any, GroundMotion | None]:
-    """Return the leading horizontal component with the vertical one, and the other horizontal component."""
+    """Return the leading horizontal component with the vertical component, and the other horizontal component."""
     motion = together(record)
     if not isinstance(motion, Components):
         return motion, None

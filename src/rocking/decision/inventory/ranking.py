@@ -168,9 +168,10 @@ def limits(assessment: Assessment) -> list[str]:
 
 
 def rows(assessment: Assessment, code: str = "en") -> list[list[str | float | int]]:
-    """Return one row per object, by `header`: the worst first, rows without a verdict last; formulas are escaped.
+    """Return one row per object with the titles of `header`: the worst object first, rows without a verdict last.
 
-    Sentences are in the language of the assessment, names of lights and directions in that of the code.
+    Formulas are escaped. Sentences are in the language of the assessment, names of lights and directions in the
+    language of the code.
     """
     say, own, plan = language(code), words_of(assessment), {id(entry.item): entry for entry in assessment.plan}
     lines: list[list[str | float | int]] = []

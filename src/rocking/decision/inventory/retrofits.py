@@ -42,12 +42,12 @@ class PlanEntry:
     directions: tuple[Direction, ...] = ()  # directions of uplift
     wider: float | None = None  # extension of the base on each side [m]
     lower: float | None = None  # lowering of the centre of mass [m]
-    ballast: float | None = None  # mass at the floor for this lowering, if the mass of the object is known [kg]
-    ballast_share: float | None = None  # mass of the ballast over the mass of the object [-]
+    ballast: float | None = None  # mass of the ballast at the floor for this lowering, for a known mass [kg]
+    ballast_share: float | None = None  # mass of the ballast / mass of the object [-]
     weaker: float | None = None  # largest scale factor of the motions that gives green [-]
-    pull: float | None = None  # force of the anchors along one edge, over the weight [-]
+    pull: float | None = None  # force of the anchors along one edge / weight [-]
     force: float | None = None  # force of the anchors, if the mass is known [N]
-    shear: float | None = None  # horizontal force on all anchors over the weight [-]
+    shear: float | None = None  # horizontal force on all anchors / weight [-]
     in_space: bool = False  # True for an object in three dimensions, without changes of base and centre
 
 

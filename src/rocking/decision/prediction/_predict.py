@@ -168,7 +168,7 @@ def predict(  # noqa: PLR0913 - each uncertain input is an argument
             try:
                 other_mechanics = mechanics.with_restitution(name)
             except RockingError:
-                continue  # the model does not apply to this body
+                continue  # a model that does not apply to this body is omitted
             other_results = _counted(
                 other_mechanics, points[: half_count // 2, mechanics.widths["restitution"] :], min_sliding, threads,
                 None, 0,

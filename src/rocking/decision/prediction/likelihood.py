@@ -50,7 +50,7 @@ def _broad(probability: float) -> str:
 
 
 def scale_words() -> str:
-    """Return the scale as one sentence, for print with a result.
+    """Return the scale as one sentence for printing with a result.
 
     >>> scale_words()[:17]
     'Likelihood terms:'

@@ -34,7 +34,7 @@ class Uncertain:
 
     text: str
     quantile: Callable[[FloatArray], FloatArray]  # inverse of the cumulative distribution
-    fixed: bool = False  # True for one number
+    fixed: bool = False  # True for a fixed number
 
     @property
     def median(self) -> float:

@@ -209,7 +209,7 @@ def rotation_from_video(path: Path, region: Sequence[float] | None, frame_rate: 
             )
     turned, camera_doubts = _camera(film, ~ndimage.binary_dilation(moving | body, iterations=4), a, b)
     time = film.time
-    if frame_rate is not None:  # the stated rate replaces that of a video in slow motion
+    if frame_rate is not None:  # a stated frame rate replaces the rate in the file
         time = time * (time.size - 1) / (time[-1] - time[0]) / frame_rate
     doubts.append(
         "a camera direction 10 degrees off the normal of the plane reduces rotations by 1.5 %; the intervals "

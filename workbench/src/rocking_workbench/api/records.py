@@ -23,7 +23,7 @@ from rocking_workbench.records import RecordStore, StoredRecord
 from rocking_workbench.settings import state_of
 from rocking_workbench.work import heavy
 
-_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # substitutes, to find all missing values at once
+_STAND_IN = {"units": "m/s2", "time_step": 0.01}  # with substitutes, all missing values are found at once
 _QUIETEST = 1e-100  # smaller accelerations are refused: in any unit, their squares vanish in floating point
 _ORDER = ("format", "units", "time_step", "component")
 router = APIRouter(prefix="/api/records", tags=["records"])

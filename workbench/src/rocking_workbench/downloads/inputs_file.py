@@ -131,7 +131,7 @@ def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str 
     body, start, restitution = _body(inputs["body"]), _start(inputs, record), _restitution(inputs)
     if body is None or start is None or restitution is None:
         return None
-    if "--units" in start:  # the units of body and record are one option
+    if "--units" in start:  # one option contains the units of body and record
         position = start.index("--units")
         body[-1] += f",{start[position + 1]}"
         start = start[:position] + start[position + 2 :]

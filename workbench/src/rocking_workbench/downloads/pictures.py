@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ENOUGH = 2700  # largest number of points of a curve: one per pixel of the widest figure
-ONE_AT_A_TIME = RLock()  # serializes all figures
+ONE_AT_A_TIME = RLock()  # lock for the drawing of figures
 
 _SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
 _DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")

@@ -67,7 +67,7 @@ def _named_table(content: str, kind: str, evaluation: Evaluation, restitution: i
 
 def table_of(content: str, kind: str, evaluation: Evaluation, restitution: int | None = None) -> bytes:
     """Return a table as a file."""
-    if content == "response" and kind != "xlsx":  # file of the library, with its own names of quantities
+    if content == "response" and kind != "xlsx":  # the library writes this file, with its own names of quantities
         response = evaluation.chosen(restitution)
         write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
         with TemporaryDirectory(prefix="rocking-response-") as folder:

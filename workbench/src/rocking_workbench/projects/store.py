@@ -42,7 +42,7 @@ class Project:
     name: Annotated[str, "display name"]
     created: Annotated[str, "time in UTC"]
     changed: Annotated[str, "time of the last change in UTC"]
-    version: Annotated[int, "number of changes"]  # a change contains the version on which it is based
+    version: Annotated[int, "number of changes"]  # a change must name the present version
     state: Annotated[int, "number of the current state"]
     can_undo: bool
     can_redo: bool

@@ -113,7 +113,7 @@ class QuestionRun(Run):
         """Return a run of an earlier server; a run with which several servers ended is refused."""
         folder = QuestionFolder(path)
         note = folder.read()
-        if note is None or note.id != path.name:  # possibly of a later version, so unchanged
+        if note is None or note.id != path.name:  # the note may be of a later version and is not changed
             return None
         run = cls(folder, note)
         if note.state == RUNNING and note.starts >= _MOST_STARTS:

@@ -58,7 +58,7 @@ def sign_in(request: Request, token: SignIn) -> SignedIn:
         secure=request.url.scheme == "https",
         path="/",
     )
-    return answer  # with the cookie; SignedIn is only for the schema
+    return answer  # the response has the cookie; SignedIn is only for the schema
 
 
 @router.get("", summary="Check the session")

@@ -38,7 +38,7 @@ class Meta:
     histories: int  # number of histories
     state: Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"] = WAITING
     message: str = ""  # result message; empty if there is none
-    project: str = ""  # identifier of its project; empty without a project
+    project: str = ""  # identifier of the project of the study; empty without a project
 
 
 class StudyFolder(RunFolder):
@@ -62,7 +62,7 @@ class StudyFolder(RunFolder):
                 disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
                 if not job.needs_long:
                     with np.errstate(all="ignore"):  # an overflow gives infinity, which is refused with its key
-                        count = Job.read(self.path / JOB).study.histories.count  # checks all inputs
+                        count = Job.read(self.path / JOB).study.histories.count  # this call checks all inputs
                     if count != meta.histories:
                         raise InvalidValueError(
                             "job has {count} histories, not {expected}", count=count, expected=meta.histories

@@ -39,7 +39,7 @@ class RepairLog:
     describe: Callable[[FloatArray], str] = coordinates_text  # text of a point relative to the middle of the box [m]
     repairs: list[tuple[str, float, FloatArray | None]] = field(
         default_factory=list
-    )  # sentence, volume [m3], location [m]
+    )  # repairs: sentence, bound of the volume change [m3], location [m]
     patches: list[FloatArray] = field(default_factory=list)  # triangles in former holes, shape (m, 3, 3) per hole [m]
 
     def __post_init__(self) -> None:
@@ -47,7 +47,7 @@ class RepairLog:
         self.inner_parts = checks.one_of("inner_parts", self.inner_parts, get_args(InnerParts))
 
     def add_repair(self, sentence: str, volume: float = 0.0, location: FloatArray | None = None) -> None:
-        """Store a repair; volume: bound of the volume change [m3] at a location [m], or anywhere."""
+        """Store a repair; `volume` is a bound of the volume change [m3] at a location [m], or anywhere."""
         if self.allowed == "none":
             stated = Option("body.repair", "none")
             raise GeometryError(
@@ -61,8 +61,8 @@ class RepairLog:
 
     def bounds(self, result: SolidMoments, size: float) -> list[tuple[float, float]]:
         """Return bounds of the relative volume change [-] and of the shift of the centre [m], by repair."""
-        # result: volume and centre of the repaired body; size: its largest side [m]. A change without location has an
-        # assumed distance of size / 2 from the centre.
+        # `result` is the volume and centre of the repaired body; `size` is its largest side [m]. A change without
+        # location has an assumed distance of size / 2 from the centre.
         bounds_of_repairs = []
         for _, volume, location in self.repairs:
             distance = 0.5 * size if location is None else float(np.linalg.norm(location - result.centre))

@@ -15,7 +15,7 @@ WELD = 1e-6  # distance of merged vertices / size, if merging of equal vertices 
 def merge_vertices(
     points: FloatArray, faces: IntArray, tolerance: float | None, size: float, log: RepairLog
 ) -> tuple[FloatArray, IntArray]:
-    """Return the surface with one vertex for all vertices within a distance [m]; size: largest side [m]."""
+    """Return the surface with one vertex for all vertices within a distance [m]; `size` is the largest side [m]."""
     from scipy.spatial import cKDTree
 
     same, inverse = _distinct(points)

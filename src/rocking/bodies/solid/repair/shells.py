@@ -127,7 +127,7 @@ def _without_double_scans(
 ) -> IntArray:  # fmt: skip
     """Return the indices of all shells except the inner shells of double scans."""
     areas = np.array([total_area(points[shell]) for shell in shells])
-    gaps = (np.abs(volumes) - np.abs(volumes)[:, None]) / areas  # from inner i to outer j
+    gaps = (np.abs(volumes) - np.abs(volumes)[:, None]) / areas  # distance from the inner shell i to the outer shell j
     size = largest_extent(points)
     twice = within & (volumes * volumes[:, None] > 0.0) & (gaps < _TWICE * size)
     if log.inner_parts == "cavity":  # an inner shell with the same orientation is the inner side of a thin wall

@@ -55,7 +55,7 @@ def smooth_crossings(points: FloatArray, faces: IntArray, log: RepairLog) -> tup
 
 
 def _smoothed(points: FloatArray, faces: IntArray, is_moved: BoolArray) -> FloatArray:
-    """Return the points; the selected ones are moved half way to the mean of their neighbours."""
+    """Return the points; selected points are moved half way to the mean of their neighbours."""
     edges = directed_edges(faces[is_moved[faces].any(axis=1)])
     count = np.bincount(edges[:, 0], minlength=len(points))
     sums = [np.bincount(edges[:, 0], weights=points[edges[:, 1], i], minlength=len(points)) for i in range(3)]

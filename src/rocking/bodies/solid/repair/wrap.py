@@ -21,7 +21,7 @@ _COVERED = 0.95  # smallest fraction of points in the skin [-]
 _BOTTOM = 0.02  # largest height of the rim of an open bottom / height of the body [-]
 _EMPTY = 0.2  # smallest fraction of the plan without points at an open bottom [-]
 _SECTORS = 24  # number of sectors of the plan in which the rim has its lowest point [-]
-_JIGGLE = 1e-7  # random shift / size, against coplanar and cospherical points [-]
+_JIGGLE = 1e-7  # size of the random shift that prevents coplanar and cospherical points / size of the body [-]
 _CRUMB = 1e-2  # largest volume of a removed separate group of cells / volume of the largest group [-]
 _OPPOSITE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])  # vertices of the face opposite to each vertex
 

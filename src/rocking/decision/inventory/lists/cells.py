@@ -68,7 +68,7 @@ class DecimalMark:
                     marks.add(match[1])
         self.commas, self.points, self.comma_delimited = "," in marks, "." in marks, comma_delimited
         self.groups = groups - marks
-        self.columns = columns or {}  # the texts of each column, by its title
+        self.columns = columns or {}  # texts of the columns, by title
 
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell, in the unit of the column."""
@@ -203,7 +203,7 @@ def _two(title: str, text: str, quantity: Callable[[str, str], float]) -> tuple[
                 "{title} must go from the smaller to the larger, got {cell}", title=title, cell=f"{text!r:.40}"
             )
         return low, high
-    if match := _BESIDE.fullmatch(text):  # a size with the same size in another unit, or with an alternative size
+    if match := _BESIDE.fullmatch(text):  # size in two units, or two alternative sizes
         value, other = quantity(match[1], ""), quantity(match[2], match[1])
         if abs(value - other) > _OTHERWISE * value:
             raise InvalidValueError(_TWO_SIZES, title=title, cell=f"{text!r:.40}")
@@ -302,7 +302,7 @@ _TWICE = re.compile(r"([^()]*\d[^()]*)\(([^()]*\d\s*x[^()]*)\)")
 def parts(
     title: str, cell: Cell, order: Sequence[str], factor: float | None, mark: DecimalMark, language: str
 ) -> dict[str, CellMeasure]:
-    """Return the measures of a cell such as ``120 x 80 x 220 cm`` or ``H 120, Ø 30 cm``; order: that of its header.
+    """Return the measures of a cell such as ``120 x 80 x 220 cm`` or ``H 120, Ø 30 cm``; `order` is from its header.
 
     >>> sizes = parts("Maße", "H 120 x B 80 x T 40 cm", (), None, DecimalMark([]), "de")
     >>> {side: size.value for side, size in sizes.items()}

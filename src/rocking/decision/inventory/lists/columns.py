@@ -89,7 +89,7 @@ _TELLING = words_of(WORDS["telling"]) | {token for word in _MEASURED for token i
 _WITHIN = tuple(word for word in _TELLING if len(word) > 4 and word.isalpha())
 _FILLERS = frozenset(words_of(WORDS["fillers"]))
 _OTHERS, _WITHOUT = words_of(WORDS["others"]), words_of(WORDS["without"])
-_BEGINNINGS = tuple(word for word in _OTHERS if len(word) > 4)  # for words such as Sockelmaße, Rahmengröße
+_BEGINNINGS = tuple(word for word in _OTHERS if len(word) > 4)  # these match words such as Sockelmaße, Rahmengröße
 _INSTEAD = {word: stem for stem, text in WORDS["instead"].items() for word in words_of(text)}
 _PHRASES: dict[str, set[str]] = {}  # phrases of all languages
 for _words in _HEADERS.values():
@@ -103,8 +103,8 @@ class InventoryColumn:
     """Meaning of a column."""
 
     stem: str  # quantity in the title
-    fields: tuple[str, ...]  # its fields of `InventoryObject`, in the order of the sizes in its cells
-    factor: float | None  # SI factor of its numbers; None if the cells or a column contain the units
+    fields: tuple[str, ...]  # fields of `InventoryObject`, in the order of the sizes in the cells
+    factor: float | None  # SI factor of the numbers; None if the cells or another column contain the units
     title: str  # title of the column in the file
 
 
@@ -112,7 +112,7 @@ class InventoryColumn:
 class Header:
     """Meaning of the titles of a list."""
 
-    columns: tuple[InventoryColumn | None, ...]  # None for an ignored column
+    columns: tuple[InventoryColumn | None, ...]  # meaning of the columns, None for an ignored column
     language: str
     titles: tuple[str, ...]  # titles of all columns
 
@@ -398,7 +398,7 @@ class _Level:
 
 
 def _column(title: str, texts: Sequence[str], language: str) -> InventoryColumn | None:
-    """Return the meaning of a column from the titles of its group and its own; None if unknown."""
+    """Return the meaning of a column from its title and the title of its group; None if unknown."""
     levels = [_Level.of(text, language) for text in texts]
     last = levels[-1] if levels else None
     if last and len(levels) > 1 and UNITS.get(plain(texts[-1])) in _units_of(levels[-2].stem):

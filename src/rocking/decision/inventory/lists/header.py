@@ -26,8 +26,8 @@ _SAMPLE = 200  # number of examined rows below the header [-]
 class LocatedHeader:
     """A header and its position."""
 
-    first: int  # index of its first row in the table
-    end: int  # index of the row below it
+    first: int  # index of the first row of the header in the table
+    end: int  # index of the row below the header
     header: Header
     titles: tuple[tuple[str, ...], ...]  # titles by column, titles of column groups first
     measures: int  # number of measures below the header
@@ -52,7 +52,7 @@ def _candidates(sheet: Sheet, mapped: Mapping[str, str]) -> Iterator[LocatedHead
     for first in range(min(len(rows), _HIGHEST)):
         for end in range(first + 1, min(first + _TALLEST, len(rows)) + 1):
             if end > first + 1 and any(text[:1].isdigit() for text in rows[end - 1][1]):
-                break  # a row of numbers
+                break  # a row of numbers is below the header
             if end > first + 1 and _is_title_line(rows[first][1], rows[end - 1][1]):
                 break
             if first and end - first < _TALLEST and _belongs(*rows[first - 1 : first + 1]):
@@ -71,7 +71,7 @@ def _belongs(above: tuple[int, list[str]], below: tuple[int, list[str]]) -> bool
 
 
 def _is_title_line(texts: Sequence[str], below: Sequence[str]) -> bool:
-    """Return True if a row has one text above the first column: a title of the table, not of a column group."""
+    """Return True for a title of the table (one text above the first column), but not for a title of a column group."""
     filled = [k for k, text in enumerate(texts) if text]
     return len(filled) == 1 and filled[0] <= next((k for k, text in enumerate(below) if text), 0)
 

@@ -247,7 +247,7 @@ class RowValues:
     def settle_words(self, find: Callable[[str], Path] | None) -> None:
         """Convert consequence and photo to fields of an object."""
         if (word := self.fields.pop("consequence", None)) and not is_missing(word):
-            self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # conservative
+            self.fields["consequence"] = _CONSEQUENCES.get(plain(word), "high")  # unknown words count as high
             if plain(word) not in _CONSEQUENCES:
                 facts = {"cell": f"{word!r:.40}"}
                 self.remarks.append(Message("consequence {cell} is not low, medium or high; high is used", facts))
