@@ -32,7 +32,7 @@ class ImpactLaw:
     at, factors : ndarray
         The table, for laws with a table.
     seed : int
-        Seed of the random numbers.
+        Seed of the draws.
     """
 
     kind: ClassVar[int] = -1
@@ -221,7 +221,7 @@ class DrawnRestitution(ImpactLaw):
         mean, deviation : float
             Mean and standard deviation of the distribution before truncation [-].
         seed : int
-            Seed of the random numbers.
+            Seed of the draws.
         times : optional
             Coefficient, model or name of a model, which the random values multiply.
         points : int
@@ -257,7 +257,7 @@ class DrawnRestitution(ImpactLaw):
         values : array_like, or mapping of foot to array_like
             Values of the coefficient or factor, for both sides or by foot [-].
         seed : int
-            Seed of the random numbers.
+            Seed of the draws.
         times : optional
             Coefficient, model or name of a model, which the random values multiply.
 
@@ -319,7 +319,7 @@ class RandomRestitution(DrawnRestitution):
         Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
         ``{"left": .., "right": ..}`` [-].
     seed : int
-        Seed of the random numbers.
+        Seed of the draws.
     times : optional
         Coefficient, model or name of a model, which the random values multiply; default 1.
     cut : (float, float)
