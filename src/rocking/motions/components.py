@@ -1,4 +1,4 @@
-"""Components of one motion: joined, rotated, and their largest values over all directions."""
+"""Components of one motion: joining, rotation, and largest values over all directions."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -14,12 +14,12 @@ from rocking.motions.pulse import Motion, Pulse
 
 Component = GroundMotion | Pulse | None
 AnyMotion = Motion | Mapping[str, Motion] | tuple[Component, ...]
-"""A motion along x, or components by direction, or in the order x, y, z."""
+"""A motion along x, components by direction, or components in the order x, y, z."""
 
 
 @dataclass(frozen=True, eq=False)
 class Components:
-    """Motions along x, y and z, scaled and stretched together; the leading component gives the measures.
+    """Motions along x, y and z, which are scaled and stretched together. The leading component gives the measures.
 
     >>> both = Components(GroundMotion([0.0, 1.0], 0.1, name="a"), GroundMotion([0.0, -2.0], 0.1, name="b"), None)
     >>> both.name, both.peak
@@ -31,7 +31,7 @@ class Components:
     z: Any
 
     def __post_init__(self) -> None:
-        """Refuse a vertical component along x or y."""
+        """Raise an error for a vertical component along x or y."""
         checked_level(self.x)
         checked_level(self.y)
 
@@ -42,7 +42,7 @@ class Components:
 
     @property
     def leading(self) -> Any:
-        """The horizontal component with the largest peak; the vertical one where it is alone."""
+        """The horizontal component with the largest peak. Without horizontal components, the vertical component."""
         return max(
             (component for component in (self.x, self.y) if component is not None),
             key=lambda component: component.peak,
@@ -70,20 +70,20 @@ class Components:
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Doubts about the components."""
+        """Warnings about the components."""
         return tuple(doubt for component in self.parts if component is not None for doubt in component.doubts)
 
     def each(self, change: Callable[[Any], Any]) -> "Components":
-        """Return all components after a change."""
+        """Apply a function to all components."""
         return Components(*(None if component is None else change(component) for component in self.parts))
 
     def segments(self) -> "Components":
-        """Return the components themselves: the 3D engine computes their segments together."""
+        """Return the components unchanged, because the 3D engine computes their segments together."""
         return self
 
 
 def leading(motion: Any) -> Any:
-    """Return the motion for axes and measures: the motion itself, or the leading one of several components."""
+    """Return the motion for axes and measures: the motion itself, or the leading component."""
     return motion.leading if isinstance(motion, Components) else motion
 
 
@@ -91,9 +91,9 @@ _ALLOWED = 'a GroundMotion, a pulse, or {"x": ..., "y": ..., "z": ...} of these'
 
 
 def components_of(motion: Any) -> tuple[Component, Component, Component]:
-    """Return the components of a motion, a mapping with x, y and z, or a tuple in that order.
+    """Return the components of a motion, of a mapping with x, y and z, or of a tuple in this order.
 
-    The vertical part of a record along x becomes z.
+    The vertical part of a record along x becomes the component z.
 
     >>> [part is None for part in components_of({"z": GroundMotion([0.0, 1.0], 0.1)})]
     [True, True, False]
@@ -127,7 +127,7 @@ def components_of(motion: Any) -> tuple[Component, Component, Component]:
 
 
 def together(motion: Any, *, plane: bool = False) -> Any:
-    """Return one motion unchanged, several components as one `Components`; in a plane, x with z as vertical part."""
+    """Return a motion unchanged and several components as `Components`. With `plane`, see `in_plane`."""
     if not isinstance(motion, (Mapping, tuple, Components)):
         return checked_level(motion)
     if plane:
@@ -136,7 +136,7 @@ def together(motion: Any, *, plane: bool = False) -> Any:
 
 
 def in_plane(motion: Any) -> GroundMotion | Pulse:
-    """Return the motion of a plane body: x, with z as its vertical part."""
+    """Return the motion for a plane body: component x, with component z as its vertical part."""
     if isinstance(motion, (GroundMotion, Pulse)):
         return checked_level(motion)  # type: ignore[no-any-return]
     x, y, z = components_of(motion)
@@ -151,7 +151,7 @@ def in_plane(motion: Any) -> GroundMotion | Pulse:
     return with_vertical(x, z)
 
 
-ANGLES = np.radians(np.arange(180.0))  # directions for RotD [rad]: every degree from 0 to 179
+ANGLES = np.radians(np.arange(180.0))  # directions for RotD [rad], every degree from 0 to 179
 
 
 def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMotion:
@@ -169,12 +169,12 @@ def with_vertical(horizontal: GroundMotion, vertical: GroundMotion) -> GroundMot
     Returns
     -------
     GroundMotion
-        Motion with both parts, cut to the shorter motion; the provenance contains the cut.
+        Motion with both parts, cut to the shorter motion. The provenance contains the cut.
 
     Raises
     ------
     InvalidValueError
-        If a motion is no `GroundMotion` or already has a vertical part, or if the time steps differ.
+        If a motion is not a `GroundMotion` or already has a vertical part, or if the time steps differ.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> tuple[Gr
     Returns
     -------
     tuple of GroundMotion
-        Components along the rotated x and y; each retains its vertical part.
+        Components along the rotated x and y. A vertical part of a component is kept.
 
     Examples
     --------
@@ -264,7 +264,7 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
     percentile = checks.within("percentile", percentile, 0.0, 100.0, unit="%")
     a, b = first.acceleration, second.acceleration
     if percentile == 100.0:
-        # between samples the point moves on a straight line: the maximum is at a sample
+        # between samples, the vector moves on a straight line, so that the maximum is at a sample
         return float(np.hypot(a, b).max())
     peaks = np.array([np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES])  # Eq. 156
     return float(np.percentile(peaks, percentile))
@@ -288,7 +288,7 @@ def _vertical_metadata(horizontal: GroundMotion, vertical: GroundMotion) -> dict
 
 
 def matching(first: GroundMotion, second: GroundMotion) -> None:
-    """Refuse components unless they are records with equal time step and length."""
+    """Raise an error unless both components are records with equal time step and length."""
     checked_motion(first, "first")
     checked_motion(second, "second")
     if len(first) != len(second) or not math.isclose(first.time_step, second.time_step, rel_tol=1e-9):

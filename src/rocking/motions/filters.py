@@ -1,8 +1,9 @@
 """Linear filters and elementary functions with the same bits on every processor.
 
-The approximations of exp, log, sin and cos in NumPy and the C library depend on the processor; sums and products do
-not. The compiled module computes the same sums and products in the same order, recurrences about 100 times as fast.
-Without the compiled module, these functions return the same bits. (`rocking.portable` does this for matrices.)
+The approximations of exp, log, sin and cos in NumPy and the C library depend on the processor, but sums and products do
+not. Therefore, these functions use sums and products only. The compiled module computes the same sums and products in
+the same order, and computes recurrences about 100 times as fast. The functions return the same bits without the
+compiled module. (`rocking.portable` has such functions for matrices.)
 """
 
 import math
@@ -18,8 +19,8 @@ _INVERSE = tuple(1.0 / math.factorial(k) for k in range(19))
 _LOG2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
 _HALF_PI = (1.57079632673412561417e00, 6.07710050650619224932e-11)
 _LANES = 4
-NEIGHBOURS = 10  # oscillators excited by one impulse; equal to the constant of the compiled module
-MIN_CYCLES = 1e-6  # smallest corner of the high pass [cycles per step]: below, rounding errors dominate
+NEIGHBOURS = 10  # number of oscillators excited by one impulse; the compiled module has the same constant
+MIN_CYCLES = 1e-6  # smallest corner frequency of the high pass [cycles per step], to limit rounding errors
 
 
 @cache
@@ -65,7 +66,7 @@ def logarithm(x: FloatArray) -> FloatArray:
 
 
 def geometric(low: FloatArray | float, high: FloatArray | float, count: int) -> FloatArray:
-    """Return numbers with equal ratios along the last axis; `numpy.geomspace` has other bits on other processors.
+    """Return numbers with equal ratios along the last axis. Bits of `numpy.geomspace` depend on the processor.
 
     >>> geometric(1.0, 100.0, 3).round(12).tolist()
     [1.0, 10.0, 100.0]
@@ -73,7 +74,7 @@ def geometric(low: FloatArray | float, high: FloatArray | float, count: int) -> 
     first, last = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     span = (logarithm(last) - logarithm(np.maximum(first, np.finfo(np.float64).tiny)))[..., None]
     x = np.linspace(0.0, 1.0, count)
-    nearest = np.where(x < 0.5, first[..., None], last[..., None])  # the ratio of the ends may overflow
+    nearest = np.where(x < 0.5, first[..., None], last[..., None])  # avoids an overflow of the ratio of both ends
     result = nearest * exponential(span * np.where(x < 0.5, x, x - 1.0))
     result[..., :1], result[..., -1:] = first[..., None], last[..., None] if count > 1 else first[..., None]
     return np.asarray(result)
@@ -101,7 +102,7 @@ def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
 def recurrence(
     move: FloatArray, start: tuple[float, float], first: FloatArray, second: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return two states over time: each step multiplies them by a matrix and adds an input.
+    """Return two states over time. Every step multiplies the states by a matrix and adds an input.
 
     >>> turn = np.array([[0.0, -1.0], [1.0, 0.0]])
     >>> [x.tolist() for x in recurrence(turn, (1.0, 0.0), np.array([0.5, 0.0]), np.zeros(2))]
@@ -129,12 +130,12 @@ def resonances(
     nodes: tuple[FloatArray, FloatArray],
     lasting: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the summed response of damped oscillators with fixed frequencies, and the sum of squared responses.
+    """Return the summed response of damped oscillators with fixed frequencies, and the sum of the squared responses.
 
-    Each impulse is `noise` times its frequency `omega` [rad/s]. It excites one oscillator, or `NEIGHBOURS` of them with
-    Lagrange's weights. `position` is the index of the first excited oscillator plus the fraction within the middle
-    interval, and never decreases. `nodes` are the decayed cosine and sine of one step. At every sample, the decayed
-    sines are summed, and twice their squares.
+    An impulse is the product of `noise` and its frequency `omega` [rad/s]. An impulse excites one oscillator, or
+    `NEIGHBOURS` oscillators with Lagrange's weights. `position` is the index of the first excited oscillator plus the
+    fraction within the middle interval; it never decreases. `nodes` are the decayed cosine and sine of one step. The
+    results at a sample are the sum of the decayed sines, and twice the sum of their squares.
 
     >>> unit = np.ones(1)
     >>> total, squares = resonances(unit, unit, np.zeros(1), False, (0.8 * unit, 0.6 * unit), 9.0 * unit)
@@ -179,7 +180,7 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
     """Return the transition matrix of displacement and velocity in free vibration over a step [rad/s, -, s]."""
     rate = omega * math.sqrt(1.0 - damping * damping)
     cosine, sine = cosine_sine(np.array([rate * step]))
-    # sin(x)/rate has a limit at critical damping
+    # sin(x) / rate has a finite limit at critical damping
     c, s = float(cosine[0]), float(sine[0]) / rate if rate > 0.0 else step
     decay = float(exponential(np.array([-damping * omega * step]))[0])
     own = damping * omega * s
@@ -188,12 +189,12 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
 
 def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> FloatArray:
     """Return the acceleration of a critically damped oscillator under a motion from rest [m/s2, s, Hz]."""
-    # The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement return
-    # to zero (Rezaeian & Der Kiureghian 2008). The samples are exact for straight lines between them.
+    # The acceleration z'' of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: velocity and displacement
+    # return to zero (Rezaeian & Der Kiureghian 2008). The samples are exact for straight lines between them.
     low, high = MIN_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)
     move = transition(w, 1.0, time_step)
-    # relative to the moving equilibrium of a line a + b t, the motion is a free vibration
+    # relative to the moving equilibrium under a line a + b t, the motion is a free vibration
     w2, lag = 1.0 / (w * w), 2.0 / w**3
     a, slope = acceleration[:-1], np.diff(acceleration) / time_step
     equilibrium, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope

@@ -1,4 +1,4 @@
-"""Intensity measures of many records in one table, with their spectra over all directions."""
+"""Intensity measures of many records in one table, and spectra over all directions."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -36,15 +36,16 @@ class Flatfile:
     Parameters
     ----------
     table : Table
-        Metadata and measures of each record: ``_x`` and ``_y`` of its horizontal components, ``_z`` upwards.
+        Metadata and measures of the records. Column names end with ``_x`` and ``_y`` for horizontal components, and
+        with ``_z`` for the vertical component.
     periods : ndarray
         Periods of the spectra [s].
     damping : float
         Damping ratio of the spectra [-].
     spectra : dict of str to ndarray
-        PSA by name, one row per record; NaN without a second component [m/s2].
+        PSA by name, one row per record [m/s2]. NaN without a second component.
     left_out : tuple of pairs of str
-        Records without measures, and the reason.
+        Records without measures, with the reason.
     """
 
     table: Table
@@ -154,7 +155,7 @@ def flatfile(
 
 
 def name_of(record: Components) -> str:
-    """Return the name of a record: the different names of its components."""
+    """Return the name of a record, which consists of the different names of its components."""
     return ", ".join(dict.fromkeys(component.name for component in record.parts if component is not None))
 
 
@@ -164,7 +165,7 @@ def _files(record: Components) -> str:
 
 
 def _columns() -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of each measure by its column name."""
+    """Return unit and meaning of the measures by column name."""
     listed = [measure for measure in MEASURES.values() if measure.is_listed and not measure.needs_body]
     columns = {
         f"{measure.name}_{axis}": (measure.unit, f"{measure.description}, {axis}")

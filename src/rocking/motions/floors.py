@@ -16,9 +16,9 @@ DAMPING = Assumed(0.05)
 def on_floor(motion: GroundMotion, number: int, storeys: int, period: float, damping: float = DAMPING) -> GroundMotion:
     """Return the horizontal motion of a floor of an elastic building; the vertical part is unchanged.
 
-    All storeys have equal mass and equal stiffness, all modes equal damping. The building carries no other load, and
-    the ground is rigid. The samples are exact for straight lines between the samples of the record. The floor motion
-    ends with the record: pad the record to include the free vibration after it.
+    All storeys have equal mass and equal stiffness, and all modes have equal damping. The building carries no other
+    load, and the ground is rigid. The samples are exact for straight lines between the samples of the record. The floor
+    motion ends with the record. To include the free vibration after the record, pad the record.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Integrals of a motion: velocity and displacement of the ground, their peaks, Arias intensity, significant duration.
+"""Integrals of a motion: ground velocity and displacement, their peaks, Arias intensity, significant duration.
 
 Velocity and displacement are exact for straight lines between the samples, as in simulations. The squared samples are
-summed by the trapezoidal rule, as is usual. A record is band-limited: by Parseval's theorem this sum is the integral
-of the square, except for half of the end samples. Straight lines would give up to one third less.
+summed by the trapezoidal rule, as is usual. For a band-limited record, this sum equals the integral of the square
+(Parseval's theorem), except for half of the end samples. Integrating the squared straight lines would give up to one
+third less.
 """
 
 import math
@@ -22,7 +23,7 @@ def ground_velocity(motion: GroundMotion) -> FloatArray:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
 
     Returns
     -------
@@ -43,7 +44,7 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
 
     Returns
     -------
@@ -66,7 +67,7 @@ def peak_ground_velocity(motion: GroundMotion) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        Motion, from rest; correct the baseline of a drifting record first.
+        Motion from rest. Correct the baseline of a drifting record first.
 
     Returns
     -------
@@ -81,7 +82,7 @@ def peak_ground_velocity(motion: GroundMotion) -> float:
     v, a = ground_velocity(motion), motion.acceleration
     turns = np.flatnonzero((a[:-1] < 0.0) != (a[1:] < 0.0))
     before, after = a[turns], a[turns + 1]
-    # division first: the fraction stays within [0, 1] for samples of any size
+    # dividing first keeps the fraction within [0, 1] for samples of any size
     inside = v[turns] + 0.5 * motion.time_step * before * (before / (before - after))
     return _largest(v, inside)
 
@@ -92,7 +93,7 @@ def peak_ground_displacement(motion: GroundMotion) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        Motion, from rest; correct the baseline of a drifting record first.
+        Motion from rest. Correct the baseline of a drifting record first.
 
     Returns
     -------
@@ -109,7 +110,7 @@ def peak_ground_displacement(motion: GroundMotion) -> float:
     start, rise = a[:-1], np.diff(a)
     inside = [u]
     for tau in quadratic_roots(0.5 * h * rise, h * start, v[:-1]):
-        # outside (0, 1) the extremes are at the ends of the step, which u contains
+        # outside (0, 1), the extremes are at the ends of the step, which u contains
         t = np.where((tau > 0.0) & (tau < 1.0), tau, 0.0)
         inside.append(u[:-1] + h * t * (v[:-1] + h * t * (0.5 * start + rise * t / 6.0)))
     return _largest(*inside)
@@ -123,7 +124,7 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     gravity : float
         Acceleration of gravity [m/s2].
 
@@ -149,7 +150,7 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     start, end : float
         Percentages, usually 5 and 95 or 5 and 75 [%].
 
@@ -170,14 +171,14 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
 def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> tuple[float, float]:
     """Return the times of two percentages of the Arias intensity, interpolated between samples.
 
-    Husid (1969), Revista del IDIEM 8:21; linear interpolation of the Husid plot.
+    Linear interpolation of the Husid plot. Husid (1969), Revista del IDIEM 8:21.
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     start, end : float
-        Percentages; `end` is larger [%].
+        Percentages [%]; `end` is larger than `start`.
 
     Returns
     -------
@@ -197,7 +198,7 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
 
 
 def integral_doubts(motion: GroundMotion) -> tuple[str, ...]:
-    """Return the doubts about a motion by its integrated velocity and displacement."""
+    """Return the warnings about the integrated velocity and displacement of a motion."""
     velocity, displacement = ground_velocity(motion), ground_displacement(motion)
     ends = float(velocity[-1]), float(np.abs(velocity).max()), float(np.abs(displacement).max())
     return plausibility.of_integrals(*ends)
@@ -209,14 +210,14 @@ def velocity_of(samples: FloatArray, time_step: float) -> FloatArray:
 
 
 def quadratic_roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return both real roots of many quadratic equations, without cancellation; not finite for missing roots."""
+    """Return both real roots of many quadratic equations, without cancellation. Missing roots are not finite."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         q = -0.5 * (first + np.copysign(np.sqrt(first * first - 4.0 * second * zeroth), first))
         return q / second, zeroth / q
 
 
 def _husid(motion: GroundMotion) -> FloatArray:
-    """Return the integral of the squared acceleration up to each sample [m2/s3]."""
+    """Return the integral of the squared acceleration up to every sample [m2/s3]."""
     squares = motion.acceleration**2
     return _summed(0.5 * motion.time_step * (squares[:-1] + squares[1:]))  # Eq. 141
 

@@ -1,8 +1,8 @@
 """Intensity measures of motions, by the usual definitions.
 
-Energies and areas use the trapezoidal rule over the samples; velocities and spectra use straight lines between them,
-as in simulations. An entry in `MEASURES` is sufficient to add a measure to `rocking record show`, fragility, scaling,
-plots and the files of OpenQuake.
+Energies and areas use the trapezoidal rule over the samples. Velocities and spectra use straight lines between the
+samples, as in simulations. To add a measure to `rocking record show`, fragility, scaling, plots and files for
+OpenQuake, an entry in `MEASURES` is sufficient.
 """
 
 import math
@@ -31,7 +31,7 @@ from rocking.portable import trapezoid
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)  # periods of Housner's spectrum intensity [s]: every 0.01 s
 
 SAMPLES_PER_PERIOD = 4000
-"""Samples per shortest period of a pulse: relative error below 1e-6, PGA exact."""
+"""Samples per shortest period of a pulse. Relative errors are below 1e-6, and the PGA is exact."""
 
 _NUMBER = r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*"
 _SPECTRAL = re.compile(rf"sa\({_NUMBER}(?:,{_NUMBER})?\)")
@@ -44,7 +44,7 @@ class Measure:
     Parameters
     ----------
     name : str
-        Name in full.
+        Full name.
     value : float
         Value in `unit`.
     unit : str
@@ -62,7 +62,7 @@ def peak_ground_acceleration(motion: GroundMotion) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
 
     Returns
     -------
@@ -75,13 +75,13 @@ def peak_ground_acceleration(motion: GroundMotion) -> float:
 def cumulative_absolute_velocity(motion: GroundMotion) -> float:
     """Return the cumulative absolute velocity CAV, the integral of the magnitude of the acceleration.
 
-    EPRI (1988), report NP-5930. The trapezoidal rule of the samples' magnitudes is within 0.5 % of the band-limited
-    signal on strong-motion records.
+    EPRI (1988), report NP-5930. For strong-motion records, the trapezoidal rule over the magnitudes of the samples is
+    within 0.5 % of the band-limited signal.
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     damping : float
         Damping ratio, from 0 to below 1 [-].
 
@@ -118,12 +118,12 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
 def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:
     """Return the pseudo-spectral acceleration PSA at one period.
 
-    Ground-motion models predict PSA; `response_spectrum` returns the absolute acceleration.
+    Ground-motion models predict PSA. (`response_spectrum` also returns the absolute acceleration.)
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     period : float
         Undamped natural period of the oscillator [s].
     damping : float
@@ -143,7 +143,7 @@ def normalised_acceleration(motion: GroundMotion, slenderness_angle: float, grav
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     slenderness_angle : float
         Angle alpha of the body, between 0 and pi/2 [rad].
     gravity : float
@@ -165,7 +165,7 @@ def normalised_velocity(
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     slenderness_angle : float
         Angle alpha of the body, between 0 and pi/2 [rad].
     frequency_parameter : float
@@ -188,7 +188,7 @@ def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used. A motion of zeros raises an error: it has no duration.
+        Motion. Only the horizontal part is used. A motion of zeros raises an error, because it has no duration.
 
     Returns
     -------
@@ -223,7 +223,7 @@ def _threshold(slenderness_angle: float, gravity: float) -> float:
 
 @dataclass(frozen=True)
 class RockingScale:
-    """Quantities of a body for dimensionless measures; without a body only gravity.
+    """Quantities of a body for dimensionless measures. Without a body, only gravity.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class IntensityMeasure:
     name : str
         Short name.
     description : str
-        Name in full.
+        Full name.
     unit : str
         SI unit; ``-`` if dimensionless.
     power : int
@@ -257,16 +257,16 @@ class IntensityMeasure:
     of_motion : callable
         Function of a record and a `RockingScale`; returns the value.
     symbol : str
-        Symbol; the name, if empty.
+        Symbol. If empty, the name.
     needs_body : bool
         True if the measure requires a body.
     is_listed : bool
-        True if tables of motions contain the measure; they omit ratios of other rows.
+        True if tables of motions contain the measure. These tables omit ratios of other rows.
     openquake : tuple of str, str and float, optional
-        Name and unit in OpenQuake, and one SI unit in that unit; None if OpenQuake has no such measure.
+        Name and unit in OpenQuake, and the value of one SI unit in this unit. None if OpenQuake has no such measure.
     uplift : callable, optional
-        Value of the measure at uplift of a body with equal sides, as a function of a `RockingScale`; None if it
-        depends on the motion.
+        Function of a `RockingScale` that returns the value of the measure at uplift of a body with equal sides. None if
+        this value depends on the motion.
 
     Examples
     --------
@@ -291,7 +291,7 @@ class IntensityMeasure:
         Parameters
         ----------
         motion : GroundMotion
-            Motion; only its horizontal part is used.
+            Motion. Only the horizontal part is used.
         body : RockingScale, optional
             Quantities of the body; required if `needs_body`.
 
@@ -310,12 +310,12 @@ class IntensityMeasure:
         return key_with_unit(self.name, self.unit)
 
     def values(self, motions: Any, body: RockingScale) -> FloatArray:
-        """Return the measure of every motion; every value must be finite and above zero.
+        """Return the measure of every motion. All values must be finite and above zero.
 
         Parameters
         ----------
         motions : MotionSet
-            Records or pulses; of several components, the leading one is used.
+            Records or pulses. If there are several components, the leading component is used.
         body : RockingScale
             Quantities of the body.
 
@@ -363,7 +363,7 @@ class IntensityMeasure:
         return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)  # Eq. 229
 
     def check_grows(self) -> None:
-        """Refuse a measure of power zero, which no scale factor changes."""
+        """Raise an error for a measure of power zero, because no scale factor changes its value."""
         if self.power == 0:
             raise InvalidValueError(
                 "{parameter} must grow with the scale factor, got {value}",
@@ -371,7 +371,7 @@ class IntensityMeasure:
             )  # fmt: skip
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
-        """Return the factors that scale every motion to every target; `power` must not be zero.
+        """Return the factors that scale every motion to every target. `power` must not be zero.
 
         Parameters
         ----------
@@ -468,15 +468,15 @@ def measure(name: Any, parameter: str = "im") -> IntensityMeasure:
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:
-    """Return period [s] and damping ratio [-] of a spectral measure by its name; None for other measures."""
+    """Return period [s] and damping ratio [-] of a spectral measure from its name; None for other measures."""
     match = _SPECTRAL.fullmatch(name)
     return None if match is None else (float(match[1]), float(match[2] or 0.05))
 
 
 def exchange_unit(name: str, unit: str) -> tuple[str, float]:
-    """Return the unit of a measure for other programs, and one SI unit in that unit.
+    """Return the unit of a measure for other programs, and the value of one SI unit in this unit.
 
-    This is the unit of OpenQuake for its measures, g for other accelerations, else the unit of the measure.
+    The unit is that of OpenQuake for its measures, g for other accelerations, and otherwise the SI unit.
 
     >>> exchange_unit("pgv", "m/s")
     ('cm/s', 100.0)
@@ -489,7 +489,7 @@ def exchange_unit(name: str, unit: str) -> tuple[str, float]:
 
 
 def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as a record; the measures of a sampled pulse have errors below 1e-6, its peak is exact."""
+    """Return a motion as a record. Measures of a sampled pulse have errors below 1e-6, and its peak is exact."""
     if not isinstance(motion, Pulse):
         return motion
     count = max(200, int(np.ceil(SAMPLES_PER_PERIOD * motion.fastest * motion.duration / (2.0 * np.pi))))

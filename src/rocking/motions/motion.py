@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.messages import Range
 from rocking.motions.segments import Segments
 
-LARGEST_ACCELERATION = 1e6  # [m/s2]: larger samples come from a wrong unit or a damaged file
+LARGEST_ACCELERATION = 1e6  # [m/s2]; larger samples result from a wrong unit or a damaged file
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3  # allowed range of the time step [s]
 
 
@@ -21,8 +21,8 @@ SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3  # allowed range of the time step [s]
 class GroundMotion:
     """Horizontal and optional vertical acceleration of the ground.
 
-    The first sample is at time zero. The acceleration is linear between samples, and zero before the first and after
-    the last one.
+    The first sample is at time zero. The acceleration is linear between samples, and zero before the first sample and
+    after the last sample.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ class GroundMotion:
     Raises
     ------
     InvalidValueError
-        If a sample is not finite or exceeds 1e6 m/s2, there are fewer than two samples, or the time step is not
-        above zero; if the vertical part has another length; if name, metadata or provenance have a wrong type.
+        If a sample is not finite or exceeds 1e6 m/s2; if there are fewer than two samples; if the time step is not
+        above zero; if the vertical part has another length; or if name, metadata or provenance have a wrong type.
 
     Examples
     --------
@@ -92,7 +92,7 @@ class GroundMotion:
         return f"<GroundMotion {self.name!r}: {size}{both}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for pickle, without the mapping proxy."""
+        """Return the state for pickle, without the mapping proxy of the metadata."""
         return {**self.__dict__, "metadata": dict(self.metadata)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -120,7 +120,7 @@ class GroundMotion:
 
     @property
     def peak_vertical(self) -> float:
-        """Peak vertical acceleration, zero without a vertical part [m/s2]."""
+        """Peak vertical acceleration [m/s2]; zero without a vertical part."""
         return 0.0 if self.vertical is None else float(np.abs(self.vertical).max())
 
     def segments(self) -> Segments:
@@ -134,13 +134,13 @@ class GroundMotion:
         Raises
         ------
         InvalidValueError
-            If the motion is, or may be, the vertical component of a record.
+            If the motion is or may be the vertical component of a record.
         """
         checked_level(self)
         return self.upright_segments()
 
     def upright_segments(self) -> Segments:
-        """Return the segments, also for a vertical component: a motion along z.
+        """Return the segments. This method also accepts a vertical component, a motion along z.
 
         Returns
         -------
@@ -172,7 +172,7 @@ class GroundMotion:
         Parameters
         ----------
         factor : float
-            Scale factor; a negative one reverses the polarity [-].
+            Scale factor [-]. A negative factor reverses the polarity.
 
         Returns
         -------
@@ -191,7 +191,7 @@ class GroundMotion:
 
 
 def checked_motion(motion: Any, name: str = "motion") -> GroundMotion:
-    """Return a motion if it is a record, else raise an error.
+    """Return a motion if it is a record. Otherwise raise an error.
 
     >>> checked_motion(GroundMotion([0.0, 1.0], 0.1)).peak
     1.0
@@ -210,7 +210,7 @@ _UPRIGHT = {"up": "is vertical", "down": "is vertical", "unclear": "may be verti
 
 
 def checked_level(motion: Any) -> Any:
-    """Return a motion unless it is, or may be, the vertical component of a record.
+    """Return a motion. Raise an error if it is or may be the vertical component of a record.
 
     >>> checked_level(GroundMotion([0.0, 1.0], 0.1, metadata={"component": "UP", "orientation": "up"}))
     Traceback (most recent call last):

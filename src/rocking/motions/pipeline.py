@@ -1,4 +1,4 @@
-"""Chains of processing steps as text, the same in Python, input files and on the command line."""
+"""Chains of processing steps as text. The text is the same in Python, in input files and on the command line."""
 
 import inspect
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from rocking.motions.intensity import MEASURES, measure
 from rocking.motions.motion import GroundMotion, checked_motion
 
 Steps = list[tuple[str, dict[str, Any]]]
-LONGEST_PADDING = 3600.0  # [s] 12 times a long record (300 s); larger values come from a wrong unit
+LONGEST_PADDING = 3600.0  # [s], 12 times a long record (300 s); larger values result from a wrong unit
 
 
 def _scaled(motion: GroundMotion, factor: float | None = None, **level: float) -> GroundMotion:
@@ -73,16 +73,16 @@ STEPS: dict[str, Callable[..., GroundMotion]] = {
     "floor": on_floor,
     "scale": _scaled,
 }
-"""Functions of the processing steps by name; keys are the names of their parameters."""
+"""Functions of the processing steps by name. The keys of a step are the parameters of its function."""
 
 
 def processed(motion: Any, chain: str | Sequence[str]) -> Any:
-    """Return a processed motion; its provenance contains each step.
+    """Return a processed motion. The provenance of the motion contains all steps.
 
     Parameters
     ----------
     motion : GroundMotion or Components
-        Motion. All components are cut at the same times, and scaled by the factor of the horizontal component with
+        Motion. All components are cut at equal times. They are scaled by the factor of the horizontal component with
         the largest peak.
     chain : str or sequence of str
         Ordered steps ``name:key=value,key=value``, separated by semicolons: ``mean; bandpass:low=0.1,high=25;
@@ -119,7 +119,7 @@ def processed(motion: Any, chain: str | Sequence[str]) -> Any:
 
 
 def _together(motion: Components, name: str, keys: dict[str, Any]) -> Components:
-    """Return all components after one step with common times and factors."""
+    """Return all components after one step, with common times and factors."""
     if name == "rotate" and motion.x is not None and motion.y is not None:
         import math
 
@@ -152,7 +152,7 @@ def steps_of(chain: str | Sequence[str]) -> Steps:
 
 
 def keys_of(step: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """Return the parameters of a step without the motion; `level` means any measure of nonzero power."""
+    """Return the parameters of a step, except the motion. `level` means any measure of nonzero power."""
     return {
         key: parameter for key, parameter in inspect.signature(step).parameters.items() if key not in {"motion", "body"}
     }

@@ -1,4 +1,4 @@
-"""Processing of records: correction, resampling, trimming and scaling, each with a line of provenance."""
+"""Processing of records: correction, resampling, trimming and scaling. Every step adds a line to the provenance."""
 
 import math
 from dataclasses import replace
@@ -15,8 +15,8 @@ from rocking.motions.integrals import significant_times, velocity_of
 from rocking.motions.intensity import RockingScale
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
-ROUNDING = 1e-6  # tolerance of a whole ratio of times
-MOST_SAMPLES = 100_000_000  # larger numbers come from a wrong unit
+ROUNDING = 1e-6  # tolerance of a whole-number ratio of times
+MOST_SAMPLES = 100_000_000  # larger numbers result from a wrong unit
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
@@ -25,7 +25,7 @@ def demeaned(motion: GroundMotion) -> GroundMotion:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; each component has its own mean.
+        Motion. The mean is removed from every component.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def detrended(
     Parameters
     ----------
     motion : GroundMotion
-        Motion; each component has its own trend.
+        Motion. Every component has its own trend.
     order : int
         Order of the polynomial, from 1 to 3 [-].
     fit : {"velocity", "acceleration"}
@@ -83,14 +83,14 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; both components are tapered.
+        Motion. Both components are tapered.
     fraction : float
         Length of each taper / duration, up to 0.5 [-].
 
     Returns
     -------
     GroundMotion
-        Tapered motion; the first and last samples are zero.
+        Tapered motion. The first and last samples are zero.
 
     Examples
     --------
@@ -110,13 +110,13 @@ def bandpassed(
 ) -> GroundMotion:
     """Return the motion filtered by a Butterworth band pass, forwards and backwards.
 
-    Two passes cancel the phase shift and square the response: at both corners the response is 1/2. Zero padding of
-    1.5 `order` / `low` is added at both ends before the filter (Converse & Brady 1992).
+    The two passes cancel the phase shift and square the response, so that the response is 1/2 at both corners. Zeros of
+    length 1.5 `order` / `low` are added at both ends before filtering (Converse & Brady 1992).
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; both components are filtered.
+        Motion. Both components are filtered.
     low, high : float
         Corner frequencies; `high` is below half the sampling rate [Hz].
     order : int
@@ -155,22 +155,22 @@ def bandpassed(
 def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     """Return the motion at another time step.
 
-    A finer step of any ratio interpolates linearly between the samples: every new sample is exact. If the ratio is
-    whole, simulations do not change; the Arias intensity decreases to that of the straight lines. A coarser step must
-    be a whole multiple. A linear-phase low pass (Hamming window, 10 taps per multiple on each side, no shift) then
-    first removes the frequencies above the new Nyquist frequency.
+    A finer step of any ratio interpolates linearly between the samples, so that every new sample is exact. If the ratio
+    is a whole number, simulations do not change, but the Arias intensity decreases to that of the straight lines. A
+    coarser step must be a whole multiple. In this case, a linear-phase low pass (Hamming window, 10 taps per multiple
+    on each side, no shift) first removes the frequencies above the new Nyquist frequency.
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; both components are resampled.
+        Motion. Both components are resampled.
     time_step : float
         New time step [s].
 
     Returns
     -------
     GroundMotion
-        Resampled motion. If the last sample is between two new steps, a zero follows one step later.
+        Resampled motion. If the last sample is between two new samples, a zero is added one step later.
 
     Raises
     ------
@@ -195,7 +195,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
                 limit=MOST_SAMPLES, count=count, hint="check the unit",
             )  # fmt: skip
         position = np.arange(count) * ratio
-        # rounding must not move the last new sample past the last old one
+        # rounding must not move the last new sample after the last old sample
         last = len(motion) - 1
         position[np.abs(position - last) <= ROUNDING] = last
         grid = np.arange(len(motion), dtype=np.float64)
@@ -222,7 +222,7 @@ def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
     Parameters
     ----------
     motion : GroundMotion
-        Motion; the time of the result starts at zero.
+        Motion. The time of the result starts at zero.
     start, end : float
         Times within the record, rounded outwards to samples [s].
 
@@ -257,7 +257,7 @@ def trimmed_to_significant(
     Parameters
     ----------
     motion : GroundMotion
-        Motion; its horizontal part gives the times.
+        Motion. The horizontal part determines the times.
     start, end : float
         Percentages of the Arias intensity [%].
     padding : float
@@ -287,7 +287,7 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     Parameters
     ----------
     motion : GroundMotion
-        Motion; a nonzero first or last sample is connected to zero by a straight line of one step.
+        Motion. A straight line of one step connects a nonzero first or last sample to zero.
     before : float
         Additional time before, rounded up to whole steps [s].
     after : float, optional
@@ -322,9 +322,9 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     Parameters
     ----------
     motion : GroundMotion
-        Motion; both components are multiplied by the factor of the horizontal one.
+        Motion. Both components are multiplied by the factor of the horizontal component.
     measure : str or IntensityMeasure
-        A name of `measures`, ``sa(period)``, or another measure; its power must not be zero.
+        A name from `measures`, ``sa(period)``, or another measure. The power of the measure must not be zero.
     target : float
         Target value [unit of the measure].
     body : RockingScale, optional
@@ -338,7 +338,7 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
     Raises
     ------
     InvalidValueError
-        If the measure is unknown, has power zero or requires a body, or if its value of the motion is zero.
+        If the measure is unknown, has power zero or requires a body, or if the measure of the motion is zero.
 
     Examples
     --------
@@ -362,7 +362,7 @@ def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingSc
 
 
 def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> FloatArray:
-    """Return the trend from polynomials orthogonal over the samples (Stieltjes' recurrence, no matrix)."""
+    """Return the trend from polynomials that are orthogonal over the samples (Stieltjes' recurrence, no matrix)."""
     x, duration = np.linspace(0.0, 1.0, samples.size), (samples.size - 1) * time_step
     velocity = fit == "velocity"
     weight, values = (x, velocity_of(samples, time_step)) if velocity else (np.ones_like(x), samples)

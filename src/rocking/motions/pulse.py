@@ -1,4 +1,4 @@
-"""Pulses: ground accelerations as formulas, from sums of sinusoids or Ricker wavelets."""
+"""Pulses: ground accelerations as formulas, which are sums of sinusoids or Ricker wavelets."""
 
 import math
 from abc import ABC, abstractmethod
@@ -15,7 +15,7 @@ from rocking.motions.filters import cosine_sine, exponential
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
 
-MOST_SAMPLES = 2_000_000  # larger numbers come from a wrong unit
+MOST_SAMPLES = 2_000_000  # larger numbers result from a wrong unit
 _PER_RADIAN = 8.0
 Wave = tuple[float, float, float]
 """Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""
@@ -28,7 +28,7 @@ _PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 
 class Pulse(ABC):
     """A horizontal ground motion with formulas for acceleration, velocity and displacement.
 
-    The motion starts at time zero from rest. After `duration` the acceleration is zero and the velocity is constant.
+    The motion starts at time zero from rest. After `duration`, the acceleration is zero and the velocity is constant.
     """
 
     @property
@@ -47,7 +47,7 @@ class Pulse(ABC):
         Returns
         -------
         str
-            Text with units; the full name for pulses without shorter names.
+            Text with units. Pulses without shorter names return the full name.
         """
         return self.name
 
@@ -64,7 +64,7 @@ class Pulse(ABC):
     @property
     @abstractmethod
     def fastest(self) -> float:
-        """Highest circular frequency of the pulse [rad/s]; it sets the length of segments."""
+        """Highest circular frequency of the pulse [rad/s]. It determines the length of segments."""
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -78,12 +78,12 @@ class Pulse(ABC):
         Parameters
         ----------
         factor : float
-            Scale factor; a negative one reverses the polarity [-].
+            Scale factor [-]. A negative factor reverses the polarity.
         """
 
     @abstractmethod
     def _inside(self, time: FloatArray, derivative: int) -> FloatArray:
-        """Return displacement (0), velocity (1) or acceleration (2) at times within the pulse, up to constants."""
+        """Return displacement (0), velocity (1) or acceleration (2) within the pulse, without integration constants."""
 
     def acceleration(self, time: Any) -> FloatArray:
         """Return the acceleration at given times.
@@ -96,7 +96,7 @@ class Pulse(ABC):
         Returns
         -------
         ndarray
-            Acceleration, zero outside the pulse [m/s2].
+            Acceleration [m/s2], zero outside the pulse.
         """
         t = _times(time)
         inside = (t >= 0.0) & (t <= self.duration)
@@ -182,13 +182,13 @@ class Pulse(ABC):
         Returns
         -------
         GroundMotion
-            Samples with straight lines between them, a second-order approximation in the step.
+            Samples with straight lines between them. The error is of second order in the step.
 
         Raises
         ------
         InvalidValueError
-            If the step is outside the limits of a `GroundMotion`, longer than the pulse, or so short that more than
-            2,000,000 samples result.
+            If the step is outside the limits of a `GroundMotion`, is longer than the pulse, or gives more than
+            2,000,000 samples.
         """
         step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
         if step > self.duration:
@@ -276,12 +276,12 @@ class Sinusoids(Pulse):
 class Ricker(Pulse):
     """A Ricker wavelet, symmetric or antisymmetric about its middle.
 
-    With t from the middle, the symmetric wavelet is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p. The antisymmetric
-    wavelet is ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... The wavelet ends
-    2 (2.5) periods from the middle, where it is below 1e-15 of the peak.
+    With the time t from the middle, the symmetric wavelet is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p. The
+    antisymmetric wavelet is ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801...
+    The wavelet ends 2 periods (antisymmetric: 2.5 periods) from the middle, where it is below 1e-15 of the peak.
     """
 
-    amplitude: float  # peak acceleration a_p; negative for reversed polarity [m/s2]
+    amplitude: float  # peak acceleration a_p [m/s2]; negative for reversed polarity
     period: float  # period T_p [s]
     shape: Literal["symmetric", "antisymmetric"] = "symmetric"
 
@@ -310,7 +310,7 @@ class Ricker(Pulse):
 
     @property
     def fastest(self) -> float:
-        """Circular frequency of the largest curvature [rad/s]."""
+        """Circular frequency that corresponds to the largest curvature [rad/s]."""
         return 3.0 * math.pi / self.period
 
     def scaled(self, factor: float) -> "Ricker":

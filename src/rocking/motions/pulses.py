@@ -1,4 +1,4 @@
-"""Functions that return pulses; a pulse has acceleration, velocity and displacement at any time.
+"""Functions that return pulses. A pulse has acceleration, velocity and displacement at any time.
 
 `amplitude` is the peak ground acceleration a_p [m/s2]. `period` is the period T_p of the full sinusoid [s], also for
 pulses of a half period.
@@ -245,13 +245,13 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
     cycles = checks.within("cycles", cycles, 1.0, 1000.0)
     phase = checks.number("phase", phase, "rad")
     main = 2.0 * math.pi / period
-    # the product of cosines is a sum of three; the start of the pulse, t = -gamma / (2 f), becomes time zero
+    # the product of cosines is written as a sum of three; the start of the pulse, t = -gamma / (2 f), is time zero
     waves = tuple(
         (-weight * frequency, frequency, phase - frequency * 0.5 * cycles * period)  # Eq. 159
         for weight, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
     )
     shape = "Mavroeidis-Papageorgiou pulse"
-    # first with 1 m/s, so that a too large velocity causes no overflow
+    # computed with 1 m/s first, so that a very large velocity causes no overflow
     most = LARGEST_ACCELERATION / _largest(Sinusoids(shape, waves, cycles * period, 0.0, 0.0, period))
     velocity = checks.within("velocity", velocity, -most, most, unit="m/s", hint="the acceleration would pass 1e6 m/s2")
     scaled = tuple((velocity * amplitude, frequency, phase) for amplitude, frequency, phase in waves)
@@ -358,11 +358,11 @@ def pulse(text: str) -> Pulse:
 
 
 UNITS_OF = {"amplitude": "m/s2", "period": "s", "duration": "s", "velocity": "m/s", "phase": "rad"}
-"""Units of the parameters of pulses; other parameters are dimensionless."""
+"""Units of the parameters of pulses. Other parameters are dimensionless."""
 
 
 def whole_or_number(key: str, text: str) -> float:
-    """Return the value of a parameter in its SI unit from a text with or without unit; n is a whole number."""
+    """Return the value of a parameter in its SI unit from a text with or without unit. n is a whole number."""
     value = checks.quantity(key, text, UNITS_OF.get(key, "1"))[0]
     return int(value) if key == "n" and value.is_integer() else value
 
@@ -415,7 +415,7 @@ def _closing_phase(n: int) -> float:
 
 
 def _largest(pulse: Sinusoids) -> float:
-    """Return the largest acceleration on a time grid, refined around its maximum."""
+    """Return the largest acceleration, from a time grid that is refined around the maximum."""
     import numpy as np
 
     times = np.linspace(0.0, pulse.duration, 4096 + 1)

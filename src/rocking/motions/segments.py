@@ -10,7 +10,7 @@ from rocking.conventions import FloatArray
 from rocking.portable import each, times
 
 SMOOTH_DEGREE = 7
-"""Degree of the polynomials of a smooth pulse; 32 per period approximate it within rounding."""
+"""Degree of the polynomials of a smooth pulse. With 32 polynomials per period, errors are rounding errors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,10 @@ class Segments:
 
     @classmethod
     def of_function(cls, acceleration: Callable[[FloatArray], FloatArray], duration: float, count: int) -> "Segments":
-        """Return `count` polynomials, equal to a smooth function within rounding for large counts."""
+        """Return `count` polynomials that approximate a smooth function.
+
+        For large counts, errors are rounding errors.
+        """
         n = SMOOTH_DEGREE + 1
         angles = np.pi * (np.arange(n) + 0.5) / n
         nodes = each(math.cos, angles)
@@ -46,7 +49,7 @@ class Segments:
         values = acceleration(((np.arange(count)[:, None] + 0.5 * (1.0 + nodes)) * step).ravel()).reshape(count, n)
         weights = 2.0 / n * each(math.cos, np.outer(angles, np.arange(n)))
         weights[:, 0] *= 0.5
-        # two stages: small high coefficients first, for small rounding errors
+        # two stages: small coefficients of high powers first, to keep rounding errors small
         return cls(step, times(times(values, weights), _SHIFTED))  # Eq. 162
 
     def refined(self, parts: int) -> "Segments":
@@ -62,7 +65,7 @@ class Segments:
         return Segments(self.step / parts, pieces[0], pieces[1])
 
     def extended(self, duration: float) -> "Segments":
-        """Return the motion with ground at rest after it, up to a duration."""
+        """Return the motion, extended by ground at rest up to a duration."""
         more = int(np.ceil((duration - self.duration) / self.step - 1e-9))
         if more <= 0:
             return self
@@ -96,7 +99,7 @@ def _lines(samples: FloatArray) -> FloatArray:
 
 
 def _cutting(degree: int, parts: int) -> FloatArray:
-    """Return the matrices of powers of tau on each of `parts` equal pieces; shape (parts, k, j)."""
+    """Return the matrices of powers of tau for `parts` equal pieces; shape (parts, k, j)."""
     cut = np.zeros((parts, degree + 1, degree + 1))
     for piece in range(parts):
         for k in range(degree + 1):
@@ -105,7 +108,7 @@ def _cutting(degree: int, parts: int) -> FloatArray:
 
 
 def _shifted_chebyshev(n: int) -> FloatArray:
-    """Return T_k(2 tau - 1) in powers of tau, one polynomial per row; all entries are integers."""
+    """Return T_k(2 tau - 1) in powers of tau, one polynomial per row. All entries are integers."""
     rows = np.zeros((n, n))
     rows[0, 0], rows[1, :2] = 1.0, (-1.0, 2.0)
     for k in range(2, n):

@@ -15,8 +15,8 @@ from rocking.motions.formats.record_set import RecordSet, mapped
 from rocking.motions.spectrum import response_spectrum, rotd_spectrum
 from rocking.motions.target_spectra import TargetSpectrum, target_spectrum
 
-POINTS = 25  # periods of the comparison, in equal ratios
-MOST = 4.0  # default largest scale factor, and inverse of the smallest [-]
+POINTS = 25  # number of periods of the comparison, with equal ratios
+MOST = 4.0  # default largest scale factor, and inverse of the smallest scale factor [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,11 +24,11 @@ class Selection:
     """Selected and scaled records, with their misfits."""
 
     records: RecordSet  # the scaled records, by increasing misfit
-    factors: FloatArray  # scale factor of each record [-]
-    misfits: FloatArray  # RMS over the periods of ln(spectrum / target) of each record [-]
+    factors: FloatArray  # scale factors of the records [-]
+    misfits: FloatArray  # RMS over the periods of ln(spectrum / target), one value per record [-]
     periods: FloatArray  # periods of the comparison [s]
     target: TargetSpectrum
-    spectra: FloatArray  # PSA of the scaled records [m/s2]: RotD50 of two components, else of the single one
+    spectra: FloatArray  # PSA of the scaled records [m/s2]: RotD50 of two components, or PSA of a single component
 
     @property
     def mean(self) -> FloatArray:
@@ -42,7 +42,7 @@ class Selection:
 
     @property
     def least(self) -> float:
-        """Smallest ratio of the arithmetic mean to the target; Eurocode 8 requires 0.9 [-]."""
+        """Smallest ratio of the arithmetic mean to the target [-]. Eurocode 8 requires 0.9."""
         return float((self.spectra.mean(axis=0) / self.target(self.periods)).min())
 
     @property
@@ -68,8 +68,8 @@ def selected(
 ) -> Selection:
     """Select the records with the smallest misfit to a target spectrum after scaling.
 
-    The scale factor of each record gives a zero mean of ln(spectrum / target) over the periods, which is the
-    least-squares solution. The records with the smallest root mean square are selected.
+    The scale factor of a record is the least-squares solution: the mean of ln(spectrum / target) over the periods is
+    zero. The records with the smallest root mean square of ln(spectrum / target) are selected.
 
     Parameters
     ----------
@@ -78,11 +78,11 @@ def selected(
     target : str or TargetSpectrum
         As in `target_spectrum`.
     count : int, optional
-        Number of records to select; the default is all.
+        Number of selected records. By default, all records.
     periods : tuple of float
         First and last period of the comparison [s].
     most : float
-        Largest factor, and inverse of the smallest; other records are rejected [-].
+        Largest scale factor, and inverse of the smallest scale factor [-]. Other records are rejected.
     workers : int
         Number of processes.
     progress : callable, optional
@@ -141,7 +141,7 @@ def selected(
 
 
 def spectrum_of(record: Components, periods: FloatArray, damping: float = 0.05) -> FloatArray:
-    """Return RotD50 of a record with two horizontal components, else the spectrum of its component [m/s2]."""
+    """Return RotD50 of a record with two horizontal components, or the spectrum of its single component [m/s2]."""
     if record.x is not None and record.y is not None:
         return np.asarray(rotd_spectrum(record.x, record.y, periods, damping, 50.0)[0], dtype=np.float64)
     return response_spectrum(record.leading, periods, damping).pseudo_acceleration

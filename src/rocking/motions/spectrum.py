@@ -1,4 +1,4 @@
-"""Response spectra of a record, exact for straight lines between samples, and Fourier spectra."""
+"""Response spectra of a record (exact for straight lines between samples), and Fourier spectra."""
 
 import math
 from collections.abc import Iterator
@@ -17,17 +17,17 @@ from rocking.motions.integrals import quadratic_roots
 from rocking.motions.motion import GroundMotion, checked_motion
 
 POINTS_PER_PERIOD = 36
-"""Minimum number of points per period; cubics between the points give the peaks."""
+"""Minimum number of points per period. Cubics between the points give the peaks."""
 
 FREE_POINTS = 288
-"""Points in the half period of free vibration; the error of a sine peak is at most (pi / 287)^2 / 8 = 0.0015 %."""
+"""Points in the half period of free vibration. The error of a sine peak is at most (pi / 287)^2 / 8 = 0.0015 %."""
 
 MARGIN = 1.001
 """Margin of the bound on the response within a step, for errors of the cubics below 0.01 % [-]."""
 
-SHORTEST_PERIOD = 0.05  # shortest period / time step: the record does not resolve shorter periods
-_TURN = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # one direction per row: every degree from 0 to 179
-_WITHIN = (0.25, 0.5, 0.75)  # positions within a step: 144 points per period, error at most 0.024 %
+SHORTEST_PERIOD = 0.05  # shortest period / time step; a record does not resolve shorter periods
+_TURN = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # one direction per row, every degree from 0 to 179
+_WITHIN = (0.25, 0.5, 0.75)  # positions within a step; 144 points per period give errors of at most 0.024 %
 ComplexArray = NDArray[np.complex128]
 Pair = tuple[FloatArray, FloatArray]
 """A response and its rate of change."""
@@ -59,27 +59,30 @@ class ResponseSpectrum:
 
     @property
     def pseudo_velocity(self) -> FloatArray:
-        """PSV: Sd times the natural frequency [m/s]."""
+        """PSV, the product of Sd and the circular natural frequency [m/s]."""
         return 2.0 * np.pi / self.periods * self.displacement  # Eq. 149
 
     @property
     def pseudo_acceleration(self) -> FloatArray:
-        """PSA: Sd times the squared natural frequency; equal to Sa only without damping [m/s2]."""
+        """PSA, the product of Sd and the squared circular natural frequency [m/s2].
+
+        It equals Sa only without damping.
+        """
         return (2.0 * np.pi / self.periods) ** 2 * self.displacement  # Eq. 149
 
 
 def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = 0.05) -> ResponseSpectrum:
     """Return the response spectrum of a motion.
 
-    The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI
-    10.1785/BSSA0590020909), here in its complex form. Only the peaks are approximate: they are the extremes of cubics
-    through values and slopes on at least 36 points per period. Their error is below 0.01 %, also for periods below 2
-    time steps. Half a period of free vibration after the last sample is included.
+    The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI 10.1785/BSSA0590020909).
+    It is used in complex form. Only the peaks are approximate: they are the extremes of cubics through values and
+    slopes at 36 or more points per period. The error of the peaks is below 0.01 %, even for periods below 2 time steps.
+    Half a period of free vibration after the last sample is included.
 
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     periods : array_like
         Undamped natural periods, at least 1/20 of the time step [s].
     damping : float
@@ -124,13 +127,13 @@ def oscillators(motion: GroundMotion, periods: ArrayLike, damping: float) -> tup
             shortest=shortest,
             period=validated.min(),
         )
-    # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
+    # with the complex rate s, the state z = u' - conj(s) u satisfies z' = s z - a, and u = Im z / Im s
     rates = 2.0 * math.pi / validated * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
     return validated.copy(), damping, np.asarray(rates, dtype=np.complex128)
 
 
 def phi(x: Any) -> tuple[Any, Any]:
-    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``, accurate also near zero."""
+    """Return the phi functions ``(exp(x) - 1) / x`` and ``(exp(x) - 1 - x) / x^2``. They are accurate near zero."""
     argument = np.asarray(x, dtype=np.complex128)
     near = np.abs(argument) <= 1.0
     small, large = np.where(near, argument, 0.0), np.where(near, 1.0, argument)
@@ -199,7 +202,7 @@ def _cubic_peak(left: Pair, right: Pair, step: float) -> float:
 
 
 def _response(states: ComplexArray, ground: Any, rates: Any) -> list[Pair]:
-    """Return displacement, velocity and absolute acceleration, each with its rate of change."""
+    """Return displacement, velocity and absolute acceleration, with their rates of change."""
     u = states.imag / rates.imag  # Eq. 150
     v = states.real + rates.real * u
     omega2, friction = np.abs(rates) ** 2, -2.0 * rates.real
@@ -217,8 +220,8 @@ def rotd_spectrum(
 ) -> FloatArray:
     """Return percentiles of the pseudo-spectral acceleration over all directions.
 
-    Boore (2010), DOI 10.1785/0120090400, with directions at every degree from 0 to 179 degrees. The response is exact
-    for straight lines between samples; the error of the peaks is below 0.03 %.
+    Boore (2010), DOI 10.1785/0120090400. The directions are every degree from 0 to 179 degrees. The response is exact
+    for straight lines between samples, and the error of the peaks is below 0.03 %.
 
     Parameters
     ----------
@@ -239,7 +242,7 @@ def rotd_spectrum(
     Raises
     ------
     InvalidValueError
-        If the components do not match, or a period, the damping or a percentile is outside of its range.
+        If the components do not match, or if a period, the damping or a percentile is outside its range.
 
     Examples
     --------
@@ -258,7 +261,7 @@ def directional_spectra(
     first: GroundMotion, second: GroundMotion, periods: ArrayLike, damping: float = 0.05
 ) -> FloatArray:
     """Return the pseudo-spectral acceleration in every direction, one row per period [m/s2]."""
-    # the displacement in another direction is a linear combination of both components
+    # the displacement in any direction is a linear combination of both components
     matching(first, second)
     validated, _, rates = oscillators(first, periods, damping)
     parts = np.ceil(POINTS_PER_PERIOD * first.time_step / validated).astype(np.int64)
@@ -274,7 +277,7 @@ def directional_spectra(
 
 
 def _path(first: GroundMotion, second: GroundMotion, rate: complex, parts: int) -> Iterator[FloatArray]:
-    """Yield points on the path of one oscillator under two components, for each part of the steps [m]."""
+    """Yield points on the path of one oscillator under two components [m], one array per part of the steps."""
     h, rates = first.time_step, np.array([rate])
     state = np.concatenate([states(first, rates), states(second, rates)])
     ground = np.stack([first.acceleration, second.acceleration])
@@ -300,12 +303,12 @@ def fourier_amplitudes(
     Parameters
     ----------
     motion : GroundMotion
-        Motion; only its horizontal part is used.
+        Motion. Only the horizontal part is used.
     frequencies : array_like, optional
-        Frequencies of amplitudes smoothed by the window of Konno & Ohmachi (1998); the default is the unsmoothed
-        transform [Hz].
+        Frequencies [Hz] of amplitudes that are smoothed by the window of Konno & Ohmachi (1998). The default is the
+        unsmoothed transform.
     bandwidth : float
-        Parameter b of the window; a larger b gives a narrower window [-].
+        Parameter b of the window [-]. A larger b gives a narrower window.
 
     Returns
     -------

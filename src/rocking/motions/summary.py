@@ -1,4 +1,4 @@
-"""Summaries of motions for results and reports: support, intensity, source and each processing step."""
+"""Summaries of motions for results and reports: support, intensity, source and processing steps."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ from rocking.motions.intensity import measure, sampled
 from rocking.motions.pulse import Pulse
 
 GROUND = "ground"
-"""Support of a motion at the ground."""
+"""Name of the support of a motion at the ground."""
 
 _MOST_ROWS = 12
 _SHOWN_NAMES = 4
 
 
 def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[str, ...]:
-    """Return the source of a motion and each processing step, in order; of components the differences by axis.
+    """Return the source of a motion and its processing steps, in order. For components, differences are listed by axis.
 
     The source of a pulse is its exact definition, or the text that `pulse` returns.
 
@@ -42,7 +42,7 @@ def provenance_of(motion: Any, pulse: Callable[[Pulse], str] = repr) -> tuple[st
 
 
 def support_of(motion: Any) -> str:
-    """Return where a motion acts: "ground", or the floor of a building.
+    """Return the support of a motion: "ground", or the floor of a building.
 
     >>> from rocking.motions import GroundMotion
     >>> support_of(GroundMotion([0.0, 1.0], 0.1))
@@ -52,7 +52,7 @@ def support_of(motion: Any) -> str:
 
 
 def peak_name(support: str, quantity: str = "A") -> str:
-    """Return PGA, or PFA on a floor; quantity V: PGV or PFV.
+    """Return PGA, or PFA on a floor. For the quantity V, return PGV or PFV.
 
     >>> peak_name("ground"), peak_name("floor 3 of 5", "V")
     ('PGA', 'PFV')
@@ -87,17 +87,17 @@ class MotionSummary:
     Parameters
     ----------
     name : str
-        Name of the motion; of components the names of all.
+        Name of the motion, or the names of all components.
     support : str
-        "ground", or the floor on which it acts.
+        "ground", or the floor on which the motion acts.
     peak : float
         Peak acceleration of the leading horizontal component [m/s2].
     peak_velocity : float
-        Peak velocity of the same component, from rest [m/s].
+        Peak velocity of the same component, starting from rest [m/s].
     duration : float
         Duration [s].
     provenance : tuple of str
-        Source, with the SHA-256 of each file, and each processing step, in order.
+        Source with the SHA-256 of every file, and all processing steps, in order.
     """
 
     name: str
@@ -119,7 +119,7 @@ class MotionSummary:
         Returns
         -------
         MotionSummary
-            Its summary.
+            Summary of the motion.
 
         Examples
         --------
@@ -147,7 +147,7 @@ class MotionSummary:
 
 
 def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
-    """Return the answer of a motion times a scale factor [-]; None without a motion."""
+    """Return the answer of a motion, scaled by a factor [-]; None without a motion."""
     if motion is None:
         return None
     summary, size = MotionSummary.of(motion), abs(scale)
@@ -161,7 +161,7 @@ def motion_answer(motion: Any, scale: float = 1.0) -> Answer | None:
 
 
 def summaries_of(motions: Any) -> tuple[MotionSummary, ...]:
-    """Return the summary of each motion of a sequence or set."""
+    """Return the summaries of the motions of a sequence or set."""
     return tuple(MotionSummary.of(motions[k]) for k in range(len(motions)))
 
 
@@ -178,7 +178,7 @@ _CONDITIONS = {
 
 
 def condition(summaries: Sequence[MotionSummary]) -> str:
-    """Return the condition of a probability: the motions and their intensity.
+    """Return the condition of a probability as text: the motions and their intensity.
 
     >>> from rocking.motions import pulses
     >>> condition([MotionSummary.of(pulses.sine(2.94, 0.8))])[:26]
@@ -197,7 +197,7 @@ def condition(summaries: Sequence[MotionSummary]) -> str:
 
 
 def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return sources and processing steps as rows of motion and text; steps common to all motions have one row."""
+    """Return sources and processing steps as rows of motion and text. Steps common to all motions have one row."""
     if len(summaries) == 1:
         return [(summaries[0].name, "; ".join(summaries[0].provenance))]
     shared, own = _shared(dict(enumerate(summary.provenance for summary in summaries)))
@@ -206,7 +206,7 @@ def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]
 
 
 def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
-    """Return the rows of `provenance_rows` for a terminal: of many motions the files and the common steps."""
+    """Return the rows of `provenance_rows` for a terminal. For many motions, only files and common steps."""
     rows = provenance_rows(summaries)
     if len(summaries) <= _SHOWN_NAMES:
         return rows
@@ -218,7 +218,7 @@ def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]
 
 
 def _shared(lines: Mapping[Any, Sequence[str]]) -> tuple[list[str], dict[Any, list[str]]]:
-    """Return the lines common to all sequences, and the other lines of each by its key."""
+    """Return the lines common to all sequences, and the other lines of every sequence by its key."""
     first, *others = lines.values() or [()]
     shared = [line for line in first if all(line in other for other in others)] if others else []
     return shared, {key: [line for line in own if line not in shared] for key, own in lines.items()}

@@ -21,7 +21,7 @@ GROUNDS = {
     2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.1, 0.25, 1.2),
         "D": (1.8, 0.1, 0.3, 1.2), "E": (1.6, 0.05, 0.25, 1.2)},
 }  # fmt: skip
-LONGEST = 4.0  # largest period of the elastic spectrum in Eurocode 8; Annex A continues the displacement [s]
+LONGEST = 4.0  # largest period of the elastic spectrum in Eurocode 8 [s]; Annex A is for longer periods
 
 _QUANTITY = re.compile(r"\s*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(\S*)\s*")
 _UNIT = re.compile(r"[\[(_ ](m/s2|m/s\^2|m/s/s|cm/s2|cm/s\^2|gal|g)\s*[\])]?\s*$", re.IGNORECASE)
@@ -109,7 +109,7 @@ def asce7(sds: float, sd1: float, tl: float) -> TargetSpectrum:
 
 
 def in_file(path: Path, damping: float = 0.05) -> TargetSpectrum:
-    """Return the spectrum of a CSV file with periods and accelerations; the heading contains the unit: ``Sa [g]``."""
+    """Return the spectrum of a CSV file with periods and accelerations. The heading contains the unit: ``Sa [g]``."""
     try:
         lines = path.read_text("utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -193,7 +193,7 @@ CODES: dict[str, Callable[..., TargetSpectrum]] = {"eurocode8": eurocode8, "asce
 
 
 def _acceleration(key: str, text: str) -> float:
-    """Return a number; an acceleration is in m/s2."""
+    """Return a number. An acceleration is converted to m/s2."""
     match = _QUANTITY.fullmatch(text)
     is_acceleration = key in {"ag", "sds", "sd1"}
     if match is None or match[2] not in (ACCELERATION_UNITS if is_acceleration else {"", "s"}):

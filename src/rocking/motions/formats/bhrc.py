@@ -1,8 +1,9 @@
 """Volume 1 files of Iran's strong-motion network (BHRC, ISMN): uncorrected accelerations in g/10.
 
-Each component has 13 lines of text, 7 lines of 14 integers of width 5, 7 lines of real numbers of width 13, the
-samples (10 per line, width 13), and a line ``/&``. Tested with six files of the 2012 Ahar earthquake (SSA-2
-recorders). Corrected files (Volume 2 and up) have another layout, without a test file; they raise an error.
+A component has 13 lines of text, 7 lines of 14 integers of width 5, 7 lines of real numbers of width 13, the samples
+(10 per line, width 13), and a line ``/&``. Tested with six files of the 2012 Ahar earthquake (SSA-2
+recorders). Corrected files (Volume 2 and higher) raise an error, because they have another layout and no test file is
+available.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Columns as text: separator, line of names, and the quantity of each column by its name and unit."""
+"""Columns as text: separator, line of names, and quantities of the columns from their names and units."""
 
 import csv
 import re
@@ -26,11 +26,11 @@ _MIXED = re.compile(r"\s*,\s*|\s+")
 _QUOTED = re.compile(r'"[^"]*"')
 _UNIT_BEHIND = re.compile(r"[^\s\[(]+(?:\s*\[[^\]]*\]|\s*\([^)]*\))?")
 _DECIMAL_COMMAS = re.compile(r"(?:[^\s,]+|[^\s,]*\d,\d[^\s,]*)(?:\s+(?:[^\s,]+|[^\s,]*\d,\d[^\s,]*))+")
-# a letter first, or an azimuth followed by a unit; a name contains no equals sign
+# a name begins with a letter, or is an azimuth followed by a unit; it contains no equals sign
 _NAME = re.compile(r"(?:[^\W\d_]|\d+\s*[\[(])[^=\x00-\x1f]{0,79}")
 _NO_NAME = re.compile(r"nan|inf(inity)?|null|none|n/?a|true|false", re.IGNORECASE)
 _DAMAGED_NUMBER = re.compile(r"[^\W\d_][+-]?[\d.,]+([eEdD][+-]?\d*)?")
-# lines with a sampling belong to a damaged header of another format: neither comments nor names
+# lines with a sampling are neither comments nor names; they belong to a damaged header of another format
 _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata", re.IGNORECASE)
 SAMPLING_LINE = re.compile(r"NPTS\s*=\s*\d+\s*,?\s*DT\s*=\s*[\d.eE+-]+\s*(?:s|sec\w*)?\.?", re.IGNORECASE)
 """Last header line of a PEER file, for files without the other header lines."""
@@ -77,7 +77,7 @@ _SPELT = {
 _UNITS = ", ".join(ACCELERATION_UNITS)
 
 
-_TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # quantities that could be mistaken for accelerations
+_TAKEN_FOR = {"velocity", "displacement", "count of a recorder"}  # not accelerations, but similar columns
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class ColumnText:
     source: Source
     names: tuple[str, ...] | None  # names of the columns with units; None if the file begins with numbers
     heading: str  # the line of the names; empty if there is none
-    preamble: tuple[tuple[int, str], ...]  # line index and text of header lines without names and comments
+    preamble: tuple[tuple[int, str], ...]  # line index and text of header lines, except names and comments
     separator: str  # ``;``, tab, ``,``, a blank for white space, or empty for blanks and commas
     first: list[tuple[int, list[str]]]  # line index and cells of the first lines of numbers
 
@@ -116,7 +116,7 @@ class ColumnText:
 
     @cached_property
     def rows(self) -> list[tuple[int, list[str]]]:
-        """Line index and cells of each line of numbers."""
+        """Line index and cells of every line of numbers."""
         top = self.first[0][0] if self.first else len(self.source.lines)
         end = self.source.end
         lines = [(line, text) for line, text in _lines(self.source, None) if top <= line < end]
@@ -128,7 +128,7 @@ class ColumnText:
 
     @cached_property
     def _plain(self) -> tuple[list[str], str | None]:
-        """Lines from the first with numbers to the end, and the separator of their columns; None for blanks."""
+        """Lines from the first line with numbers to the end, and the separator of columns (None for blanks)."""
         lines = self.source.lines[self.first[0][0] : self.source.end]
         if self.separator == "":
             return lines, "," if "," in lines[0] and "." in lines[0] else None
@@ -136,7 +136,7 @@ class ColumnText:
 
     @cached_property
     def at_once(self) -> FloatArray | None:
-        """All numbers, if all cells are plain decimal numbers; else None."""
+        """All numbers if all cells are plain decimal numbers, otherwise None."""
         numbers = plain_table(*self._plain)
         return numbers if numbers is not None and numbers.shape[1] == self._columns else None
 
@@ -148,7 +148,7 @@ class ColumnText:
         return "\n".join(lines).replace(separator or " ", " ").split()[index :: self._columns]
 
     def numbers(self, *, last_short: bool = False) -> FloatArray:
-        """Return all numbers, shape (rows, columns); NaN for missing cells of an allowed short last row."""
+        """Return all numbers, shape (rows, columns). Missing cells of an allowed short last row are NaN."""
         values = self.at_once
         if values is None:
             self._check_commas()
@@ -170,7 +170,7 @@ class ColumnText:
             )
 
     def _checked_rows(self, missing: int) -> Iterator[tuple[int, list[str]]]:
-        """Yield rows with one cell per column; the last row may be shorter."""
+        """Yield rows with one cell per column. The last row may be shorter."""
         reason = " as on the first line" if self.names is None else ", one per name"
         hint = "; with commas as separators, use decimal points" if self.separator == "," else ""
         for row, (line, cells) in enumerate(self.rows, 1):
@@ -181,7 +181,7 @@ class ColumnText:
 
 
 def is_words(text: str) -> bool:
-    """Return True if a line contains words, and is no line of numbers with a damaged one.
+    """Return True if a line contains words and is not a line of numbers with one damaged number.
 
     >>> [is_words(text) for text in ("Station A", "1940 El Centro NS", "0.01 nan", "0.5 x3 1.0", "acc [g]")]
     [True, True, False, False, True]
@@ -194,7 +194,7 @@ def is_words(text: str) -> bool:
 
 
 def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> tuple[str, ...] | None:
-    """Return the names in the last line of words, if it has one per column or is the only line with separators."""
+    """Return the names in the last line of words, if the line has one name per column or alone has separators."""
     text = above[-1][1]
     separator = _separator(text)
     names = _names(text, separator)
@@ -210,17 +210,17 @@ def _names_above(above: list[tuple[int, str]], body: list[tuple[int, str]]) -> t
 
 
 def states_sampling(text: str) -> bool:
-    """Return True if a line contains a sampling, as in headers of other formats."""
+    """Return True if a line contains information on the sampling, as in headers of other formats."""
     return _OTHER_FORMAT.search(text[:200]) is not None
 
 
 def names_on(text: str) -> tuple[str, ...] | None:
-    """Return the column names in a line; None if it contains anything else."""
+    """Return the column names in a line; None if the line contains anything else."""
     return _names(text, _separator(text)) if text and not states_sampling(text) else None
 
 
 def kind_of(unit: str) -> tuple[str | None, str]:
-    """Return the unit of acceleration (or None) and the quantity of a unit; an empty quantity if it is unknown.
+    """Return the unit of acceleration (or None) and the quantity of a unit. An unknown unit has an empty quantity.
 
     >>> kind_of("cm/s/s"), kind_of("cm/sec"), kind_of("furlong")
     (('cm/s2', 'acceleration'), (None, 'velocity'), (None, ''))
@@ -234,7 +234,10 @@ def kind_of(unit: str) -> tuple[str | None, str]:
 
 
 def unit_named(source: Source, line: int | None, word: str) -> str | None:
-    """Return the unit of acceleration of a word, or None; refuse units of velocity, displacement or counts."""
+    """Return the unit of acceleration of a word, or None.
+
+    Raise an error for units of velocity, displacement or counts.
+    """
     unit, kind = kind_of(word)
     if kind in _TAKEN_FOR:
         raise source.error(
@@ -247,7 +250,7 @@ def unit_named(source: Source, line: int | None, word: str) -> str | None:
 
 
 def looks_like_unit(text: str, *, square: bool = True) -> bool:
-    """Return True if a text in brackets may be a unit: no direction, no remark.
+    """Return True if a text in brackets may be a unit, that is neither a direction nor a remark.
 
     >>> [looks_like_unit(text) for text in ("furlong/s2", "Mg", "NS", "x", "corrected")]
     [True, True, False, False, False]
@@ -261,7 +264,7 @@ def looks_like_unit(text: str, *, square: bool = True) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ColumnName:
-    """A column by its heading."""
+    """A column, described by its heading."""
 
     index: int  # index of the column, from 0
     text: str  # heading
@@ -273,7 +276,7 @@ class ColumnName:
     @classmethod
     def of(cls, index: int, text: str) -> "ColumnName":
         """Return the column of a heading."""
-        # names of this package: acceleration_m_s2
+        # names with units as written by this package, such as acceleration_m_s2
         bracketed = text
         if tail := _TAIL.fullmatch(text):
             stem, unit_behind = filter(None, tail.groups())
@@ -286,7 +289,7 @@ class ColumnName:
         small = _SPELT.get(plain.lower(), plain.lower())
         unit, kind = kind_of(plain)
         name = (match[1].strip() if kind else "") or text
-        if not kind:  # a unit and a remark, or the capital of g
+        if not kind:  # a unit followed by a remark, or a capital G
             first = re.split(r"[\s,;]", inside)[0]
             unit, kind = ("g", "acceleration") if first in {"G", "g's", "gn"} else kind_of(first)
         unknown = inside if not kind and looks_like_unit(inside, square=match[2] is not None) else ""
@@ -294,7 +297,7 @@ class ColumnName:
 
     @property
     def is_time(self) -> bool:
-        """True if the name means time; T may be a period, or transversal."""
+        """True if the name means time. The name T alone may also mean period or transversal."""
         tokens = set(re.split(r"[\W\d_]+", self.name.casefold()))
         is_named_time = bool(tokens & _TIMES) or (self.name == "t" and (self.index == 0 or self.suffix in _SECONDS))
         return is_named_time and self.unit is None
@@ -315,12 +318,12 @@ class ColumnName:
 
 @dataclass(frozen=True, slots=True)
 class NamedColumns:
-    """Named columns by their quantities."""
+    """Named columns, sorted by quantity."""
 
     time: ColumnName | None
     accelerations: tuple[ColumnName, ...]
     left_out: tuple[str, ...]  # names of other columns
-    more_times: tuple[ColumnName, ...] = ()  # further columns with times
+    more_times: tuple[ColumnName, ...] = ()  # additional columns with times
 
     @classmethod
     def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
@@ -370,7 +373,7 @@ class NamedColumns:
         return cls(times[0] if times else None, accelerations, left_out, tuple(times[1:]))
 
     def with_one_time(self, source: Source, values: FloatArray) -> "NamedColumns":
-        """Return these columns with one time: from their first values, all times differ by less than half a step."""
+        """Return these columns with a single time column, if all time columns agree within half a step."""
         if not self.more_times or self.time is None:
             return self
         times = values[:, self.time.index] - values[0, self.time.index]
@@ -384,7 +387,10 @@ class NamedColumns:
         return replace(self, more_times=(), left_out=(*self.left_out, *(column.text for column in self.more_times)))
 
     def with_stated_unit(self, source: Source, unit: str | None, unknown: str, requested: str | None) -> "NamedColumns":
-        """Return these columns with the common unit of the header; refuse an unknown unit with a requested one."""
+        """Return these columns with the common unit of the header.
+
+        An unknown unit and a requested unit raise an error.
+        """
         unknown_units = (
             column.unknown_unit for column in self.accelerations if column.unknown_unit and column.unit is None
         )
@@ -422,7 +428,7 @@ def _lines(source: Source, most: int | None) -> list[tuple[int, str]]:
             lines.append((line, bare))
             if len(lines) == most:
                 break
-    while lines and not lines[-1][1].strip(",; \t"):  # empty rows of a spreadsheet
+    while lines and not lines[-1][1].strip(",; \t"):  # lines of separators only are empty rows of a spreadsheet
         lines.pop()
     return lines
 
@@ -433,7 +439,7 @@ def _separator(text: str) -> str:
 
 
 def _names(text: str, separator: str) -> tuple[str, ...] | None:
-    """Return the names in a line; None if it contains anything else, such as numbers."""
+    """Return the names in a line; None if the line contains anything else, such as numbers."""
     if "=" in text or states_sampling(text) or len(text) > 100 * MOST_NAMED:
         return None
     text = readable(text)
@@ -446,13 +452,13 @@ def _names(text: str, separator: str) -> tuple[str, ...] | None:
         names = names[:-1]
     listed = [name for name in names if name]
     good = all(_NAME.fullmatch(name) and not _NO_NAME.fullmatch(name) for name in listed)
-    # a single letter with a number is a damaged number, not a name
+    # a single letter followed by a number is a damaged number, not a name
     damaged = len(listed) == 1 and _DAMAGED_NUMBER.fullmatch(listed[0])
     return names if listed and good and not damaged else None
 
 
 def _separator_of_numbers(rows: list[str]) -> str:
-    """Return the separator of rows of numbers; empty for both blanks and commas."""
+    """Return the separator of rows of numbers; empty if blanks and commas separate numbers."""
     first = rows[:_FIRST_ROWS]
     if first and ";" in first[0]:
         return ";"

@@ -1,4 +1,4 @@
-"""Header text above columns of numbers: names, unit, time step, count and direction."""
+"""Header text above columns of numbers: names, unit, time step, number of samples and direction."""
 
 import re
 from collections.abc import Sequence
@@ -102,14 +102,17 @@ class HeaderWords:
     names: tuple[str, ...] | None = None
     unit: str | None = None  # a key of `rocking.conventions.ACCELERATION_UNITS`
     unknown_unit: str = ""  # unknown unit in the header
-    step: float | None = None  # [s]
+    step: float | None = None  # time step [s]
     count: int | None = None
     direction: str = ""  # direction of the component, as in the header
     perhaps_upright: bool = False  # True if the header may refer to a vertical component
 
     @classmethod
     def of(cls, source: Source, lines: Sequence[tuple[int, str]], columns: int) -> "HeaderWords":
-        """Return the properties in lines by line index; refuse headers of velocities, displacements or spectra."""
+        """Return the properties in lines by line index.
+
+        Raise an error for headers of velocities, displacements or spectra.
+        """
         stated = cls()
         bare = [(line, readable(text.strip().lstrip("#% \t")[:400])) for line, text in lines]
         for line, text in bare:
@@ -170,7 +173,7 @@ class HeaderWords:
         return replace(self, unit=unit, unknown_unit=unknown)
 
     def _with_length(self, texts: Sequence[str]) -> "HeaderWords":
-        """Return the properties with the count from LENGTH, as in files of SeismicHandler with DELTA."""
+        """Return the properties with the number of samples from LENGTH, as in files of SeismicHandler with DELTA."""
         length = next((int(match[1][:9]) for text in texts if (match := _LENGTH.fullmatch(text))), None)
         has_delta = any(re.match(r"delta\s*[:=]", text, re.IGNORECASE) for text in texts)
         return replace(self, count=length) if length and has_delta and self.count is None else self
@@ -197,7 +200,7 @@ def _decimal(source: Source, line: int, word: str) -> float:
 def _names_of(text: str, columns: int) -> tuple[str, ...] | None:
     names = names_on(text)
     read = [ColumnName.of(index, name) for index, name in enumerate(names or ())]
-    # words with units are names if one is a time, or all are accelerations
+    # words with units are names if one word is a time or all words are accelerations
     are_names = any(column.is_time for column in read) or all(column.unit for column in read)
     has_unit = any(kind_of(column.suffix)[1] for column in read)
     return names if len(read) == columns and are_names and has_unit else None

@@ -1,4 +1,4 @@
-"""Columns of numbers, with or without a line of names: one value per line, or a time and accelerations."""
+"""Columns of numbers, with or without a line of names. A line has one value, or a time and accelerations."""
 
 import math
 import re
@@ -33,8 +33,8 @@ _LONGEST_HEADER = 100
 class Columns(RecordFormat):
     """Plain columns of text, for files of no other format.
 
-    Without names, a line contains one acceleration, or a time and one to three accelerations. The separator is blanks,
-    tabs, commas or semicolons, for names and numbers. Lines that begin with ``#`` or ``%`` are comments.
+    Without names, a line contains one acceleration, or a time and one to three accelerations. Names and numbers are
+    separated by blanks, tabs, commas or semicolons. Lines that begin with ``#`` or ``%`` are comments.
 
     One line of names is allowed above the numbers: ``time [s], NS [g], EW [g]``, with the unit of a column in brackets
     or parentheses. Allowed units are the keys of `rocking.conventions.ACCELERATION_UNITS`, m/s^2, m/s/s and Gal;
@@ -44,9 +44,10 @@ class Columns(RecordFormat):
 
     Text above the numbers is allowed. The reader uses ``Time Step: 0.01``, ``acceleration in g``, ``sampling rate
     200 Hz``, ``NPTS = 600``, ``Component NS``, also in comments; other text about the sampling raises an error.
-    Several columns of times with equal steps count once. Text after the last number, such as ``END``, gives a warning.
+    Several columns of times with equal steps count as one column. Text after the last number, such as ``END``, gives a
+    warning.
 
-    Commas that are no separators are decimal commas. Files with decimal commas and decimal points, and files with
+    Commas that do not separate columns are decimal commas. Files with decimal commas and decimal points, and files with
     ambiguous commas, raise an error.
     """
 
@@ -89,15 +90,15 @@ class Columns(RecordFormat):
         return first_error
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, one component per column of accelerations; without times, `time_step` is required."""
-        # names without a heading: "acceleration", or "column 2", "column 3", "column 4" after the times
+        """Return the record with one component per column of accelerations. Without times, `time_step` is required."""
+        # components without a heading are named "acceleration", or "column 2", "column 3", "column 4" after the times
         if not source.is_text:
             raise source.error(None, "not a text file")
         headers.refuse_other(source)
         text = ColumnText.of(source)
         if text.is_empty:
             raise source.error(None, "no line with numbers")
-        # NaN and infinity first: other errors would hide them
+        # check NaN and infinity first, because other errors would hide them
         for line, cells in text.first[:_LOOK]:
             _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
         comments = _comments(source, None if text.at_once is None else text.first[0][0])  # none among plain numbers
@@ -140,7 +141,7 @@ class Columns(RecordFormat):
         named = [re.sub(r"[\[\](),;=]", " ", one_line(component.name, 40)).strip() for component in record.components]
         unit = record.components[0].unit
         heading = ", ".join(["time [s]", *(f"{name} [{unit}]" for name in named)])
-        # a name that this format cannot read
+        # the name is not readable in this format
         if len({name.casefold() for name in named}) < len(named) or len(names_on(heading) or ()) != len(named) + 1:
             heading = ", ".join(["time [s]", *(f"column {index + 2} [{unit}]" for index in range(len(named)))])
         lines = [f"# {heading}"]
@@ -150,7 +151,7 @@ class Columns(RecordFormat):
 
 
 def _direction(stated: HeaderWords, accelerations: tuple[ColumnName, ...]) -> dict[str, str]:
-    """Return the direction of a single column from the header; unclear if the header only mentions a vertical."""
+    """Return the direction of a single column from the header. It is unclear if a vertical is only mentioned."""
     if stated.direction:
         return {"direction": stated.direction} if len(accelerations) == 1 else {}
     is_unstated = all(directions.orientation(column.name) is None for column in accelerations)
@@ -163,14 +164,14 @@ def _name(column: ColumnName, about: dict[str, str]) -> str:
 
 
 def _check_words(source: Source, text: ColumnText) -> None:
-    """Refuse header text with an unknown form of the sampling."""
+    """Raise an error for header text with an unknown description of the sampling."""
     for line, text_line in text.preamble:
         if not is_understood(text_line):
             raise source.error(line, "{entry!r} is not understood", entry=text_line.strip()[:60], hint=SKIP)
 
 
 def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
-    """Refuse a first number after header text that equals the number of samples after it."""
+    """Raise an error if the first number after header text equals the number of samples that follow."""
     first, line = values[0], text.first[0][0]
     if first.size == 1 and first[0] >= 10.0 and first[0] in {len(values) - 1, len(values) - 2}:
         raise source.error(
@@ -179,7 +180,7 @@ def _check_first(source: Source, text: ColumnText, values: FloatArray) -> None:
 
 
 def _first_rows(source: Source) -> list[tuple[int, list[str]]] | None:
-    """Return the first lines of cells for the detection of the format; None if they are no columns."""
+    """Return the first lines of cells for the detection of the format; None if the lines are not columns."""
     comments = [text for _, text in _comments(source, _LONGEST_HEADER)]
     if not source.is_text or not all(map(is_understood, comments)):
         return None
@@ -188,9 +189,9 @@ def _first_rows(source: Source) -> list[tuple[int, list[str]]] | None:
         len(text.first) < _LOOK or not all(is_understood(text_line) for _, text_line in text.preamble)
     ):
         return None
-    # with names, the reader reports damage further down, with its line
+    # with names, the reader reports damage in later lines, with the line number
     rows = text.first if text.names is None else text.first[:1]
-    # the last row of an acceleration in rows may be shorter
+    # if rows contain one acceleration, the last row may be shorter
     if 1 < len(rows) < _LOOK and len(rows[0][1]) > _MOST_COLUMNS:
         rows = rows[:-1]
     counts = {len(cells) for _, cells in rows}
@@ -198,7 +199,7 @@ def _first_rows(source: Source) -> list[tuple[int, list[str]]] | None:
         return None
     if text.names is None:
         return rows if max(counts) <= MOST_NAMED else None
-    # with a clear separator, the reader also reports a wrong number of names
+    # if the separator is clear, the reader also reports a wrong number of names
     clear = counts == {len(text.names)} or text.separator in {";", "\t", ","}
     return rows if clear and max(counts) <= MOST_NAMED else None
 
@@ -223,7 +224,7 @@ def _is_comment(text: str) -> bool:
 
 
 def _by_position(source: Source, text: ColumnText) -> NamedColumns:
-    """Return columns without names as one acceleration, or a time and one to three accelerations."""
+    """Return unnamed columns as one acceleration, or as a time and one to three accelerations."""
     line, cells = text.first[0]
     if not 1 <= len(cells) <= _MOST_COLUMNS:
         raise source.error(
@@ -237,7 +238,7 @@ def _by_position(source: Source, text: ColumnText) -> NamedColumns:
 
 
 def _row_by_row(source: Source, values: FloatArray) -> tuple[NamedColumns, FloatArray]:
-    """Return many columns without names as times and accelerations, or one acceleration over all rows."""
+    """Return many unnamed columns as times and accelerations, or as one acceleration that continues over all rows."""
     accelerations = tuple(ColumnName(index, "", f"column {index + 1}") for index in range(1, values.shape[1]))
     first = values[:, 0][np.isfinite(values[:, 0])]
     rises = np.diff(first)

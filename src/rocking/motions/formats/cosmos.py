@@ -32,15 +32,15 @@ _END = re.compile(r"/&|\s*End-of-data\b", re.IGNORECASE)
 _CODE = re.compile(r"\|\s*<SCNL>\s*[\w-]+\.(\w{3})\.", re.IGNORECASE)
 _UNKNOWN = -999.0
 _MOST_TEXT = 200
-# indices in the headers: quantity, unit, azimuth, count; step [ms], length, peak, time of the peak
+# indices in the integers: quantity, unit, azimuth, count; in the reals: step [ms], length, peak, time of the peak
 _QUANTITY, _UNIT, _CHANNEL, _AZIMUTH, _COUNT = 1, 2, 49, 53, 69
 _STEP, _LENGTH, _PEAK, _PEAK_TIME = 61, 62, 63, 64
 # codes of acceleration units, and their names in the line before the data
 _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s/s", "cm/sec^2", "gal"})}
 _SENSES = {400: "UP", 401: "DOWN", 500: "RADL", 501: "TRAN", 600: "LONG", 601: "TANG", 700: "H1", 701: "H2"}
-"""Directions by azimuth code of the COSMOS tables; 402, a vertical of unknown sense, remains a number."""
+"""Directions by azimuth code of the COSMOS tables. Code 402, a vertical of unknown sense, remains a number."""
 
-_MIN_DECIMALS = 3  # of a peak with fewer digits than its field
+_MIN_DECIMALS = 3  # minimum number of decimals of a peak with fewer digits than its field
 
 
 class Cosmos(RecordFormat):
@@ -60,7 +60,7 @@ class Cosmos(RecordFormat):
         return source.is_text and _title(source.lines[0]) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, one component per channel, named by its azimuth, or CHAN 1 for repeated azimuths."""
+        """Return the record with one component per channel. Names are azimuths, or CHAN 1 for repeated azimuths."""
         channels = headers.read_channels(source, _title, lambda line: _channel(source, line, units, time_step))
         texts = channels[0][0]
         station = re.match(r"Statn No:\s*(\S+)\s+Code:\s*(\S+)\s+(.*)", texts[4])
@@ -130,7 +130,7 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
 
 
 def _contradicted(header: list[str], texts: int, label: str) -> dict[str, str]:
-    """Return an unclear direction if the code or text of the channel is vertical and its azimuth is not."""
+    """Return an unclear direction if code or text of the channel are vertical, but the azimuth is not."""
     side = directions.orientation(label.partition(": ")[2])
     for text in (_code(header), _stated_direction(header, texts)):
         if directions.both(directions.orientation(text), side) == directions.UNCLEAR:
@@ -149,18 +149,18 @@ def _stated_direction(header: list[str], texts: int) -> str:
 
 
 def _label(header: list[str], texts: int, azimuth: float) -> str:
-    """Return number and direction, as ``CHAN 1: 90``, from the azimuth, or else from text or code."""
+    """Return number and direction such as ``CHAN 1: 90``, from the azimuth, or otherwise from text or code."""
     label = next((text[:LONGEST_LINE] for text in header[:texts] if text.startswith("Sta Cha")), "")
     number = re.match(r"Sta Cha\w*\s*:?\s*(\d+)", label)
     code = _code(header)
-    # an azimuth of 0 may mean none if the text contains no degrees
+    # an azimuth of 0 may mean a missing azimuth if the text contains no degrees
     is_stated = azimuth > 0.0 or (azimuth == 0.0 and not code) or re.search(r"\bdeg\b", label, re.IGNORECASE)
     direction = f"{azimuth:.0f}" if azimuth != _UNKNOWN and is_stated else code or _stated_direction(header, texts)
     return f"CHAN {number[1] if number else 1}: {_SENSES.get(int(azimuth), direction)}"
 
 
 def _data_line(source: Source, line: int) -> tuple[re.Match[str], int]:
-    """Return the line before the samples, and its unit code."""
+    """Return the line before the samples, and the unit code in this line."""
     match = _DATA.fullmatch(source.lines[line][:LONGEST_LINE]) if line < len(source.lines) else None
     if match is None:
         raise source.expected(line, "... pts, approx ... secs, units=...,Format=...")

@@ -21,8 +21,8 @@ _UNIT = re.compile(r"(?<![\w/])(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*])")
 _UNITS = {"G/10": "g/10", "CM/SEC/SEC": "cm/s2", "CM/SEC2": "cm/s2", "GAL": "gal", "GALS": "gal", "G": "g"}
 _STATED_MAX = re.compile(r"\bMAX\s*=(?:\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*]))?")
 _LENGTH, _PEAK, _PEAK_TIME = 2, 6, 7
-_UNKNOWN = -999.0  # of newer files
-_PAIRS = 10, 7  # columns of times and samples, and their width
+_UNKNOWN = -999.0  # unknown value in newer files
+_PAIRS = 10, 7  # columns of pairs of time and sample, and their width
 
 
 class CsmipV1(RecordFormat):
@@ -38,7 +38,7 @@ class CsmipV1(RecordFormat):
     )
     begins: ClassVar[re.Pattern[str]] = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
     _skip: ClassVar[int] = 0  # blanks before the pairs of a line
-    _counts: ClassVar[tuple[int, ...]] = (32, 27)  # index of the number of samples in newer and older files
+    _counts: ClassVar[tuple[int, ...]] = (32, 27)  # indices of the number of samples in newer and older files
     _has_peak: ClassVar[bool] = True  # True if the header numbers end with the peak and its time
     _end: ClassVar[str] = "/&"  # start of the line after the samples
 
@@ -49,7 +49,7 @@ class CsmipV1(RecordFormat):
         return re.fullmatch(r"[\s\d-]{5,80}", source.lines[_TEXT_LINES]) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, one component per channel, named by its direction, or CHAN 1 for repeated directions."""
+        """Return the record with one component per channel. Names are directions, or CHAN 1 for repeated directions."""
         channels = headers.read_channels(
             source, self.begins.match, lambda line: self._channel(source, line, units, time_step)
         )
@@ -144,7 +144,7 @@ class Usc(CsmipV1):
 
 
 def _even(source: Source, line: int, count: int, unit: str) -> tuple[float, tuple[int, int]] | None:
-    """Return step and columns of samples at even times from the line before them; None before pairs."""
+    """Return time step and columns of samples at even times, from the line before the samples; None for pairs."""
     text = source.lines[line][:LONGEST_LINE]
     spaced, rated = _SPACED.fullmatch(text), _RATED.fullmatch(text)
     match = spaced or rated
@@ -163,7 +163,7 @@ def _even(source: Source, line: int, count: int, unit: str) -> tuple[float, tupl
 
 def _unit(texts: Sequence[str]) -> str | None:
     for text in texts:
-        # the same line may contain the peak in another unit
+        # the line may also contain the peak in another unit
         match = _UNIT.search(re.split(r"MAX|\.\s", text.upper())[0]) if "UNIT" in text.upper() else None
         if match:
             return _UNITS[match[1]]
@@ -171,7 +171,7 @@ def _unit(texts: Sequence[str]) -> str | None:
 
 
 def _check_text(source: Source, first: int, values: FloatArray, rounding: float, *, confirmed: bool) -> float | None:
-    """Compare samples with the peak in the text lines and return it, or None; samples and rounding in m/s2."""
+    """Compare samples [m/s2] with the peak in the text lines, and return the peak, or None."""
     for line in range(first, first + _TEXT_LINES):
         match = _STATED_MAX.search(source.lines[line][:LONGEST_LINE].upper())
         if match is None:

@@ -45,13 +45,13 @@ class CsmipV2(RecordFormat):
         return any(_BLOCK.fullmatch(text) for text in source.lines[:100])
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, one component per channel, named by its direction, or CHAN 1 for repeated directions."""
+        """Return the record with one component per channel. Names are directions, or CHAN 1 for repeated directions."""
         unit = headers.acceleration_unit(source, "cm/s2", units)
         channels = headers.read_channels(source, _TITLE.match, lambda line: _channel(source, line, unit, time_step))
         return headers.record_of_channels(self.name, channels, headers.names_in(channels[0][0][2:]))
 
     def write(self, record: Record) -> bytes:
-        """Return a CSMIP V2 file in cm/s2 with 3 decimals; velocity and displacement are integrated from rest."""
+        """Return a CSMIP V2 file in cm/s2 with 3 decimals. Velocity and displacement are integrated from rest."""
         lines: list[str] = []
         for row, values in enumerate(headers.in_unit(record, self.name, "cm/s2", 99)):
             lines += _lines(record, row, values.round(3))
@@ -74,7 +74,7 @@ def _channel(source: Source, first: int, unit: str, time_step: float | None) -> 
             _check_texts(source, first, header[:_TEXT_LINES], values, step, rounding)
             component = Component("", values, unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
             continue
-        # velocity and displacement are not used: contradictions only give warnings
+        # velocity and displacement are not used, so that contradictions only give warnings
         with source.doubting():
             _checked_block(source, line, wholes, figures, reals)
         line += 1

@@ -1,6 +1,6 @@
 """CSMNC, strong-motion network of China: 16 header lines, then one component with 8 numbers per line.
 
-Layout: from the headers of two files of 2012 (ETNA recorders).
+The layout is known from the headers of two files of 2012 (ETNA recorders).
 """
 
 import re
@@ -49,7 +49,7 @@ class Csmnc(RecordFormat):
         about = Record(self.name, (Component(name, np.empty(0), unit, step),), "", metadata_of(**texts))
         record = side_by_side(source, about, first, int(points[1]), (peak[1],))
         (component,) = record.components
-        # the time is truncated at its last digit, not rounded
+        # the time is truncated after its last digit, not rounded
         slack = 2.0 * headers.half_digit(peak[1])
         headers.check_peak_time(source, float(peak[2]), component.acceleration, step, slack)
         headers.check_duration(source, float(peak[3]), int(points[1]), step, headers.half_digit(peak[3]))

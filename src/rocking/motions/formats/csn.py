@@ -1,6 +1,7 @@
 """CSN, national seismological centre of Chile: comments in Spanish, then one sample of one component per line.
 
-Layout: from the programs of the strong-motion database SIBER-RISK of Chile, in m/s2, without a test file of the centre.
+The layout is that of the programs of the strong-motion database SIBER-RISK of Chile, in m/s2. No file of the centre was
+available for a test.
 """
 
 import re
@@ -37,7 +38,7 @@ class Csn(RecordFormat):
         )
         step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
         count = sum(1 for text in source.lines[first:] if text.strip())
-        # not in the description; a line about samples must match
+        # the description does not contain this line; a line about samples must match
         if any(re.search(r"\bmuestras\b", text) and "Tasa" not in text for text in source.lines[:first]):
             stated = header_value(source, first, r"# *N\S*mero de muestras\s*:?", r"\d{1,9}")[0]
             headers.check_count(source, int(stated), count)

@@ -8,7 +8,7 @@ from rocking.motions.motion import ORIENTATION
 
 UP, DOWN, UNCLEAR = "up", "down", "unclear"
 Direction = str | float | None
-"""``up``, ``down``, ``unclear`` (perhaps vertical or inclined), an azimuth [degree], or None without a direction."""
+"""``up``, ``down``, ``unclear`` (may be vertical or inclined), an azimuth [degree], or None if missing."""
 
 KEY = ORIENTATION
 _INCLINED = 45.0, 5.0  # limits of inclined components, from vertical and horizontal [degree]
@@ -40,7 +40,7 @@ _ENDINGS = re.compile(
 
 
 def orientation(name: str) -> Direction:
-    """Return ``up``, ``down``, ``unclear``, or the azimuth of a component by its name [degree], or None.
+    """Return the direction of a component from its name: ``up``, ``down``, ``unclear``, azimuth [degree], or None.
 
     >>> [orientation(name) for name in ("UP", "HNE", "N-S", "N20W", "090", "T", "acc_z [g]", "HNU")]
     ['up', 90.0, 0.0, 340.0, 90.0, None, 'up', 'unclear']
@@ -60,11 +60,11 @@ def _of_word(word: str) -> Direction:
     if _DOWN.fullmatch(upper) or _UPRIGHT.fullmatch(upper):
         return DOWN if _DOWN.fullmatch(upper) else UP
     if azimuth := _AZIMUTH.fullmatch(upper):
-        # codes above 360 in COSMOS and CSMIP: 400 is up, 500 in older files
+        # codes above 360 in COSMOS and CSMIP: 400 is up (500 in older files)
         return float(azimuth[1]) % 360.0 if float(azimuth[1]) <= 360.0 else UNCLEAR
     if compass := _COMPASS.fullmatch(upper):
         return _of_compass(*compass.groups())
-    # SEED Reference Manual 2.4, appendix A: A, B, C and U, V, W are inclined, 3 is the third of three
+    # SEED Reference Manual 2.4, appendix A: A, B, C and U, V, W are inclined; 3 is the third of three components
     if seed := _SEED.fullmatch(word):
         directions: dict[str, Direction] = {"Z": UP, "N": 0.0, "E": 90.0}
         return directions.get(seed[1], None if seed[1] in "12RTXY" else UNCLEAR)
@@ -77,7 +77,7 @@ def _of_compass(north: str, degrees: str, east: str) -> Direction:
 
 
 def _of_words(tokens: Sequence[str]) -> Direction:
-    """Return the direction of several words; unclear if they contradict each other."""
+    """Return the direction of several words. It is unclear if the words contradict each other."""
     pairs = [(word, _of_word(word)) for word in tokens if not word.isdigit()]
     stated = [(word, side) for word, side in pairs if side is not None and (len(word) > 1 or word in "zZnNeE")]
     if all(_BESIDE.fullmatch(word) for word, side in pairs if side is None):
@@ -93,7 +93,7 @@ def _of_words(tokens: Sequence[str]) -> Direction:
 
 
 def of_angles(azimuth: float | None, from_up: float) -> Direction:
-    """Return the direction of a sensor by its azimuth and its angle from the upward vertical [degree].
+    """Return the direction of a sensor from its azimuth and its angle to the upward vertical [degree].
 
     >>> of_angles(90.0, 90.0), of_angles(0.0, 0.0), of_angles(None, 180.0), of_angles(0.0, 54.7)
     (90.0, 'up', 'down', 'unclear')
@@ -107,7 +107,7 @@ def of_angles(azimuth: float | None, from_up: float) -> Direction:
 
 
 def both(stated: Direction, measured: Direction) -> Direction:
-    """Return the second of two directions, the first if it is None; unclear if only one is vertical.
+    """Return the second of two directions, or the first if the second is None; unclear if only one is vertical.
 
     >>> both("up", "down"), both("up", 90.0), both(None, 90.0), both(0.0, None)
     ('down', 'unclear', 90.0, 0.0)
@@ -118,7 +118,7 @@ def both(stated: Direction, measured: Direction) -> Direction:
 
 
 def settled(sides: Sequence[Direction]) -> list[Direction]:
-    """Return the directions of the components of one record, with an unclear one resolved by the other two.
+    """Return the directions of the components of one record. Two clear directions resolve an unclear third direction.
 
     >>> settled(["up", "unclear", "unclear"]), settled([0.0, 90.0, "unclear"]), settled(["unclear"] * 3)
     (['up', None, None], [0.0, 90.0, 'up'], ['unclear', 'unclear', 'unclear'])
@@ -134,7 +134,7 @@ def settled(sides: Sequence[Direction]) -> list[Direction]:
 
 
 def of_file_name(name: str) -> Direction:
-    """Return ``up`` or ``down`` if the name of a file ends with such a word; else None.
+    """Return ``up`` or ``down`` if the name of a file ends with such a word, otherwise None.
 
     >>> [of_file_name(name) for name in ("RSN8_ELC-UP.AT2", "A-CAT-DWN.AT2.smc", "group.txt", "NIG018UD.AT2", "x.UD2")]
     ['up', 'down', None, 'up', 'up']
@@ -159,7 +159,7 @@ def as_text(side: Direction) -> str:
 
 
 def of_metadata(metadata: Any) -> Direction:
-    """Return the direction in metadata, from its key or the name of the component."""
+    """Return the direction from metadata: from the key of the direction, or from the name of the component."""
     if KEY in metadata:
         text = metadata[KEY]
         return None if not text else text if text in {UP, DOWN, UNCLEAR} else float(text)

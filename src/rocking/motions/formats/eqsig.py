@@ -1,7 +1,7 @@
 """Files of eqsig and OpenSees: optional names, a line with number of samples and time step, then accelerations.
 
-Layout: documentation of `load_values_and_dt` in eqsig (a name, "npts dt", one value per line). Files for OpenSees have
-the same line and any number of values per line.
+The layout is in the documentation of `load_values_and_dt` in eqsig (a name, "npts dt", one value per line). Files for
+OpenSees have the same line "npts dt" and any number of values per line.
 """
 
 import re
@@ -17,7 +17,7 @@ _MOST_NAMES = 3
 
 
 class Eqsig(RecordFormat):
-    """Accelerations after their number and time step."""
+    """Accelerations after a line with their number and time step."""
 
     name: ClassVar[str] = "eqsig"
     title: ClassVar[str] = "eqsig and OpenSees: a line `npts dt`, with or without a name above, then accelerations"
@@ -35,7 +35,7 @@ class Eqsig(RecordFormat):
         follow = [text for text in source.lines[line + 1 :] if text.strip()][:3]
         if not follow or not all(_NUMBERS.fullmatch(text[:400]) for text in follow):
             return False
-        # two numbers per line may be times and samples; their first line looks equal
+        # two numbers per line may be times and samples; the first line of such files looks the same
         pairs = all(len(text.replace(",", " ").split()) == 2 for text in follow)
         if not pairs:
             return True
@@ -76,7 +76,7 @@ class Eqsig(RecordFormat):
 
 
 def _size_line(source: Source) -> int | None:
-    """Return the line of count and time step; only lines with words may precede it."""
+    """Return the line with count and time step. Only lines with words are allowed before this line."""
     for line, text in enumerate(source.lines[: _MOST_NAMES + 1] if source.is_text else []):
         if _SIZE.fullmatch(text[:80]):
             return line

@@ -36,7 +36,7 @@ _KEPT = {
     "high cut Hz": "HIGH_CUT_FREQUENCY_HZ",
     "baseline": "BASELINE_CORRECTION",
 }
-# the ordered keys of DYNA 1.2; unknown values stay empty
+# keys of DYNA 1.2 in order; unknown values are empty
 # fmt: off
 _KEYS = (
     "EVENT_NAME", "EVENT_ID", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS", "EVENT_LATITUDE_DEGREE",
@@ -157,13 +157,13 @@ def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: Float
     if duration is not None:
         digits = len(keys["DURATION_S"][1].partition(".")[2])
         headers.check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
-    # only this line confirms the unit, and is therefore required
+    # this line is required, because only this line confirms the unit
     label = _PEAKS[unit]
     _, word = _value(source, keys, label)
     peak = _number(source, keys, label)
     if peak is None:
         raise source.error(keys[label][0], "{key} must contain a number, which confirms unit and data", key=label)
-    # the peak has the 6 decimals of the data; fewer than 3 give no check
+    # the peak has 6 decimals, as the data; a peak with fewer than 3 decimals is not checked
     rounding = min(1.1e-3, 1.1 * 10.0 ** -len(word.partition(".")[2]))
     headers.check_peak(source, peak, values, rounding, label)
     peak_time = _number(source, keys, "TIME_PGA_S")

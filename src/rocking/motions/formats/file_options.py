@@ -16,11 +16,11 @@ Options = tuple[tuple[str, Any], ...]
 """Options of one file, sorted by key."""
 
 FileOptions = Mapping[Any, Mapping[str, Any]]
-"""Options by file name, a path-like; the name may include folders, to be unique."""
+"""Options by file name (path-like). To be unique, the name may include folders."""
 
 
 def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict[str, Any]]:
-    """Return the options of the files of a set by path; each name must match exactly one file.
+    """Return the options of the files of a set by path. A name must match exactly one file.
 
     >>> by_path({"b.txt": {"units": "g"}}, [Path("set/a.txt"), Path("set/b.txt")])[Path("set/b.txt")]
     {'units': 'g'}
@@ -46,7 +46,10 @@ def by_path(files: FileOptions | None, paths: Iterable[Path]) -> dict[Path, dict
 
 
 def together(path: Path, listed: Mapping[str, Any], stated: Mapping[str, Any], source: str) -> Options:
-    """Return the options of a file in a list, from its row and from the options of the file; refuse a repeated key."""
+    """Return the options of a file from its row in a list and from its own options.
+
+    Raise an error for a repeated key.
+    """
     if twice := sorted(set(listed) & set(stated)):
         raise InvalidValueError(
             "{key} of {file} appears in its row and in files; remove one", file=path.name, key=twice[0]

@@ -1,4 +1,4 @@
-"""Readers from other packages in separate processes: crashes, time and memory limits become errors."""
+"""Readers from other packages in separate processes. Crashes and exceeded limits of time and memory become errors."""
 
 import atexit
 import json
@@ -17,20 +17,20 @@ from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import foreign_worker
 from rocking.motions.formats.record import Source
 
-TO_START = 60.0  # allowed time to start and load the reader [s]
+TO_START = 60.0  # allowed time for the start of the reader [s]
 _MOST_IDLE = 2
 _TROUBLE = {"missing", "error", "memory", "died"}
 
 
 class ForeignReader:
-    """A reader in another process for several files, with limits of time [s] and, on Linux, memory [bytes]."""
+    """A reader in another process for several files, with a limit of time [s] and, on Linux, of memory [bytes]."""
 
     def __init__(
         self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30
     ) -> None:
         self.script, self.needs, self.module = script, needs, module
         self.seconds, self.memory = seconds, memory
-        # by process: a forked process must not use the reader of its parent
+        # by process id, because a forked process must not use the reader of its parent
         self._idle: dict[int, list[subprocess.Popen[bytes]]] = {}
         self._lock = threading.Lock()
         atexit.register(self.close)
@@ -54,7 +54,7 @@ class ForeignReader:
                 header, *arrays = foreign_worker.receive(worker.stdout)  # type: ignore[arg-type]
             except (OSError, EOFError) as error:
                 _end(worker)
-                # previous files may have damaged a worker that is not new
+                # earlier files may have damaged a worker that is not new; it is then replaced
                 if fresh or slow.is_set():
                     raise self._refusal(source, {"slow": True} if slow.is_set() else {"died": 0}) from error
             except BaseException:
@@ -81,7 +81,7 @@ class ForeignReader:
             waiting = self._idle.setdefault(os.getpid(), [])
             if waiting:
                 return waiting.pop(), False
-        # -P: the folder of the worker contains modules with names of the standard library
+        # -P is required, because the folder of the worker contains modules with names of the standard library
         command = [sys.executable, "-P", foreign_worker.__file__, str(self.script)]
         command += [str(self.seconds), str(self.memory)]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}

@@ -1,7 +1,8 @@
-"""Worker program of `foreign`: it loads a reader once and reads files.
+"""Worker program of `foreign`. It loads a reader once, and reads files.
 
-On Linux each file has its own process, forked from the process with the loaded reader, with limits of time and memory.
-On other systems one process reads all files, and ends after the first error. It imports nothing of this package.
+On Linux, every file is read in a separate process, forked from the process with the loaded reader, with limits of time
+and memory. On other systems, one process reads all files and ends after the first error. The program imports no module
+of this package.
 """
 
 import io
@@ -20,7 +21,7 @@ import numpy as np
 Answer = Callable[..., tuple[dict[str, Any], Sequence[Any]]]
 
 FORKS = sys.platform == "linux"
-"""True if each file has its own process; on other systems a fork with loaded libraries is not safe."""
+"""True if every file has its own process. On systems other than Linux, a fork with loaded libraries is not safe."""
 
 
 def send(channel: BinaryIO, parts: Sequence[bytes]) -> None:
@@ -69,7 +70,7 @@ def _apart(
     if child == 0:
         code = 1
         try:
-            # a child that outlives this process must close its pipes
+            # a child process that lives longer than this process must close its pipes
             for number in (back, *(pipe.fileno() for pipe in channels)):
                 os.close(number)
             _limit(seconds, memory)
@@ -89,7 +90,7 @@ def _limit(seconds: float, memory: int) -> None:
     import resource
 
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})  # a parent may have blocked it
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})  # a parent process may have blocked the signal
     signal.setitimer(signal.ITIMER_REAL, seconds)
     loaded = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (loaded + memory, loaded + memory))
@@ -97,9 +98,12 @@ def _limit(seconds: float, memory: int) -> None:
 
 
 def main(script: str, seconds: float, memory: int) -> None:
-    """Process messages to the end of input; limits of time [s] and of memory beyond the loaded reader [bytes]."""
+    """Process messages to the end of input.
+
+    The limits are time [s] and memory in addition to the loaded reader [bytes].
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # output of libraries must not mix with the messages
+    # the output of libraries must not mix with the messages
     channels = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in range(3):

@@ -1,10 +1,11 @@
-"""GeoNet of GNS Science, New Zealand: 3 components, as recorded (Volume 1) or corrected and integrated (Volume 2).
+"""GeoNet of GNS Science, New Zealand: 3 components, as recorded (Volume 1), or corrected and integrated (Volume 2).
 
-Each component has 16 lines of text, 4 lines of 10 integers and 6 of 10 real numbers of width 8. The acceleration
-[mm/s2], velocity [mm/s] and displacement [mm] follow, each with 10 numbers of width 8 per line. Verified with four
-files (2016 Kaikoura and 2018 earthquakes, Cusp and Basalt recorders): counts, step, duration and all nine peaks. The
-times of the peaks start at real number 22 (5 s in all four) after the first sample. Volume 1 has the same header and
-only the acceleration; verified with one file of 2016 (Basalt recorder). Older layouts are not verified.
+A component has 16 lines of text, 4 lines of 10 integers and 6 lines of 10 real numbers of width 8. The acceleration
+[mm/s2], velocity [mm/s] and displacement [mm] follow, with 10 numbers of width 8 per line. Counts, step, duration and
+all nine peaks were verified with four files (2016 Kaikoura and 2018 earthquakes, Cusp and Basalt recorders). The origin
+of the times of the peaks is after the first sample, by the real number 22 (5 s in all four files). Volume 1 has the
+same header and only the acceleration. It was verified with one file of 2016 (Basalt recorder). Older layouts are not
+verified.
 """
 
 import re
@@ -62,7 +63,7 @@ class GeonetV2A(RecordFormat):
         return Record(self.name, tuple(components), header, metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return a file of three components; velocity and displacement are trapezoidal sums."""
+        """Return a file of three components. Velocity and displacement are trapezoidal sums."""
         rows = headers.in_unit(record, self.name, "mm/s2", 3)
         names = [one_line(component.name, 8).partition(" ")[0] or "?" for component in record.components]
         if len(rows) != 3 or len(set(names)) != 3:
@@ -110,7 +111,7 @@ class GeonetV2A(RecordFormat):
 
         values, peak, line = series(0, line)
         if len(self.counts) > 1:
-            # velocity and displacement are not used: contradictions only give warnings
+            # velocity and displacement are not used, so that contradictions only give warnings
             with source.doubting():
                 series(2, series(1, line)[2])
             after = range(line, len(source.lines))

@@ -9,12 +9,12 @@ from rocking.errors import RecordError
 from rocking.motions.formats import headers, numbers
 from rocking.motions.formats.record import Component, Record, Source
 
-_MAX_EXTRA = 5  # largest number of rows after the stated count, if peaks confirm the others
-_LONGEST = 200  # characters of a header line for patterns
+_MAX_EXTRA = 5  # largest number of rows after the stated count, if the peaks confirm the other rows
+_LONGEST = 200  # largest number of characters of a header line that patterns search
 
 
 def header_value(source: Source, last: int, key: str, value: str) -> re.Match[str]:
-    """Return the match of a value pattern on the only line before `last` that begins with a key."""
+    """Return the match of a value pattern in the only line before `last` that begins with a key."""
     begins = re.compile(rf"\s*{key}\s*(.*?)\s*", re.IGNORECASE)
     matches = [
         (line, hit) for line, text in enumerate(source.lines[:last]) if (hit := begins.fullmatch(text[:_LONGEST]))
@@ -37,7 +37,7 @@ def _plain(pattern: str) -> str:
 
 
 def header_text(source: Source, last: int, key: str) -> str:
-    """Return the text after a key; empty if no line or several lines have the key."""
+    """Return the text after a key; empty unless exactly one line has the key."""
     try:
         return header_value(source, last, key, ".*")[0]
     except RecordError:
@@ -61,9 +61,9 @@ def side_by_side(
     peaks: Sequence[str] = (),
     form: tuple[int, int] | None = None,
 ) -> Record:
-    """Return a record with samples from a line on, in Fortran columns or between blanks, checked against the peaks.
+    """Return a record with the samples that begin at a line, in Fortran columns or separated by blanks.
 
-    The components of the input record are in order and have no samples.
+    The samples are checked against the peaks. The components of the input record are in order and have no samples.
     """
     columns = len(record.components)
     if form is None:

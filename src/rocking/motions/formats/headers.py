@@ -1,4 +1,4 @@
-"""Units, time steps and channels from headers or the user; checks of count, peak and duration."""
+"""Units, time steps and channels from headers or the user, and checks of count, peak and duration."""
 
 import math
 import re
@@ -16,7 +16,7 @@ from rocking.motions.formats.record import Component, Record, Source, metadata_o
 Channel = tuple[list[str], str, Component]
 """Header lines of a channel, the line with its number and direction, and its samples."""
 
-LONGEST_LINE = 200  # characters of a header line for patterns
+LONGEST_LINE = 200  # largest number of characters of a header line that patterns search
 
 
 def unit_to_state() -> Message:
@@ -26,7 +26,7 @@ def unit_to_state() -> Message:
 
 
 def acceleration_unit(source: Source, stated: str | None, requested: str | None) -> str:
-    """Return the unit of accelerations: that of the file, or else the requested one."""
+    """Return the unit of accelerations: the unit in the file, or otherwise the requested unit."""
     requested = None if requested is None else checks.one_of("units", requested, ACCELERATION_UNITS)
     if stated is None and requested is None:
         raise source.error(None, "the file does not state its unit", hint=unit_to_state())
@@ -46,7 +46,7 @@ _ACCELERATION = re.compile(r"(?<![^\W_])acc", re.IGNORECASE)
 
 
 def refuse_other(source: Source, header_text: str = "") -> None:
-    """Refuse a file with a name or header of velocities or displacements."""
+    """Raise an error if the name or header of a file indicates velocities or displacements."""
     for text, origin in ((source.name, "its name"), (header_text, "its header")):
         match = _OTHER.search(text[:LONGEST_LINE])
         if match and not _ACCELERATION.search(text[:LONGEST_LINE]):
@@ -58,14 +58,14 @@ def refuse_other(source: Source, header_text: str = "") -> None:
 
 
 def doubt_channel(source: Source, code: str) -> None:
-    """Doubt accelerations of a channel with the SEED code of a seismometer, which records velocities."""
-    # SEED Reference Manual 2.4, appendix A: the second letter is the instrument, H and L for high and low gain
+    """Add a warning if the SEED code of a channel is that of a seismometer, which records velocities."""
+    # SEED Reference Manual 2.4, appendix A: the second letter is the instrument; H and L mean high and low gain
     if re.fullmatch(r"[A-Z][HLM][A-Z0-9]", code):
         source.doubt(None, f"the code of channel {code} means velocities; check that the samples are accelerations")
 
 
 def step_between_samples(source: Source, stated: float | None, requested: float | None) -> float:
-    """Return the time step of the file, or else the requested one; 1e-6 to 10 s [s]."""
+    """Return the time step in the file, or otherwise the requested time step, from 1e-6 to 10 s [s]."""
     step = stated if stated is not None else requested
     if step is None:
         hint = Message("add {option} in seconds", {"option": Option("motion.time_step")})
@@ -108,10 +108,10 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
 
 
 def step_of_times(source: Source, times: FloatArray, texts: list[str], requested: float | None) -> float:
-    """Return the step of a column of times [s]; the requested step if equal within the digits of the column."""
+    """Return the step of a column of times [s]. A requested step that agrees within the digits takes precedence."""
     decimals = [len(word.partition(".")[2]) for word in texts]
     powers = [_last_place(word) for word in texts if _has_power(word)] if _has_power("".join(texts)) else []
-    # plain numbers may miss final zeros; large numbers with an exponent have fewer decimals
+    # final zeros of plain numbers may be missing; large numbers with an exponent have fewer decimals
     decimal_places = min(powers) if powers else max(decimals)
     digit = float(10.0 ** -min(15, max(-3, decimal_places)))
     last = digit if powers else np.maximum(digit, _last_digits(times, decimals))
@@ -133,7 +133,7 @@ def _last_place(word: str) -> int:
 
 
 def _last_digits(times: FloatArray, decimals: list[int]) -> FloatArray:
-    """Return the last digit of each time, if all above 1 s have as many digits as the longest [s].
+    """Return the value of the last digit of every time [s], if all times above 1 s have equally many digits.
 
     Programs with six digits print 9.98625, and 40.9862 for 40.98625.
     """
@@ -144,7 +144,7 @@ def _last_digits(times: FloatArray, decimals: list[int]) -> FloatArray:
 
 
 def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) -> float:
-    """Return the step of uniform times as the shortest decimal within rounding at `unit`, the last digit [s]."""
+    """Return the step of uniform times [s], as the shortest decimal within rounding at `unit`, the last digit."""
     if times.size < 2:
         raise source.error(None, "at least 2 samples required, found {count}", count=times.size)
     steps = times.size - 1
@@ -156,14 +156,14 @@ def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) ->
                 "time step must be in [1e-6, 10] s, got {step:g}; check that the first column is a time", {"step": mean}
             ),
         )
-    # tolerance for rounding or truncation at the last digit, and for single precision
+    # tolerance for rounding or truncation of the last digit, and for single precision
     slack = unit + 1.2e-7 * float(np.abs(times).max())
     most = float(np.max(slack))
     rounded = (round(mean, digits) for digits in range(1, 10))
     step = next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= most), mean)
     even = mean if np.ndim(unit) == 0 or np.ptp(unit) == 0.0 else step
     if most > 0.26 * mean:
-        # few digits could hide a missing line: the times must match the decimal step
+        # with few digits, a missing line could remain unnoticed; therefore, the times must match the decimal step
         even, slack = step, 0.501 * unit
     if float(np.max(slack)) > 0.51 * mean:
         raise source.error(None, "the times have too few digits for their step of about {step:g} s", step=mean)
@@ -181,10 +181,10 @@ def uniform_step(source: Source, times: FloatArray, unit: float | FloatArray) ->
 def at_even_steps(
     source: Source, times: FloatArray, values: FloatArray, unit: float
 ) -> tuple[FloatArray, float, dict[str, str]]:
-    """Return samples at even steps, their step [s], and metadata about resampling.
+    """Return samples at even time steps, the step [s], and metadata about resampling.
 
-    Times that are uneven beyond rounding at `unit` are resampled by straight lines. The new step is a round number, at
-    most the usual step; the largest sample remains a sample.
+    If times are uneven beyond rounding at `unit`, the samples are interpolated linearly. The new step is a round
+    number, at most the usual step. The largest sample remains a sample.
     """
     try:
         return values.copy(), uniform_step(source, times, unit), {}
@@ -193,7 +193,7 @@ def at_even_steps(
         half = times.size // 2
         usual = float(np.median((times[half:] - times[: times.size - half]) / half)) if half else 0.0
         line = times - usual * np.arange(times.size)
-        # a few uneven times are damage, not uneven sampling
+        # a few uneven times mean damage, not uneven sampling
         odd = np.abs(line - np.median(line)) > 2.0 * unit
         reach = float(times[-1] - times[0])
         if not 1e-6 <= usual <= 10.0 or (gaps < 0.0).any() or odd.sum() <= max(10, times.size // 100):
@@ -208,7 +208,7 @@ def at_even_steps(
             raise
     top = int(np.abs(values).argmax())
     before, behind = (int(span / step + 1e-9) for span in (times[top] - times[0], times[-1] - times[top]))
-    # of samples with equal printed times, the larger one remains
+    # if samples have equal printed times, keep the larger sample
     order = np.lexsort((-np.abs(values), times))
     _, first = np.unique(times[order], return_index=True)
     kept = order[first]
@@ -221,7 +221,7 @@ def at_even_steps(
 
 
 def check_count(source: Source, stated: int, count: int) -> None:
-    """Refuse a file with another number of samples than in its header."""
+    """Raise an error if the number of samples differs from the number in the header."""
     if stated != count:
         raise source.error(
             None, "the header states {stated} samples, but the file contains {count}", stated=stated, count=count
@@ -231,7 +231,7 @@ def check_count(source: Source, stated: int, count: int) -> None:
 def check_said_peak(
     source: Source, stated: float, values: FloatArray, rounding: float, quantity: str, *, confirmed: bool
 ) -> None:
-    """Check a rounded peak in header text; with `confirmed` data, a deviation within 5 % is only a doubt."""
+    """Check a rounded peak in header text. With `confirmed` data, a deviation within 5 % only gives a warning."""
     largest = float(np.abs(values).max())
     if confirmed and abs(abs(stated) - largest) <= 0.05 * largest:
         with source.doubting():
@@ -241,12 +241,12 @@ def check_said_peak(
 
 
 def check_peak(source: Source, stated: float, values: FloatArray, rounding: float, quantity: str = "peak") -> None:
-    """Refuse a file with another peak than in its header."""
+    """Raise an error if the peak differs from the peak in the header."""
     check_stated(source, abs(stated), float(np.abs(values).max()), rounding, quantity)
 
 
 def check_end(source: Source, first: int) -> None:
-    """Refuse anything but blank lines and closing words from a line to the end."""
+    """Raise an error if there are other lines than blank lines and closing words from a line to the end."""
     more = [line for line in range(first, len(source.lines)) if source.lines[line].strip(" \t\r\x1a")]
     for line in more:
         if line < source.end:
@@ -254,7 +254,7 @@ def check_end(source: Source, first: int) -> None:
 
 
 def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
-    """Doubt a time of the peak that differs from the data by more than a step [s]; some headers use another origin."""
+    """Add a warning if the time of the peak [s] differs by more than a step. Some headers have another origin."""
     largest = np.abs(values)
     position = stated / step
     near = (
@@ -272,7 +272,7 @@ def check_peak_time(source: Source, stated: float, values: FloatArray, step: flo
 
 
 def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
-    """Doubt a stated duration that differs from the samples, with or without a step after the last sample [s]."""
+    """Add a warning if a stated duration [s] differs from the samples, with or without a step after the last sample."""
     off = min(abs(stated - samples * step) for samples in (count - 1, count))
     if not off <= 1.001 * rounding + 1e-9:
         source.doubt(
@@ -282,7 +282,7 @@ def check_duration(source: Source, stated: float, count: int, step: float, round
 
 
 def half_digit(word: str) -> float:
-    """Return the rounding error of a printed number: half a unit in the last digit, plus one millionth.
+    """Return the rounding error of a printed number: half a unit of the last digit, plus one millionth.
 
     >>> f"{half_digit('4.954'):.3g}", f"{half_digit('4.136E+1'):.3g}", f"{half_digit('-12'):.3g}"
     ('0.0005', '0.005', '0.5')
@@ -292,7 +292,7 @@ def half_digit(word: str) -> float:
 
 
 def printed_rounding(stated: str, sample: str, minimum: int) -> float:
-    """Return the largest difference of a printed peak and a printed sample from rounding of both.
+    """Return the largest difference between a printed peak and a printed sample that rounding explains.
 
     Final zeros of the peak after `minimum` decimals do not count as digits.
 
@@ -306,7 +306,7 @@ def printed_rounding(stated: str, sample: str, minimum: int) -> float:
 
 
 def check_stated(source: Source, stated: float, computed: float, rounding: float, quantity: str) -> None:
-    """Refuse a file with another number in its header than from its data, with sign."""
+    """Raise an error if a number in the header differs from the computed number, including the sign."""
     if not abs(stated - computed) <= rounding:
         raise source.error(
             None, "the header states a {quantity} of {stated:g}, but the data have {computed:g}", quantity=quantity,
@@ -315,7 +315,7 @@ def check_stated(source: Source, stated: float, computed: float, rounding: float
 
 
 def samples_of(source: Source, line: int | None, rate: float, seconds: float, quantity: str) -> int:
-    """Return the number of samples from a stated rate [Hz] and duration [s]; refuse a fraction."""
+    """Return the number of samples from a stated rate [Hz] and duration [s]. Raise an error for a fraction."""
     count = rate * seconds
     if not 2 <= count < 1e9 or abs(count - round(count)) > 1e-6:
         raise source.error(
@@ -328,7 +328,7 @@ def samples_of(source: Source, line: int | None, rate: float, seconds: float, qu
 def read_channels(
     source: Source, begins: Callable[[str], object], read: Callable[[int], tuple[Channel, int]]
 ) -> list[Channel]:
-    """Return the channels to the end of a file; `read` returns a channel and the line after it."""
+    """Return the channels up to the end of a file. `read` returns a channel and the line after the channel."""
     channel, line = read(0)
     channels = [channel]
     while line < len(source.lines) and begins(source.lines[line]):
@@ -339,7 +339,7 @@ def read_channels(
 
 
 def record_of_channels(format: str, channels: Sequence[Channel], metadata: dict[str, str]) -> Record:
-    """Return a record with components named by direction, or by channel number for repeated directions."""
+    """Return a record. Components are named by direction, or by channel number if directions are repeated."""
     header = "\n".join("\n".join(lines) for lines, _, _ in channels)
     form = re.compile(r"(?:CHAN\s*(\d+)\s*:|^\s*COMP\b)\s*(.*?)\s*(?:DEG\b.*|\s{3}.*)?$", re.IGNORECASE)
     matches = [form.search(label) for _, label, _ in channels]
@@ -356,9 +356,9 @@ def record_of_channels(format: str, channels: Sequence[Channel], metadata: dict[
 
 
 def names_in(texts: Sequence[str]) -> dict[str, str]:
-    """Return event and station from the text lines after the titles."""
+    """Return the event and the station from the text lines after the titles."""
     station = re.search(r"STATION (?:NO\.?|ID\.?|USC#)\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
     number = station[1] if station else ""
-    # text after column 40 or three blanks belongs to the network
+    # text after column 40 or after three blanks is the network
     event, date, station_name = (re.split(r"\s{3}|\(", text.strip())[0] for text in (texts[0], texts[1], texts[4]))
     return metadata_of(event=event, date=date, station_number=number, station=station_name)

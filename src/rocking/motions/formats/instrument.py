@@ -1,4 +1,4 @@
-"""Removal of the instrument response from a record with a StationXML file."""
+"""Removal of the instrument response from a record, by a StationXML file."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,11 +13,13 @@ from rocking.motions.formats.sac import OBSPY, check_stations
 from rocking.motions.formats.stations import Places, channel_at, sensitivity_of, station_sources
 from rocking.motions.motion import GroundMotion, checked_motion
 
-ABOVE = 1.25  # upper end of the band edge / upper frequency; the lower edge ends at half the lower frequency [-]
+ABOVE = 1.25  # upper end of the cosine edge / upper frequency [-]; the lower edge ends at half the lower frequency
 
 
 def without_response(motion: GroundMotion, stations: Places, low: float, high: float) -> GroundMotion:
-    """Return a record, already divided by its sensitivity, without the frequency dependence of its instrument.
+    """Return a record without the frequency dependence of its instrument.
+
+    The input record is already divided by the sensitivity.
 
     The result is the acceleration of the ground from `low` to `high` [Hz], with cosine edges to 0.5 `low` and 1.25
     `high`. Stations are StationXML files or folders of them; one of them must describe the channel.
@@ -38,7 +40,7 @@ def without_response(motion: GroundMotion, stations: Places, low: float, high: f
         open_low=True,
         hint="1.25 times this frequency must be below Nyquist",
     )
-    count = 1 << (2 * len(motion) - 1).bit_length()  # zero padding against circular wrap
+    count = 1 << (2 * len(motion) - 1).bit_length()  # zero padding avoids circular convolution
     about = {key: motion.metadata.get(key, "") for key in ("network", "station", "location", "channel", "starttime")}
     response, file = _relative_response(about, stations, motion.time_step, count)
     frequencies = np.asarray(np.fft.rfftfreq(count, motion.time_step), dtype=np.float64)
@@ -59,7 +61,7 @@ def _without(samples: FloatArray, response: Any, edge: FloatArray, count: int) -
 
 
 def _relative_response(about: dict[str, str], stations: Places, step: float, count: int) -> tuple[Any, str]:
-    """Return the response of a channel / sensitivity at FFT frequencies, and its file with the SHA-256."""
+    """Return the response of a channel / sensitivity at FFT frequencies, and the file with its SHA-256."""
     sources = station_sources(stations, [about["station"]])
     name = ".".join(about[key] for key in ("network", "station", "location", "channel"))
     answer, arrays = OBSPY.answer(
@@ -69,7 +71,7 @@ def _relative_response(about: dict[str, str], stations: Places, step: float, cou
     )
     check_stations(answer, sources)
     channel, source = channel_at(sources[0], answer["channels"], sources, name, about["starttime"])
-    sensitivity_of(replace(source, doubts=[]), channel, name)  # refuses other quantities than acceleration
+    sensitivity_of(replace(source, doubts=[]), channel, name)  # raises an error for other quantities than acceleration
     if "array" not in channel:
         raise source.error(
             None,

@@ -1,6 +1,7 @@
 """Older accelerations of ITACA, also distributed by GEM: ten header lines, then five columns.
 
-Layout: from the header of a file of 2009 (processed, DPC network); numbers have 14 characters without separators.
+The layout is known from the header of a file of 2009 (processed, DPC network). Numbers have 14 characters without
+separators.
 """
 
 from typing import ClassVar

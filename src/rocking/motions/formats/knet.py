@@ -1,8 +1,8 @@
 """K-NET and KiK-net ASCII of NIED, Japan: 17 header lines, then counts of the recorder, 8 per line.
 
-Counts times the scale factor are accelerations with the offset of the recorder. The mean of the record is removed,
-as for the largest acceleration in the header; otherwise the peaks are many times too large. Verified with 48 files of
-both networks.
+Counts times the scale factor are accelerations, including the offset of the recorder. The mean of the record is
+removed, as for the largest acceleration in the header. With the mean, peaks would be many times too large. The reader
+was verified with 48 files of both networks.
 """
 
 import math
@@ -50,7 +50,7 @@ class Knet(RecordFormat):
         return sum(any(line.startswith(key) for line in top) for key in _KEYS) > 3
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the accelerogram without its mean."""
+        """Return the record without its mean."""
         fields = _header(source)
         unit = headers.acceleration_unit(source, "gal", units)
         rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", fields[10])[0]
@@ -74,7 +74,7 @@ class Knet(RecordFormat):
         if number and number < "4":
             source.doubt(12, f"direction {number} belongs to the instrument in the borehole, below the surface")
         name = _SIDES.get(number, fields[12]) or "unnamed"
-        # numbers are directions 1 to 6, not azimuths
+        # numbers are direction codes from 1 to 6, not azimuths
         odd = {directions.KEY: directions.UNCLEAR} if not number and re.fullmatch(r"\d\d?", name) else {}
         component = Component(name, values, unit, step, abs(peak), odd)
         return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)

@@ -2,8 +2,8 @@
 
 The files contain counts of the recorder. StationXML files convert them to m/s2 with the overall sensitivity of the
 channel. The mean, the offset of the recorder (0.02 g in the test file), is removed first. The frequency dependence of
-the response is not removed: the sensitivity is not valid above the corner frequency of the sensor. Verified with one
-channel of the 2019 Ridgecrest earthquake.
+the response is not removed. The sensitivity is not valid above the corner frequency of the sensor. The reader was
+verified with one channel of the 2019 Ridgecrest earthquake.
 """
 
 import re
@@ -24,9 +24,9 @@ from rocking.motions.formats.stations import Places, channel_at, sensitivity_of,
 
 _HEAD = re.compile(rb"\d{6}[DRQM][ \0](.{5})")  # start of a record and station code
 _ENCODING = 1000
-"""Blockette with the encoding of samples and the length of a record (SEED Reference Manual, version 2.4)."""
+"""Number of the blockette with the encoding and the record length (SEED Reference Manual, version 2.4)."""
 _SI = "SI"
-"""Location code of real numbers in m/s2 in files of this package; no known network uses it."""
+"""Location code for real numbers in m/s2 in files of this package. No known network uses this code."""
 STATIONS = Message(
     "add their StationXML file or a folder of such files with {process}, or use a folder with both files",
     {"process": Option("motion.process", "response:stations=FILE.xml")},
@@ -34,7 +34,7 @@ STATIONS = Message(
 """Hint about the conversion of counts to accelerations."""
 
 _MIN_BITS = {0: 8.0, 1: 16.0, 2: 24.0, 3: 32.0, 4: 32.0, 5: 64.0, 10: 8.0, 11: 32.0 / 7.0, 19: 8.0}
-"""Smallest number of bits per sample, by encoding: text, integers, real numbers, Steim 1, 2 and 3."""
+"""Smallest number of bits per sample by encoding: text, integers, real numbers, Steim 1, 2 and 3."""
 
 
 class MiniSeed(RecordFormat):
@@ -113,7 +113,7 @@ class MiniSeed(RecordFormat):
 
 
 def _check_room(source: Source) -> None:
-    """Refuse records with more stated samples than space; ObsPy would read past their end."""
+    """Raise an error for records whose number of samples exceeds their space; ObsPy would read past the end."""
     content, position = source.content, 0
     while position + 48 <= len(content):
         order = ">" if 1900 <= struct.unpack_from(">H", content, position + 20)[0] <= 2100 else "<"
@@ -160,7 +160,7 @@ def _component(
             None, "{channel}: {rate:g} samples/s in the file, but {stated:g} in the StationXML", channel=trace.id,
             rate=1 / trace.step, stated=channel["rate"],
         )  # fmt: skip
-    if channel["dip"] is not None:  # from horizontal, downwards
+    if channel["dip"] is not None:  # the dip is the angle downwards from horizontal
         side = directions.both(side, directions.of_angles(channel["azimuth"], 90.0 + channel["dip"]))
     offset = float(values.mean())
     about |= {

@@ -1,6 +1,7 @@
 """AFAD, national strong-motion network of Turkey (NSMN): 18 header lines, then three components in columns.
 
-Layout: from the header of a file of 2017; it agrees with the reader io/nsmn of `gmprocess` (USGS), not copied.
+The layout is known from the header of a file of 2017. It agrees with the reader io/nsmn of `gmprocess` (USGS), from
+which no code was copied.
 """
 
 import re

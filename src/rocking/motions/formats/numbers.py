@@ -1,4 +1,7 @@
-"""Reading and writing of numbers in fixed columns or between blanks; errors contain the line of a damaged number."""
+"""Reading and writing of numbers in fixed columns or separated by blanks.
+
+Errors contain the line of a damaged number.
+"""
 
 import math
 import re
@@ -11,12 +14,12 @@ from rocking.conventions import FloatArray
 from rocking.errors import RecordError
 from rocking.motions.formats.record import Source
 
-# other inputs of float() than plain decimal numbers (nan, infinity, 1_000) are damage in a record
+# float() also accepts nan, infinity and 1_000; in a record, these are damaged numbers
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,3})?")
-_CHARACTERS = b"0123456789+-.eE \t\n"  # of plain decimal numbers
+_CHARACTERS = b"0123456789+-.eE \t\n"  # characters of plain decimal numbers
 _ZEROS = bytes.maketrans(b"123456789E", b"000000000e")
 
-Row = tuple[int, Sequence[str]]  # index of a line, and the numbers on it as text
+Row = tuple[int, Sequence[str]]  # index of a line, and the numbers of the line as text
 
 
 def number(source: Source, line: int, word: str, quantity: str = "number") -> float:
@@ -33,7 +36,7 @@ def number(source: Source, line: int, word: str, quantity: str = "number") -> fl
 
 
 def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
-    """Return all numbers of rows in one array; of several errors, raise the first."""
+    """Return all numbers of rows in one array. If there are several errors, the first is raised."""
     read: list[Row] = []
     refusal = None
     try:
@@ -49,7 +52,7 @@ def read_rows(source: Source, rows: Iterable[Row]) -> FloatArray:
 
 
 def at_once(texts: Sequence[str]) -> FloatArray | None:
-    """Return words as numbers; None if they are not all plain decimal numbers.
+    """Return words as numbers, or None unless all words are plain decimal numbers.
 
     >>> at_once(["1.5", "-2e-3"]), at_once(["1.5", "nan"]), at_once(["1_000", "2"])
     (array([ 1.5  , -0.002]), None, None)
@@ -64,7 +67,7 @@ def at_once(texts: Sequence[str]) -> FloatArray | None:
 
 
 def plain_table(lines: Sequence[str], separator: str | None) -> FloatArray | None:
-    """Return lines of numbers, shape (lines, columns); None if they are not all plain decimal numbers.
+    """Return lines of numbers, shape (lines, columns), or None unless all are plain decimal numbers.
 
     >>> plain_table(["0.0, 1.5", "0.1, -2e-3"], ",").tolist(), plain_table(["0.0 1.5", "0.1"], None)
     ([[0.0, 1.5], [0.1, -0.002]], None)
@@ -79,7 +82,7 @@ def plain_table(lines: Sequence[str], separator: str | None) -> FloatArray | Non
 
 
 def _is_plain(text: str, separator: str = "") -> bool:
-    """Return True if a text has only characters and exponents of plain decimal numbers."""
+    """Return True if a text contains only characters and exponents of plain decimal numbers."""
     data = text.encode("utf-8")
     if data.translate(None, _CHARACTERS + separator.encode()):
         return False
@@ -87,7 +90,7 @@ def _is_plain(text: str, separator: str = "") -> bool:
 
 
 def gap_words(text: str) -> str:
-    """Return an explanation of a word for a missing value; empty for other words."""
+    """Return an explanation of a word that means a missing value; empty for other words."""
     if text.lower().lstrip("+-") not in {"nan", "inf", "infinity", "null", "none", "na", "n/a", "#n/a", "--", "-", "?"}:
         return ""
     return ": a sample has no value; fill the gap, or trim the record before it"
@@ -110,7 +113,7 @@ def matched(source: Source, line: int, form: str) -> re.Match[str]:
 
 
 def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
-    """Return the numbers between blanks on lines, shape (n,) or (lines, columns)."""
+    """Return the numbers of lines, separated by blanks, shape (n,) or (lines, columns)."""
     values = read_rows(source, _free_rows(source, first, last, columns))
     return values if columns is None else values.reshape(-1, columns)
 
@@ -124,7 +127,7 @@ def _free_rows(source: Source, first: int, last: int, columns: int | None) -> It
 
 
 def rows(source: Source, first: int, last: int) -> FloatArray:
-    """Return the numbers on lines of equal length; the last line may be shorter, blank lines are ignored."""
+    """Return the numbers on lines of equal length. The last line may be shorter, and blank lines are ignored."""
     columns, short = 0, False
     last = min(last, source.end) if last == len(source.lines) else last
     for line in range(first, last):
@@ -144,15 +147,15 @@ def rows(source: Source, first: int, last: int) -> FloatArray:
 
 
 def word(source: Source, first: int, index: int, per_line: int, width: int) -> str:
-    """Return the printed text of a number in columns of fixed width, by its index."""
+    """Return the printed text of the number with a given index, in columns of fixed width."""
     line, column = divmod(index, per_line)
     return source.lines[first + line].rstrip()[column * width : (column + 1) * width].strip()
 
 
 def fixed(source: Source, first: int, count: int, per_line: int, width: int, skip: int = 0) -> tuple[FloatArray, int]:
-    """Return `count` numbers in columns of fixed width, with or without blanks, and the line after them.
+    """Return `count` numbers in columns of fixed width, with or without blanks, and the line after the numbers.
 
-    Each line begins with `skip` blanks before the first column.
+    Every line begins with `skip` blanks before the first column.
     """
     values = read_rows(source, _fixed_rows(source, first, count, per_line, width, skip))
     return values, first + math.ceil(count / per_line)
@@ -175,7 +178,7 @@ def _fixed_rows(source: Source, first: int, count: int, per_line: int, width: in
 
 
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
-    """Return the number of columns and their width from a Fortran format.
+    """Return the number of columns and the width of a column from a Fortran format.
 
     >>> fortran_form(Source("a.v1", b"x"), 0, "(8F10.5)")
     (8, 10)

@@ -1,4 +1,4 @@
-"""Files and instrument responses read with ObsPy in a separate process (`foreign_worker` runs this file)."""
+"""Files and instrument responses, read with ObsPy in a separate process (`foreign_worker` runs this file)."""
 
 import io
 import math
@@ -11,7 +11,7 @@ import numpy as np
 
 
 def prepare() -> None:
-    """Load ObsPy with its plugins by one file of each format, before the fork of processes."""
+    """Load ObsPy and its plugins before processes are forked, by reading one file of every format."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         obspy = import_module("obspy")
@@ -23,9 +23,9 @@ def prepare() -> None:
 
 
 def answer(request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
-    """Return descriptions of the traces in a file, each with its channel in StationXML files, and their samples.
+    """Return descriptions of the traces in a file with their channels in StationXML files, and the samples.
 
-    A request for a channel has only StationXML files.
+    For a request about a channel, `files` contains only StationXML files.
     """
     if "channel" in request:
         return _response(request, files)
@@ -52,7 +52,7 @@ def _damage() -> list[type[Warning]]:
 
 
 def _is_of_programs(warning: warnings.WarningMessage) -> bool:
-    """Return True if a warning is about code, or about the rounding of a step, which is read separately."""
+    """Return True if a warning is about program code, or about the rounding of a step (which is read separately)."""
     return issubclass(warning.category, (DeprecationWarning, FutureWarning, ImportWarning)) or (
         "Sample spacing read from SAC" in str(warning.message)
     )
@@ -97,7 +97,7 @@ def _location(code: Any) -> str:
 
 
 def _channels(about: dict[str, str], inventories: Sequence[Any]) -> list[tuple[int, Any]]:
-    """Return the channels of one network, station and code for all locations and times, with their file index."""
+    """Return the channels of one network, station and code, for all locations and times, with their file index."""
     return [
         (index, channel)
         for index, inventory in enumerate(inventories)
@@ -127,7 +127,7 @@ def _described_channel(about: dict[str, str], file_index: int, channel: Any) -> 
 
 
 def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str, Any], list[Any]]:
-    """Return descriptions of a channel, and the response / sensitivity of each at the frequencies of an FFT."""
+    """Return descriptions of a channel, and for every description response / sensitivity at FFT frequencies."""
     warnings.simplefilter("ignore")
     inventories, refusal = _inventories(files)
     if refusal:
@@ -146,7 +146,7 @@ def _response(request: dict[str, Any], files: Sequence[bytes]) -> tuple[dict[str
 
 
 def _in_one_unit(response: Any) -> None:
-    """Set one name for the unit of acceleration in a response: ObsPy has no factors for some names."""
+    """Set one name for the unit of acceleration in a response, because ObsPy has no factors for some names."""
     total, first = response.instrument_sensitivity, response.response_stages[0]
     if first.input_units == total.input_units:
         total.input_units = first.input_units = "M/S**2"

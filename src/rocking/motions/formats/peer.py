@@ -1,4 +1,4 @@
-"""PEER AT2: accelerations in g after a header of four lines, or another header with the same last line."""
+"""PEER AT2: accelerations in g after a header of four lines, or after another header with the same last line."""
 
 import re
 from typing import ClassVar
@@ -14,7 +14,7 @@ _OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", r
 _UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
 _OTHER = re.compile(r"\s*(VELOCITY|DISPLACEMENT)\b.*(?:TIME|HISTORY|SERIES|UNITS)", re.IGNORECASE)
 _IN_WORDS = re.compile(r"(\d+)\s+points\s+at\s+equal\s+spacing\s+of\s+(\d*\.\d+)\s*sec", re.IGNORECASE)
-# NGA files contain the filter after the step: "SEC,  -5 POLE @ .03000 HZ"
+# in NGA files, the filter follows the step: "SEC,  -5 POLE @ .03000 HZ"
 _REST = re.compile(r"[\s,.]*(SEC(ONDS?)?[\s.]*(,.*)?)?[\s,.]*")
 _NUMBERS = re.compile(r"[\s\d.+\-EeDd]*\d[\s\d.+\-EeDd]*")
 _PROSE = re.compile(r"\b[A-Za-z]{3,}\b.*\b[A-Za-z]{3,}\b")
@@ -89,7 +89,7 @@ class Peer(RecordFormat):
 
 def _size_line(source: Source) -> int | None:
     for line, text in enumerate(source.lines[:_LONGEST_HEADER]):
-        # no header has such lines, and patterns are slow on them
+        # headers have no such long lines, for which patterns are slow
         if len(text) > _LONGEST_LINE:
             return None
         if _KEYED.search(text) or _OLD.fullmatch(text):
@@ -107,7 +107,7 @@ def _size(source: Source, line: int) -> tuple[int, float]:
 
 
 def _keyed(text: str) -> dict[str, str] | None:
-    """Return the values of NPTS and DT; None if the line contains other text, except after the seconds."""
+    """Return the values of NPTS and DT; None if the line contains other text (text after the seconds is allowed)."""
     values = re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper())
     remaining = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
     return dict(values) if len(values) == len(dict(values)) == 2 and _REST.fullmatch(remaining) else None

@@ -19,12 +19,12 @@ from rocking.motions.integrals import integral_doubts
 from rocking.motions.motion import GroundMotion
 
 _STARTS = ("starttime", "Record Time", "first time")
-"""Metadata keys of the time of the first sample: miniSEED and SAC, K-NET, columns."""
+"""Metadata keys of the time of the first sample in miniSEED and SAC, in K-NET, and in columns."""
 
 
 @cache
 def _classes() -> tuple[type[RecordFormat], ...]:
-    """Return all formats in the order of detection; a new format needs one file, and one import and name here."""
+    """Return all formats in the order of detection. A new format needs a file, and an import and a name here."""
     from rocking.motions.formats.bhrc import Bhrc
     from rocking.motions.formats.columns import Columns
     from rocking.motions.formats.cosmos import Cosmos
@@ -49,7 +49,7 @@ def _classes() -> tuple[type[RecordFormat], ...]:
     return (
         Peer, Esm, Cosmos, CsmipV1, CsmipV2, Usc, SmcUsgs, SmcBoore, Knet, Cwa, GeonetV1A, GeonetV2A, Bhrc, Csmnc, Nsmn,
         Unam, Itaca, Csn, Slist, Eqsig, MiniSeed, Sac,
-        Columns,  # last, because the files have no header
+        Columns,  # last, because columns have no header
     )  # fmt: skip
 
 
@@ -103,7 +103,7 @@ def read_record(
     InvalidValueError
         If the format or unit is unknown.
     RecordError
-        If the file is missing or damaged, its format is unknown or ambiguous, or it contradicts its header.
+        If the file is missing or damaged, has an unknown or ambiguous format, or contradicts its header.
 
     Examples
     --------
@@ -132,7 +132,7 @@ def read_motion(  # noqa: PLR0913 - all are properties of some files
 ) -> GroundMotion:
     """Return one component of a record file as a ground motion, with an optional vertical part.
 
-    For formats with one component per file (PEER, ESM, K-NET), `vertical_path` is the file of the vertical component;
+    For formats with one component per file (PEER, ESM, K-NET), `vertical_path` is the file of the vertical component.
     `format`, `units` and `time_step` apply to both files.
 
     Parameters
@@ -148,9 +148,10 @@ def read_motion(  # noqa: PLR0913 - all are properties of some files
     component : str, optional
         Name of the horizontal component, case-insensitive; required for files with several components.
     vertical : str, optional
-        Name of the vertical component, case-insensitive; with `vertical_path`, required if that file has several.
+        Name of the vertical component, case-insensitive. It is required if the file `vertical_path` has several
+        components.
     vertical_path : path-like, optional
-        File of the vertical component, with equal time step and start; the longer motion is cut.
+        File of the vertical component, with equal time step and start. The longer motion is cut.
     stations : path-like or sequence of path-like, optional
         StationXML files, or folders of them, for the conversion of counts in miniSEED files to accelerations.
     skip : int
@@ -159,16 +160,16 @@ def read_motion(  # noqa: PLR0913 - all are properties of some files
     Returns
     -------
     GroundMotion
-        Motion in m/s2; the metadata contain the raw header, the provenance contains the SHA-256 of each file.
+        Motion in m/s2. The metadata contain the raw header, and the provenance contains the SHA-256 of every file.
 
     Raises
     ------
     InvalidValueError
-        If the format, unit or component is unknown, or `component` is required; if both files contain the same
+        If the format, unit or component is unknown; if `component` is required; or if both files contain the same
         component or have different time steps.
     RecordError
-        If a file is missing or damaged, its format is unknown or ambiguous, or it contradicts its header; if both
-        files state different start times.
+        If a file is missing or damaged, has an unknown or ambiguous format, or contradicts its header; or if the files
+        state different start times.
 
     Examples
     --------
@@ -214,7 +215,7 @@ def motions_in(
     stations: Places | None = None,
     skip: int = 0,
 ) -> list[GroundMotion]:
-    """Return every component of a record file as a motion; stations: StationXML files for counts."""
+    """Return every component of a record file as a motion. `stations` are StationXML files for counts."""
     source = Source.of_path(path, skip)
     record = _read(source, format, units, time_step, stations)
     return [_motion(source, record, component) for component in record.components]
@@ -226,9 +227,9 @@ def write_record(record: Record, path: str | PathLike[str], format: str) -> None
     Parameters
     ----------
     record : Record
-        Record to write; formats with a fixed unit convert to it.
+        Record to write. Formats with a fixed unit convert the record to this unit.
     path : path-like
-        Path of the file; an existing file is replaced.
+        Path of the file. An existing file is replaced.
     format : str
         Name of the format.
 
@@ -254,7 +255,7 @@ def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, u
     motion : GroundMotion
         Motion to write.
     path : path-like
-        Path of the file; an existing file is replaced.
+        Path of the file. An existing file is replaced.
     format : str
         Name of the format.
     units : str
@@ -296,7 +297,7 @@ def _read(
         record = chosen.read(source, units, time_step)
     except RockingError:
         raise
-    except Exception as error:  # any error of a reader refuses the file
+    except Exception as error:  # any error of a reader means that the file is not readable
         stage = "during the detection of its format" if chosen is None else f"as {chosen.name}"
         raise source.error(
             None, "the file cannot be read {stage} ({type}: {reason:.120})", stage=stage, type=type(error).__name__,
@@ -328,7 +329,7 @@ def _motion(source: Source, record: Record, component: Component) -> GroundMotio
 
 
 def _direction(source: Source, record: Record, component: Component) -> directions.Direction:
-    """Return the direction of a component from its record, and from the file name for a single component."""
+    """Return the direction of a component from its record, or for a single component also from the file name."""
     sides = directions.settled([other.direction for other in record.components])
     side = sides[record.components.index(component)]
     return directions.both(directions.of_file_name(source.name), side) if len(sides) == 1 else side
@@ -351,7 +352,7 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
 
 
 def delay(motion: GroundMotion, other: GroundMotion) -> float:
-    """Return the delay of another motion if both state their start and it exceeds half a step; else zero [s]."""
+    """Return the delay of another motion [s]; zero if a start is not stated, or if the delay is below half a step."""
     for key in _STARTS:
         if key in motion.metadata and key in other.metadata:
             late = _seconds(other.metadata[key]) - _seconds(motion.metadata[key])
@@ -361,7 +362,7 @@ def delay(motion: GroundMotion, other: GroundMotion) -> float:
 
 
 def _seconds(text: str) -> float:
-    """Return a stated time in seconds since a fixed origin; NaN if it is unclear."""
+    """Return a stated time in seconds since a fixed origin; NaN if the time is unclear."""
     number, space, unit = text.partition(" ")
     try:
         if space and unit == "s":

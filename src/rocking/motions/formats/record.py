@@ -32,7 +32,7 @@ class Source:
 
     name: str  # file name, for messages
     content: bytes
-    doubts: list[str] = field(default_factory=list, compare=False)  # warnings of the reader
+    doubts: list[str] = field(default_factory=list, compare=False)  # warnings about the file
     stated: list[str] = field(default_factory=list, compare=False)  # properties stated by the user
     skip: int = 0  # number of lines to skip at the top
 
@@ -73,8 +73,8 @@ class Source:
 
     @cached_property
     def end(self) -> int:
-        """Number of lines without final blank lines and closing words such as ``END``, which give a doubt."""
-        # Ctrl-Z padded files to whole blocks under CP/M and DOS
+        """Number of lines without final blank lines and closing words such as ``END``. Closing words give a warning."""
+        # under CP/M and DOS, files were padded with Ctrl-Z to full blocks
         last, closing = len(self.lines), 0
         while last:
             bare = self.lines[last - 1].strip(" \t\r\x1a")
@@ -87,16 +87,16 @@ class Source:
         return last
 
     def error(self, line: int | None, cause: str, **facts: Any) -> RecordError:
-        """Return the error of a line; facts as in `RockingError`."""
+        """Return an error about a line. Facts are those of `RockingError`."""
         return RecordError(cause, **facts).at(self.name, 0 if line is None else line + 1)
 
     def doubt(self, line: int | None, cause: str) -> None:
-        """Add a warning about a line, for output after the file is read."""
+        """Add a warning about a line. Warnings are issued after the file is read."""
         self.doubts.append(str(self.error(line, cause)))
 
     @contextmanager
     def doubting(self) -> Iterator[None]:
-        """Turn errors inside into doubts: they do not concern count, unit, step or peak of the acceleration."""
+        """Convert errors in this context to warnings, because they do not affect count, unit, step or peak."""
         try:
             yield
         except RecordError as error:
@@ -107,7 +107,7 @@ class Source:
         return line < len(self.lines) and self.lines[line].startswith(mark)
 
     def expected(self, line: int, content: str) -> RecordError:
-        """Return the error for an unexpected line, or for a file that ends before this line."""
+        """Return the error for an unexpected line, or for a file that ends too early."""
         return self.error(min(line, len(self.lines) - 1), "{content} expected", content=content)
 
 
@@ -145,7 +145,7 @@ class Component:
 
     @property
     def direction(self) -> directions.Direction:
-        """Direction in the file: ``up``, ``down``, ``unclear``, an azimuth [degree]; None without a direction."""
+        """Direction in the file: ``up``, ``down``, ``unclear``, an azimuth [degree], or None if missing."""
         if directions.KEY in self.metadata:
             return directions.of_metadata(self.metadata)
         return directions.orientation(self.metadata.get("direction") or self.name)
@@ -153,7 +153,7 @@ class Component:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A record file: its components and its header.
+    """Content of a record file: components and header.
 
     Parameters
     ----------
@@ -193,30 +193,30 @@ class Record:
 
 
 class RecordFormat(ABC):
-    """A format of ground-motion files; a new format is a subclass in its own module and a line in `reader`."""
+    """A format of ground-motion files. A new format needs a subclass in its own module, and a line in `reader`."""
 
     name: ClassVar[str]  # name for `format=` and on the command line
     title: ClassVar[str]  # publisher of such files, in one line
-    suffixes: ClassVar[tuple[str, ...]] = ()  # usual extensions, in lower case; the content defines the format
-    states_unit: ClassVar[bool] = True  # True if the files contain the unit; else the user must state it
-    states_time_step: ClassVar[bool] = True  # True if the files contain the time step; else the user must state it
+    suffixes: ClassVar[tuple[str, ...]] = ()  # usual extensions in lower case; not used for detection
+    states_unit: ClassVar[bool] = True  # True if the files contain the unit; otherwise the user must state the unit
+    states_time_step: ClassVar[bool] = True  # True if the files contain the time step; otherwise the user must state it
     notes: ClassVar[str] = ""  # limits of the format and its verification
     marks: ClassVar[tuple[str, ...]] = ()  # patterns at the start of lines near the top
     top: ClassVar[int] = 0  # number of lines searched for marks
 
     def __init_subclass__(cls) -> None:
-        """Refuse a format without detection."""
+        """Raise an error for a format that cannot be detected."""
         super().__init_subclass__()
         if not (cls.marks and cls.top) and cls.recognises is RecordFormat.recognises:
             raise TypeError(f"{cls.__name__}: define marks and top, or recognises")
 
     def recognises(self, source: Source) -> bool:
-        """Return True if the content has all marks of this format except at most one; raises no error."""
+        """Return True if the content has all marks of this format, or all but one. Never raises an error."""
         # a file with a damaged header must not count as columns of numbers
         return bool(self.marks) and self._marks_in(source) >= len(self.marks) - 1
 
     def resembles(self, source: Source) -> bool:
-        """Return True if the content has at least half of the marks of this format, as in a damaged header."""
+        """Return True if the content has half of the marks of this format or more, as in a damaged header."""
         return len(self.marks) > 3 and 2 * self._marks_in(source) >= len(self.marks)
 
     def _marks_in(self, source: Source) -> int:
@@ -224,7 +224,7 @@ class RecordFormat(ABC):
         return sum(any(re.match(mark, line[:400]) for line in top) for mark in self.marks)
 
     def refusal(self, source: Source) -> RecordError | None:
-        """Return the error of a file that has this format except for a known damage; else None."""
+        """Return the error of a file of this format with a known damage, otherwise None."""
         return None
 
     @abstractmethod
@@ -233,11 +233,11 @@ class RecordFormat(ABC):
 
     @abstractmethod
     def write(self, record: Record) -> bytes:
-        """Return the content of a file of this format, for `read`."""
+        """Return the content of a file of this format. `read` can read the file."""
 
 
 def readable(text: str, *, turkish: bool = False) -> str:
-    r"""Return a line in its encoding: UTF-8 if valid, Turkish if it has Turkish words, else Latin-1.
+    r"""Return a decoded line: UTF-8 if valid, the Turkish encoding for Turkish words, otherwise Latin-1.
 
     >>> readable("\xddvme (g)"), readable("\xc5\xa0i\xc5\xa1")
     ('İvme (g)', 'Šiš')
@@ -251,7 +251,7 @@ def readable(text: str, *, turkish: bool = False) -> str:
 
 
 def one_line(text: object, width: int) -> str:
-    r"""Return Latin-1 text for one line of a header, for writers; other letters become question marks.
+    r"""Return Latin-1 text for one line of a header, for writers. Other letters become question marks.
 
     >>> one_line("El Centro\r\n 1940", 12)
     'El Centro 19'

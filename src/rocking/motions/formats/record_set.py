@@ -1,4 +1,4 @@
-"""Sets of records from a folder, a pattern or a list of files, with combined components of each station."""
+"""Sets of records from a folder, a pattern or a list of files. The components of a station are combined."""
 
 import csv
 import re
@@ -30,7 +30,7 @@ from rocking.motions.formats.stations import Places, is_station_file
 from rocking.motions.motion import GroundMotion
 
 PERPENDICULAR = 5.0  # tolerance of the right angle between two components [degree]
-FEW = 48  # below this number of files, one process is faster than several
+FEW = 48  # for fewer files, one process is faster than several
 MAX_WARNINGS = 6  # largest number of warnings about single files
 
 _AT_END = re.compile(
@@ -46,10 +46,10 @@ _ALSO = {"record": "motion", "factor": "scale", "aufzeichnung": "motion", "datei
          "skalierung": "scale", "registrazione": "motion", "fattore": "scale"}  # fmt: skip
 _OPTION_COLUMNS = {"units": "units", "unit": "units", "einheit": "units", "unità": "units", "time_step": "time_step",
           "dt": "time_step", "format": "format", "skip": "skip"}  # fmt: skip
-"""Columns of a list with options of the files of a row, and the names of these options."""
+"""Columns of a list that contain options for the files of a row, and the names of these options."""
 
 LARGEST_LIST = 1 << 24  # largest list of records [bytes]
-_TOP = 500  # lines before the list of files in a PEER list
+_TOP = 500  # largest number of lines before the list of files in a PEER list
 _SPECIAL = "*?["
 
 
@@ -63,9 +63,9 @@ class RecordSet:
     Parameters
     ----------
     records : tuple of Components
-        One motion per record: horizontal components x and y, and z, upwards; None for missing components.
+        One motion per record: horizontal components x and y, and z (upwards). Missing components are None.
     left_out : tuple of pairs of str and str or RockingError
-        File and reason of unreadable files and of components that do not match.
+        Files that are unreadable or have components that do not match, with the reason.
 
     Examples
     --------
@@ -88,22 +88,22 @@ class RecordSet:
         return self.records[index]
 
     def plane(self) -> list[GroundMotion]:
-        """Return the motions of plane bodies: every horizontal component with the vertical one of its record.
+        """Return the motions for plane bodies: every horizontal component, with the vertical component of its record.
 
         Returns
         -------
         list of GroundMotion
-            One motion per horizontal component; none of a single vertical component.
+            One motion per horizontal component. A record with only a vertical component gives no motion.
         """
         return [motion for record in self.records for motion in plane_motions(record)]
 
     def mirrored(self) -> "RecordSet":
-        """Return each record twice: as recorded, and with reversed polarity of its horizontal components.
+        """Return every record twice: as recorded, and with reversed polarity of the horizontal components.
 
         Returns
         -------
         RecordSet
-            Set of twice the length; the vertical components are unchanged.
+            Set of twice the length. The vertical components are unchanged.
         """
         return replace(
             self, records=tuple(motion for record in self.records for motion in (record, reversed_polarity(record)))
@@ -111,9 +111,9 @@ class RecordSet:
 
 
 def plane_motions(record: Components) -> list[GroundMotion]:
-    """Return the horizontal components of a record, each with its vertical one."""
+    """Return the horizontal components of a record, combined with its vertical component."""
     level = [component for component in (record.x, record.y) if component is not None]
-    if len({component.name for component in level}) < len(level):  # distinguish by component
+    if len({component.name for component in level}) < len(level):  # add the component, so that names are unique
         level = [
             replace(component, name=f"{component.name} {component.metadata.get('component', '')}".strip())
             for component in level
@@ -141,12 +141,12 @@ def read_records(  # noqa: PLR0913 - all are properties of some sets
     workers: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> RecordSet:
-    r"""Return the records of files, a folder, a pattern or a list, with the components of each in one motion.
+    r"""Return the records of files, a folder, a pattern or a list. The components of a record are in one motion.
 
-    Files of one component form one motion if their names differ only in the component (``ELC180``, ``ELC270``,
-    ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and their time steps, starts, events and azimuths agree. Other components
-    remain separate motions. Components are cut to the length of the shortest. The azimuth of y is 90 degrees to the
-    left of x, such as East and North. Downward components are reversed.
+    Files with one component form one motion if their names differ only in the component (``ELC180``, ``ELC270``,
+    ``ELC-UP``; ``.NS``, ``.EW``, ``.UD``), and if their time steps, starts, events and azimuths agree. Other components
+    remain separate motions. Components are cut to the length of the shortest component. The azimuth of y is 90 degrees
+    to the left of x, such as East and North. Downward components are reversed.
 
     A list is a CSV file of PEER search results, or a CSV file with the column motion (or x, y, z). Optional columns are
     scale and name, and units, time_step, format and skip of the files of a row. Scale factors of PEER are only
@@ -155,16 +155,16 @@ def read_records(  # noqa: PLR0913 - all are properties of some sets
     Parameters
     ----------
     where : path-like, or sequence of path-like
-        Folder with its subfolders; pattern such as ``records/*.at2``; list of files; or one file. Files of several
-        inputs are combined as in one folder; repeated files are read once.
+        Folder with its subfolders, pattern such as ``records/*.at2``, list of files, or one file. Files of several
+        inputs are combined as in one folder. Repeated files are read once.
     format, units, time_step : optional
         Options of `read_motion`, for all files.
     files : mapping of path-like to mapping, optional
-        Options of single files by file name, which replace those for all files: ``units``, ``time_step`` [s],
-        ``format`` and ``skip``, such as ``{"a.txt": {"units": "g"}}``. A name may include folders, to be unique.
+        Options of single files by file name: ``units``, ``time_step`` [s], ``format`` and ``skip``, such as ``{"a.txt":
+        {"units": "g"}}``. They replace the options for all files. To be unique, a name may include folders.
     stations : path-like or sequence of path-like, optional
-        StationXML files, or folders of them, for the conversion of counts in miniSEED files to accelerations, by
-        network, station, location, channel and date. The default is the StationXML files in `where`.
+        StationXML files, or folders of them, which convert counts in miniSEED files to accelerations, by network,
+        station, location, channel and date. By default, the StationXML files in `where`.
     skip : int
         Number of lines to skip at the top of every text file.
     workers : int
@@ -182,7 +182,7 @@ def read_records(  # noqa: PLR0913 - all are properties of some sets
     RecordError
         If no file exists, or no file is readable.
     InvalidValueError
-        If `files` has an unknown file, key or value, or repeats a key of the row of the file in a list.
+        If `files` contains an unknown file, key or value, or repeats a key from the row of the file in a list.
 
     Examples
     --------
@@ -235,7 +235,10 @@ def _of_list(
     workers: int,
     progress: Callable[[int], None] | None,
 ) -> RecordSet:
-    """Return the records of the rows of a list, with files in its folder; own: options by file."""
+    """Return the records of the rows of a list, with files in the folder of the list.
+
+    `own` contains options by file.
+    """
     items: list[dict[str, Item]] = [
         {axis: (file, together(file, row.options, own.get(file, {}), path.name)) for axis, file in paths.items()}
         for row in rows
@@ -248,7 +251,7 @@ def _of_list(
 
 
 def paths_of(where: str | PathLike[str]) -> list[Path]:
-    """Return the files of a folder or a pattern in alphabetical order, without hidden files; or the single file."""
+    """Return the files of a folder or pattern in alphabetical order, without hidden files, or the single file."""
     path = Path(where)
     if path.is_dir():
         return sorted(file for file in path.rglob("*") if file.is_file() and not _is_hidden(file.relative_to(path)))
@@ -268,7 +271,7 @@ def _is_hidden(path: Path) -> bool:
 def mapped(
     function: Callable[[Any], Any], items: Sequence[Any], workers: int, progress: Callable[[int], None] | None
 ) -> Iterator[Any]:
-    """Yield the function of every item in order, with several processes for many items."""
+    """Apply a function to every item and yield the results in order. Many items use several processes."""
     done = progress or (lambda _: None)
     if workers <= 1 or len(items) < FEW:
         for item in items:
@@ -291,11 +294,11 @@ def mapped(
         ) from error
 
 
-Read = tuple[list[GroundMotion] | RockingError, list[str]]  # components or an error, and doubts
+Read = tuple[list[GroundMotion] | RockingError, list[str]]  # components or an error, and warnings
 
 
 def _read(item: "Item", **options: Any) -> Read:
-    """Return the motions or the error of one file with its own options, and its doubts, in any process."""
+    """Return the motions or the error of one file, read with its own options, and the warnings. Runs in any process."""
     path, own = item
     with warnings.catch_warnings(record=True) as doubts:
         warnings.simplefilter("always")
@@ -318,14 +321,14 @@ def _motions(path: Path, read: Read, left_out: list[tuple[str, Reason]], doubted
 
 
 def _warn(doubted: list[str]) -> None:
-    """Warn of the first doubts, and of the number of the others."""
+    """Issue the first warnings, and a warning with the number of other warnings."""
     plausibility.warn(doubted if len(doubted) <= MAX_WARNINGS else doubted[: MAX_WARNINGS - 1])
     if (more := len(doubted) - MAX_WARNINGS + 1) > 1:
         plausibility.warn([f"{more} more doubts about these files: see `doubts` in the table of measures"])
 
 
 def paired(files: Iterable[tuple[Path, Read]]) -> RecordSet:
-    """Return the records of files; files that match by names or headers form one record."""
+    """Return the records of files. Files that match by names or headers form one record."""
     groups: dict[Any, list[tuple[GroundMotion, str]]] = {}
     left_out: list[tuple[str, Reason]] = []
     doubted: list[str] = []
@@ -364,11 +367,11 @@ def _by_sensor(motions: Sequence[GroundMotion]) -> list[list[GroundMotion]]:
 
 
 def _key(path: Path, motion: GroundMotion) -> tuple[tuple[str, ...], str]:
-    """Return the file name without its component, with its extension, and the component in the name."""
+    """Return the file name without its component but with its extension, and the component in the name."""
     stem, ending = path.stem, path.suffix.casefold()
     name = motion.metadata["component"].split()[0].upper()
     if re.fullmatch(rf"\.{re.escape(name.replace('-', ''))}\d?", ending.upper()):
-        return (stem, ending[-1] if ending[-1].isdigit() else ""), ""  # K-NET, and the two instruments of KiK-net
+        return (stem, ending[-1] if ending[-1].isdigit() else ""), ""  # K-NET, and both instruments of KiK-net
     for form in (name.zfill(3), name):
         before, mark, after = stem.upper().rpartition(form)
         if mark and len(form) > 1 and (not after or not (before[-1:] + after[:1]).isalnum()):
@@ -383,10 +386,10 @@ def _key(path: Path, motion: GroundMotion) -> tuple[tuple[str, ...], str]:
 
 
 def _directed(group: Sequence[tuple[GroundMotion, str]]) -> list[GroundMotion]:
-    """Return the components of one name with their directions, also from their file names."""
+    """Return the components of one name with their directions. File names may also give directions."""
     motions = []
     for motion, token in group:
-        if token and len(group) > 1 and _oriented(motion) is None:  # only the file name contains the direction
+        if token and len(group) > 1 and _oriented(motion) is None:  # only the file name gives the direction
             metadata = {"component": token, KEY: as_text(orientation(token))}
             motion = replace(motion, metadata={**motion.metadata, **metadata})  # noqa: PLW2901
         motions.append(motion)
@@ -398,7 +401,7 @@ def _directed(group: Sequence[tuple[GroundMotion, str]]) -> list[GroundMotion]:
 
 
 def _of_one_header(groups: Sequence[list[GroundMotion]]) -> list[list[GroundMotion]]:
-    """Return groups with components of different names in one record if their headers agree."""
+    """Return groups. Components with different names are in one record if their headers agree."""
     alone: dict[Any, list[int]] = {}
     for index, motions in enumerate(groups):
         if len(motions) == 1 and (key := _header_key(motions[0])):
@@ -414,7 +417,7 @@ def _of_one_header(groups: Sequence[list[GroundMotion]]) -> list[list[GroundMoti
 
 
 def _header_key(motion: GroundMotion) -> tuple[Any, ...] | None:
-    """Return the common header facts of the components of one record; None if they are insufficient."""
+    """Return the header facts that the components of one record share; None if there are too few facts."""
     side, metadata = _oriented(motion), motion.metadata
     when = [metadata.get(key, "") for key in ("event", "date", "starttime", "Record Time", "Origin Time")]
     where = [metadata.get(key, "") for key in (*_SENSOR, "station number", "Station Code", "instrument", "kind")]
@@ -425,7 +428,7 @@ def _header_key(motion: GroundMotion) -> tuple[Any, ...] | None:
 
 
 def _may_be_vertical(motion: GroundMotion, group: Sequence[GroundMotion]) -> bool:
-    """Return True if a component without direction may be the vertical one of three components."""
+    """Return True if a component without direction may be the vertical component of three components."""
     side, sides = _oriented(motion), [_oriented(other) for other in group]
     return side == UNCLEAR or (side is None and len(sides) > 2 and not {UP, DOWN} & set(sides))
 
@@ -502,11 +505,11 @@ def _cut(motion: GroundMotion, count: int) -> GroundMotion:
 class ListedRecord:
     """One row of a list of records."""
 
-    files: dict[str, str]  # by axis, or a single file by an empty name
+    files: dict[str, str]  # files by axis; a single file has an empty name
     scale: float  # factor on the acceleration [-]
     name: str
     metadata: Mapping[str, str]
-    options: Mapping[str, Any] = field(default_factory=dict)  # of its files: units, time_step, format, skip
+    options: Mapping[str, Any] = field(default_factory=dict)  # options of the files: units, time_step, format, skip
 
     def paths(self, folder: Path) -> dict[str, Path]:
         """Return the paths of the files by axis."""
@@ -522,7 +525,7 @@ def rows_of_list(path: Path) -> list[ListedRecord] | None:
         if path.suffix.lower() not in {".csv", ".tsv"} or not path.is_file() or path.stat().st_size > LARGEST_LIST:
             return None
         return _rows(path.read_bytes().decode("utf-8-sig", "replace").splitlines(), path.name)
-    except (OSError, csv.Error):  # the reader of records reports the error
+    except (OSError, csv.Error):  # the reader of records reports this error later
         return None
 
 
@@ -541,7 +544,7 @@ def _rows(lines: Sequence[str], source: str) -> list[ListedRecord] | None:
         ends = next((k for k, row in enumerate(rows) if not row.get(_PEER)), len(rows))
         return [_of_peer(row) for row in rows[:ends]]
     column = next(title for title in titles if title in _TITLES)
-    if not rows or _is_number(rows[0].get(column, "")):  # a record with a column x
+    if not rows or _is_number(rows[0].get(column, "")):  # the file is a record with a column x
         return None
     return [_row(row, mark, source) for row in rows if any(row.values())]
 
@@ -594,7 +597,7 @@ def _listed(rows: Iterable[tuple[ListedRecord, Mapping[str, Read]]]) -> RecordSe
         motions = [motion for axis_motions in components.values() for motion in axis_motions]
         if not all(components.values()):
             continue
-        # with axes, the list defines the directions
+        # if the list has axes, the list defines the directions
         reason = _mismatch(motions) if "" in components else _time_mismatch(motions)
         if "" not in components and len(motions) > len(components):
             reason = "the file of one axis has several components"

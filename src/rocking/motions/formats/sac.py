@@ -1,6 +1,7 @@
 """SAC, a binary format of seismology, read with ObsPy.
 
-SAC files contain no unit; the user must state it. Verified with one file of the 2019 Ridgecrest earthquake.
+SAC files contain no unit, so that the user must state the unit. The reader was verified with one file of the 2019
+Ridgecrest earthquake.
 """
 
 import math
@@ -46,7 +47,7 @@ class Sac(RecordFormat):
         order = _byte_order(source)
         if order is None:
             raise source.error(None, "not a SAC file of version 6 or 7")
-        # ObsPy reduces longitudes by 360 degrees at a time, and is slow for large ones
+        # ObsPy reduces longitudes in steps of 360 degrees, which is slow for large values
         for quantity, (offset, most) in _PLACES.items():
             value = struct.unpack_from(order + "f", source.content, offset)[0]
             if value != _UNDEFINED and not abs(value) <= most:
@@ -85,7 +86,7 @@ class Sac(RecordFormat):
         return Record(self.name, (Component(name, values, unit, step, stated, side),), trace.header, trace.about)
 
     def write(self, record: Record) -> bytes:
-        """Return a SAC file in the unit of the component; the header field kuser0 contains the unit."""
+        """Return a SAC file in the unit of the component. The header field kuser0 contains the unit."""
         (values,) = headers.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
             raise RecordError(
@@ -101,7 +102,7 @@ class Sac(RecordFormat):
 
 
 def _step(delta: float) -> float:
-    """Return the step of a single-precision number [s]: from a whole number of samples/s, or to seven digits.
+    """Return the step of a single-precision number [s]: for a whole number of samples/s, or with seven digits.
 
     >>> _step(0.0199999996), _step(0.0166666675) == 1.0 / 60.0, _step(0.0320000015)
     (0.02, True, 0.032)
@@ -111,7 +112,7 @@ def _step(delta: float) -> float:
 
 
 def _direction(name: str, sac: dict[str, Any]) -> directions.Direction:
-    """Return the direction from the code of the channel, and from the angles of the sensor if stated."""
+    """Return the direction from the code of the channel and, if stated, from the angles of the sensor."""
     azimuth, from_up = (float(sac.get(key, _UNDEFINED)) for key in ("cmpaz", "cmpinc"))
     if from_up == _UNDEFINED:
         return directions.orientation(name)
@@ -140,7 +141,7 @@ class Trace:
     about: dict[str, str]  # network, station, location, channel and time of the first sample
     sac: dict[str, Any]  # header of a SAC file
     header: str  # header of a SAC file as text
-    # matching channels of StationXML files: file, location, dates, rate, sensitivity, angles; None without files
+    # matching channels of StationXML files (file, location, dates, rate, sensitivity, angles); None without files
     channels: list[dict[str, Any]] | None
     samples: Any  # samples of the file
 
@@ -149,7 +150,10 @@ OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obs
 
 
 def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **options: Any) -> list[Trace]:
-    """Return the traces of a file as read by ObsPy in a separate process; its warnings become doubts."""
+    """Return the traces of a file, read by ObsPy in a separate process.
+
+    Warnings of ObsPy become warnings of the source.
+    """
     if find_spec("obspy") is None:
         need_obspy(form)
     files = [source.content, *(station.content for station in stations)]
@@ -168,7 +172,7 @@ def read_traces(source: Source, form: str, stations: Sequence[Source] = (), **op
 
 
 def check_stations(answer: dict[str, Any], stations: Sequence[Source]) -> None:
-    """Refuse a StationXML file that ObsPy cannot read."""
+    """Raise an error for a StationXML file that ObsPy cannot read."""
     if "stations" in answer:
         raise stations[answer["file_index"]].error(
             None, "ObsPy cannot read the file as StationXML: {reason}", reason=answer["stations"]
@@ -176,7 +180,7 @@ def check_stations(answer: dict[str, Any], stations: Sequence[Source]) -> None:
 
 
 def need_obspy(form: str) -> Any:
-    """Return ObsPy."""
+    """Return the module ObsPy, or raise an error if it is not installed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return extra("obspy", f"reading {form}")

@@ -1,6 +1,6 @@
-"""Text formats SLIST and TSPAIR of ObsPy and IRIS: a line TIMESERIES per channel, then samples, or times and samples.
+"""Text formats SLIST and TSPAIR of ObsPy and IRIS: per channel a line TIMESERIES, then samples, or times and samples.
 
-Layout: ObsPy's documentation of `obspy.io.ascii`; IRIS DMC, "ASCII time series formats".
+The layout is in the documentation of `obspy.io.ascii` and in IRIS DMC, "ASCII time series formats".
 """
 
 import re
@@ -32,7 +32,10 @@ class Slist(RecordFormat):
         return source.is_text and source.lines[0].startswith("TIMESERIES ")
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
-        """Return the record, one component per channel; gaps appear as channels of one name and raise an error."""
+        """Return the record with one component per channel.
+
+        Gaps appear as channels with equal names and raise an error.
+        """
         starts = [line for line, text in enumerate(source.lines) if text.startswith("TIMESERIES")]
         if not starts or starts[0] != 0:
             raise source.error(0, "line that begins with TIMESERIES expected")

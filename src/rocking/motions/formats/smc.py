@@ -1,4 +1,4 @@
-"""SMC: accelerations in the layout of the U.S. Geological Survey, and in the high-precision layout of Boore."""
+"""SMC: accelerations in the layout of the U.S. Geological Survey, or in the high-precision layout of Boore."""
 
 import math
 import re
@@ -53,7 +53,7 @@ class SmcUsgs(RecordFormat):
         """Return True if the file has the lines of numbers of SMC, with the precision of this variant."""
         if not source.is_text or not re.match(r" ?\d [A-Z]", source.lines[0]):
             return False
-        # a header with a missing line is still SMC: read() reports the error
+        # a header with a missing line is still SMC; read() reports the error
         top = [line.rstrip() for line in source.lines[1 : TEXTS + WHOLES + REALS + 3]]
         wholes = [row for row in top if re.fullmatch(_WHOLES, row)]
         if len(wholes) < WHOLES - 1 or sum(re.fullmatch(_REALS, row) is not None for row in top) < REALS - 1:
@@ -81,7 +81,7 @@ class SmcUsgs(RecordFormat):
             step = 1.0 / rate
             stated = self._check_peaks(source, header, values, np.arange(count, dtype=np.float64) * step)
         else:
-            # without a rate, the count includes times and samples
+            # if there is no rate, the count includes times and samples
             if count % 2:
                 raise source.error(
                     TEXTS + 2, "the count of pairs of time and sample must be even, found {count}", count=count
@@ -147,7 +147,7 @@ class SmcUsgs(RecordFormat):
         ):
             if stated is None:
                 continue
-            # half a unit in the last digit of the samples and of the header
+            # half a unit of the last digit of the samples and of the header
             rounding = abs(stated) * (0.51 * 10.0**-self._decimals + 6e-7)
             headers.check_stated(source, stated, computed, rounding, quantity)
             if when is None:
@@ -213,7 +213,7 @@ def _grid(lines: Sequence[str], per_line: int, width: int) -> list[str]:
 
 
 class SmcBoore(SmcUsgs):
-    """SMC in high precision; it differs from `SmcUsgs` only in the columns of the samples."""
+    """SMC in high precision. It differs from `SmcUsgs` only in the columns of the samples."""
 
     name: ClassVar[str] = "smc-boore"
     title: ClassVar[str] = "SMC of Boore's TSPP programs in high precision, 5 columns of 14 characters"

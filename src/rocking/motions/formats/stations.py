@@ -1,4 +1,4 @@
-"""StationXML files for the conversion of counts to accelerations: one, several, or folders of files."""
+"""StationXML files for the conversion of counts to accelerations: one file, several files, or folders."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats.record import Source
 
 _ROOT = b"FDSNStationXML"
-_TOP = 4096  # bytes before the root element of a StationXML file
+_TOP = 4096  # largest number of bytes before the root element of a StationXML file
 BETWEEN = "|"
 """Separator of several files or folders in one text."""
 
@@ -21,7 +21,7 @@ Places = str | PathLike[str] | Sequence[str | PathLike[str]]
 _SPELT = re.compile(r"([NUMC]?)M/(?:S\*\*2|\(S\*\*2\)|S\^2|S\^\{2\}|S2|S/S|SEC\*\*2|SEC\^2|SEC2|SEC/SEC)")
 _FACTORS = {"": 1.0, "C": 1e-2, "M": 1e-3, "U": 1e-6, "N": 1e-9}
 _COUNTS = {"COUNTS", "COUNT", "DIGITALCOUNTS", "CT", "CTS"}
-_DESCRIBED = ("rate", "sensitivity", "azimuth", "dip", "from")  # equal keys of two descriptions of a channel
+_DESCRIBED = ("rate", "sensitivity", "azimuth", "dip", "from")  # keys with equal values in equal descriptions
 _UNNAMED = {"NONE", "", "UNKNOWN", "UNDEFINED"}
 
 
@@ -37,7 +37,7 @@ def is_station_file(path: Path) -> bool:
 
 
 def station_files(places: Places) -> list[Path]:
-    """Return the StationXML files of paths: files, and all files in folders and subfolders.
+    """Return the StationXML files of paths. Folders are searched with their subfolders.
 
     >>> station_files("a.xml|b.xml")
     [PosixPath('a.xml'), PosixPath('b.xml')]
@@ -54,7 +54,7 @@ def station_files(places: Places) -> list[Path]:
 
 
 def station_sources(places: Places, codes: Iterable[str]) -> list[Source]:
-    """Return the StationXML files that contain one of the station codes; all files if none does."""
+    """Return the StationXML files that contain one of the station codes, or all files if no file does."""
     sources = [_kept(path, path.stat().st_mtime_ns if path.is_file() else 0) for path in station_files(places)]
     form = re.compile(rb"\bcode\s*=\s*[\"'](?:" + b"|".join(re.escape(code.encode()) for code in codes) + rb")[\"']")
     return [source for source in sources if form.search(source.content)] or sources
@@ -66,7 +66,7 @@ def _kept(path: Path, _changed: int) -> Source:
 
 
 def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
-    """Return the overall sensitivity of a channel [counts/(m/s2)]; a missing output unit gives a doubt."""
+    """Return the overall sensitivity of a channel [counts/(m/s2)]. A missing output unit gives a warning."""
     total = channel["sensitivity"]
     if not total:
         raise source.error(
@@ -98,7 +98,7 @@ def sensitivity_of(source: Source, channel: dict[str, Any], name: str) -> float:
 def channel_at(
     source: Source, descriptions: Sequence[dict[str, Any]], stations: Sequence[Source], name: str, when: str
 ) -> tuple[dict[str, Any], Source]:
-    """Return the description of a channel at a time, and its StationXML file; equal descriptions count once."""
+    """Return the description of a channel at a time, and its StationXML file. Equal descriptions count as one."""
     exact = [description for description in descriptions if description["matches"]]
     distinct = {repr([description[key] for key in _DESCRIBED]): description for description in exact}
     if len(distinct) == 1:

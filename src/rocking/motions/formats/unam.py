@@ -1,6 +1,7 @@
 """UNAM, Mexico: the ASA standard file of accelerations, version 2.0, with up to 12 channels in columns.
 
-Layout: from the header, which contains every field name and the Fortran format. Verified with one file of 2017.
+The layout is known from the header, which contains all field names and the Fortran format. The reader was verified with
+one file of 2017.
 """
 
 import re

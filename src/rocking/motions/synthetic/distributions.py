@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class Distribution(ABC):
-    """A distribution between two bounds, in the unit of the parameter; `str` returns a description."""
+    """A distribution between two bounds, in the unit of the parameter. `str` returns a description."""
 
     low: float
     high: float
@@ -29,7 +29,7 @@ class Distribution(ABC):
         return np.asarray(self._cdf(np.clip(value, self.low, self.high)))
 
     def quantile(self, share: float) -> float:
-        """Return the quantile of a probability from 0 to 1; uniform random numbers give samples."""
+        """Return the quantile of a probability from 0 to 1. Quantiles of uniform random numbers are samples."""
         share = checks.within("share", share, 0.0, 1.0, hint="not a percentage")
         return min(max(float(self._quantile(share)), self.low), self.high)
 

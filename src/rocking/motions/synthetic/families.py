@@ -1,4 +1,4 @@
-"""Families of synthetic motions: generators with a distribution for each parameter."""
+"""Families of synthetic motions: generators with distributions of their parameters."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -36,9 +36,9 @@ class Family:
     generator : str
         Model of ground motion, with its source.
     distributions : mapping of str to Distribution
-        Distributions by parameter, in the order of sampling; the name contains the unit.
+        Distributions by parameter name, in the order of sampling. The name contains the unit.
     make : callable
-        Function of the values by parameter, a seed and a time step [s]; returns a motion.
+        Function of the values by parameter, a seed and a time step [s], which returns a motion.
     time_step : float
         Default time step between samples [s].
     origin : str
@@ -59,7 +59,7 @@ class Family:
         Parameters
         ----------
         shares : ndarray
-            One number from 0 to 1 for each parameter, in the order of `distributions` [-].
+            Numbers from 0 to 1, one per parameter, in the order of `distributions` [-].
 
         Returns
         -------
@@ -72,7 +72,7 @@ class Family:
                 count=len(self.distributions), shape=np.shape(shares),
             )  # fmt: skip
         pairs = zip(self.distributions.items(), shares, strict=True)
-        # twelve digits: the other digits depend on the C library
+        # rounded to twelve digits, because further digits depend on the C library
         return {name: float(f"{spread.quantile(float(share)):.12g}") for (name, spread), share in pairs}
 
     def motion(self, seed: int, number: int = 0, time_step: float | None = None) -> GroundMotion:
@@ -83,9 +83,9 @@ class Family:
         seed : int
             Seed of the set, at least 0 [-].
         number : int
-            Number of the motion, at least 0; seed and number define the motion [-].
+            Number of the motion, at least 0 [-]. Seed and number define the motion.
         time_step : float, optional
-            Time step between samples; the default is that of the family [s].
+            Time step between samples [s]. The default is the time step of the family.
 
         Returns
         -------
@@ -117,21 +117,21 @@ def _random(seed: int, number: int, count: int) -> tuple[FloatArray, int]:
 
 
 def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMotion:
-    """Return a motion with a pulse added to it.
+    """Return the sum of a motion and a pulse.
 
     Parameters
     ----------
     residual : GroundMotion
-        Record without its pulse; its vertical part is unchanged.
+        Record without its pulse. The vertical part of the record is unchanged.
     pulse : Pulse
         Pulse, sampled at the time step of the residual.
     arrival : float
-        Time of the middle of the pulse, rounded to a whole step; the pulse must not begin before the motion [s].
+        Time of the middle of the pulse [s], rounded to a whole step. The pulse must not begin before the motion.
 
     Returns
     -------
     GroundMotion
-        Sum of both; longer than the residual if the pulse ends later.
+        Sum of both motions. It is longer than the residual if the pulse ends later.
 
     Examples
     --------
@@ -202,7 +202,7 @@ def _stochastic(sampled: Mapping[str, float], seed: int, step: float, corner: fl
     shaper = NonstationaryFilter(
         sampled["frequency_hz"], sampled["slope_hz_s"], middle, sampled["damping"], lowest=0.2 * sampled["frequency_hz"]
     )
-    # the high pass is at rest after about two of its periods
+    # the high pass comes to rest after about two of its periods
     duration = round(modulation.time_of(0.999) + 2.0 / corner, 9)
     return nonstationary_motion(modulation, shaper, seed=seed, time_step=step, duration=duration, corner=corner)
 
@@ -235,7 +235,7 @@ def _source(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotio
 def _pulse_like(sampled: Mapping[str, float], seed: int, step: float) -> GroundMotion:
     period, cycles = sampled["pulse_period_s"], sampled["pulse_cycles"]
     pulse = mavroeidis_papageorgiou(sampled["pulse_velocity_m_s"], period, cycles, sampled["pulse_phase_rad"])
-    # the high pass leaves only the pulse below its frequency
+    # below the frequency of the high pass, only the pulse remains
     residual = _stochastic(sampled, seed, step, 1.0 / period)
     middle = sampled["middle_over_duration"] * sampled["significant_duration_s"]
     return with_pulse(residual, pulse, max(middle, 0.5 * pulse.duration + step))

@@ -1,4 +1,4 @@
-"""Kanai-Tajimi motions: white noise at the bedrock, filtered by a soil layer, times an envelope."""
+"""Kanai-Tajimi motions: white noise at the bedrock, filtered by a soil layer and multiplied by an envelope."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from rocking.motions.filters import exponential, recurrence, transition
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.sampling import described, normals, times
 
-MIN_PHASE = 1e-3  # smallest phase of the filter in one step [rad]: below, rounding errors dominate its covariance
+MIN_PHASE = 1e-3  # smallest phase of the filter in one step [rad], to limit rounding errors of the covariance
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class KanaiTajimi:
     density : float
         Two-sided power spectral density S0 of the noise over circular frequency [m2/s3 per rad].
     frequency : float
-        Natural frequency of the layer [Hz]; the default 2.5 Hz (5 pi rad/s) is usual for firm ground.
+        Natural frequency of the layer [Hz]. The default 2.5 Hz (5 pi rad/s) is usual for firm ground.
     damping : float
-        Damping ratio of the layer, between 0 and 1; the default 0.6 is usual [-].
+        Damping ratio of the layer, between 0 and 1 [-]. The default 0.6 is usual.
     """
 
     density: float
@@ -70,11 +70,11 @@ class Envelope:
     Parameters
     ----------
     rise : float
-        End of the parabola; zero for none [s].
+        End of the parabola [s]; zero for no parabola.
     plateau : float
-        End of the plateau, not before the rise [s].
+        End of the plateau [s], not before the end of the parabola.
     decay : float
-        Decay rate after the plateau; zero for none [1/s].
+        Decay rate after the plateau [1/s]; zero for no decay.
 
     Examples
     --------
@@ -93,7 +93,7 @@ class Envelope:
         object.__setattr__(self, "decay", checks.within("decay", self.decay, 0.0, math.inf, unit="1/s"))
 
     def __call__(self, time: FloatArray) -> FloatArray:
-        """Return the factor, from 0 to 1, at times of at least zero."""
+        """Return the factor, from 0 to 1, at times >= 0."""
         up = np.minimum(time / self.rise, 1.0) ** 2 if self.rise > 0.0 else np.ones_like(time)
         return up * exponential(-self.decay * np.maximum(time - self.plateau, 0.0))  # Eq. 165
 
@@ -108,16 +108,16 @@ def kanai_tajimi_motion(
 ) -> GroundMotion:
     """Return one synthetic motion.
 
-    The layer is stationary from the start. The recurrence and the covariance of the noise within a step are exact: the
-    samples have the closed-form variance for any time step. The model has power at zero frequency. Velocity and
-    displacement therefore drift; `bandpassed` or `detrended` removes the drift.
+    The layer is stationary from the start. The recurrence and the covariance of the noise within a step are exact, so
+    that the samples have the closed-form variance for any time step. The model has power at zero frequency. Therefore,
+    velocity and displacement drift. `bandpassed` or `detrended` removes the drift.
 
     Parameters
     ----------
     layer : KanaiTajimi
         Soil layer and the noise below it.
     envelope : Envelope, optional
-        Factor over time; the default is `Envelope()`.
+        Factor over time. The default is `Envelope()`.
     seed : int
         Random seed; equal seeds give equal bits [-].
     time_step : float
@@ -159,12 +159,12 @@ def kanai_tajimi_motion(
 
 
 def _stationary(layer: KanaiTajimi, omega: float, step: float, kicks: FloatArray) -> FloatArray:
-    # displacement times omega: both states have equal variance and no correlation
+    # displacement is multiplied by omega, so that both states have equal variance and no correlation
     zeta = layer.damping
     deviation = math.sqrt(math.pi * layer.density / (2.0 * zeta * omega))
     move = transition(omega, zeta, step) * np.array([[1.0, omega], [1.0 / omega, 1.0]])
     (m00, m01), (m10, m11) = move.tolist()
-    # Cholesky factor of the covariance added in a step: identity - move move^T
+    # Cholesky factor of the covariance that a step adds: identity - move move^T
     s00 = math.sqrt(1.0 - (m00 * m00 + m01 * m01))  # Eq. 166
     s10 = -(m00 * m10 + m01 * m11) / s00
     s11 = math.sqrt(1.0 - (m10 * m10 + m11 * m11) - s10 * s10)

@@ -17,14 +17,14 @@ from rocking.motions.synthetic.sampling import described, normals, times
 REFERENCE_DISTANCE = 1000.0  # distance of the source spectrum [m]
 
 PEAK_AT, LEVEL_AT_END, STRETCH = 0.2, 0.05, 2.0
-"""Window: position of its peak, level at its end, and its length / duration of the motion."""
+"""Parameters of the window: position of the peak, level at the end, and length / duration of the motion."""
 
 
 @dataclass(frozen=True)
 class PointSource:
     """Source, path and site of a stochastic point-source motion.
 
-    The defaults are typical for western North America, without site amplification. They are examples.
+    The defaults are examples. They are typical for western North America, without site amplification.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class PointSource:
     kappa : float
         Attenuation close to the site [s].
     path_duration : float
-        Growth of the duration with distance [s/m].
+        Increase of the duration with distance [s/m].
 
     Examples
     --------
@@ -143,7 +143,7 @@ class PointSource:
         constant = self.radiation * self.partition * self.free_surface
         constant /= 4.0 * math.pi * self.density * beta**3 * REFERENCE_DISTANCE
         source = (2.0 * np.pi * frequency) ** 2 / (1.0 + (frequency / self.corner_frequency) ** 2)
-        # f / Q(f) without division at zero frequency
+        # f / Q(f), computed without division by zero at zero frequency
         path = _power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
         loss = exponential(-np.pi * (path + self.kappa * frequency))
         return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)  # Eq. 176
@@ -166,7 +166,7 @@ def point_source_motion(
     time_step : float
         Time step between samples [s].
     duration : float, optional
-        Duration; the default is the window with ``1 / fc`` before and after it [s].
+        Duration [s]. The default is the length of the window plus ``1 / fc`` before and after the window.
 
     Returns
     -------
@@ -208,7 +208,7 @@ def point_source_motion(
     spectrum = np.fft.rfft(noise, size)
     spread = math.sqrt(float(np.mean(spectrum.real**2 + spectrum.imag**2)))
     target = source.amplitude(np.arange(spectrum.size, dtype=np.float64) / (size * step)) / (spread * step)
-    # real products: rounding of complex products depends on the processor
+    # real products are used, because the rounding of complex products depends on the processor
     spectrum.real *= target
     spectrum.imag *= target
     acceleration = np.fft.irfft(spectrum, size)[: time.size]
@@ -227,7 +227,7 @@ def window(position: FloatArray) -> FloatArray:
 
 
 def _power(base: FloatArray, exponent: float) -> FloatArray:
-    # 0 to the power of 0 is 1
+    # 0 to the power 0 is 1
     return exponential(exponent * logarithm(base)) if exponent else np.ones_like(base)
 
 

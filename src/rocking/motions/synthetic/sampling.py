@@ -1,4 +1,4 @@
-"""Functions of all generators: random numbers, sample times, and parameters as metadata."""
+"""Functions for all generators: random numbers, sample times, and parameters as metadata."""
 
 import math
 from dataclasses import fields
@@ -11,7 +11,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP
 
-MOST_SAMPLES = 10_000_000  # larger numbers come from a wrong unit
+MOST_SAMPLES = 10_000_000  # larger numbers result from a wrong unit
 
 
 _GRID = 2.0**32
@@ -20,7 +20,8 @@ _GRID = 2.0**32
 def normals(seed: object, *shape: int) -> FloatArray:
     """Return the standard normal numbers of a seed, with the same bits on every processor.
 
-    In NumPy, the last bit of 1 in 4000 numbers depends on the logarithm of the C library; rounding to 2e-10 removes it.
+    In NumPy, the last bit of 1 in 4000 numbers depends on the logarithm of the C library. Rounding to 2e-10 removes
+    this dependence.
     """
     numbers = np.random.default_rng(checks.whole("seed", seed, high=2**128 - 1)).standard_normal(shape)
     numbers *= _GRID
@@ -30,7 +31,7 @@ def normals(seed: object, *shape: int) -> FloatArray:
 
 
 def times(time_step: float, duration: float) -> FloatArray:
-    """Return the sample times from zero to the duration, rounded up to whole steps; at least three [s]."""
+    """Return the sample times from zero to the duration, rounded up to whole steps [s]. There are at least three."""
     step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
     ratio = checks.positive("duration", duration, "s") / step
     if not 1.0 + 1e-6 < ratio < MOST_SAMPLES:

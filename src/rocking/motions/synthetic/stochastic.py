@@ -17,8 +17,8 @@ MIDDLE = 0.45  # fraction of the Arias intensity at the middle of the strong mot
 WIDEST, NARROWEST = 1.0, 1e4
 """Allowed shape parameters of the gamma distribution of the energy."""
 
-FORGOTTEN = 27.0  # cut-off of an impulse response in decay times: exp(-27) = 2e-12
-SPACING = 0.05  # frequency spacing of the oscillators / slowest decay rate [-]
+FORGOTTEN = 27.0  # length of an impulse response in decay times; exp(-27) = 2e-12
+SPACING = 0.05  # frequency spacing of the oscillators divided by the slowest decay rate [-]
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class GammaModulation:
 
     def __call__(self, time: FloatArray) -> FloatArray:
         """Return the standard deviation at times >= 0 [m/s2]."""
-        # logarithms avoid an overflow of the power
+        # the logarithm avoids an overflow of the power
         grown = (self.a2 - 1.0) * logarithm(time) if self.a2 > 1.0 else np.zeros_like(time)
         return exponential(logarithm(np.array(self.a1)) + grown - self.a3 * time)  # Eq. 169
 
@@ -96,7 +96,7 @@ def modulation_from_intensity(
     """Return the gamma modulation with a given intensity, duration and middle.
 
     The squared modulation is a gamma distribution with shape ``2 a2 - 1`` and rate ``2 a3``. The ratio of duration to
-    middle depends only on the shape, which is computed from it.
+    middle depends only on the shape. The shape is computed from this ratio.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def modulation_from_intensity(
         if ratio == high
         else float(brentq(lambda x: _ratio(math.exp(x)) - ratio, math.log(WIDEST), math.log(NARROWEST), xtol=1e-14))
     )
-    # eleven and twelve digits: the other digits depend on the C library
+    # rounded to eleven and twelve digits, because further digits depend on the C library
     shape = float(f"{math.exp(log_shape):.11g}")
     rate = float(f"{_quantile(shape, MIDDLE) / middle:.11g}")
     energy = 2.0 * gravity * intensity / math.pi
@@ -157,9 +157,9 @@ def modulation_from_intensity(
 
 @dataclass(frozen=True)
 class NonstationaryFilter:
-    """Oscillator with a drifting frequency, a filter of the noise.
+    """Filter of the noise: an oscillator with a drifting frequency.
 
-    The defaults are typical for firm ground. They are examples, not a prediction for a site.
+    The defaults are examples that are typical for firm ground. They are not a prediction for a site.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ class NonstationaryFilter:
     middle : float
         Time of the frequency `frequency` [s].
     damping : float
-        Damping ratio, between 0 and 1; a small ratio gives a narrow band [-].
+        Damping ratio, between 0 and 1 [-]. A small ratio gives a narrow band.
     lowest : float
         Lower limit of the drifting frequency [Hz].
     """
@@ -216,7 +216,8 @@ def nonstationary_motion(
 ) -> GroundMotion:
     """Return one synthetic motion.
 
-    Before the high pass, its standard deviation equals `modulation` at every sample except the first, which is zero.
+    Before the high pass, the standard deviation of the motion equals `modulation` at every sample except the first,
+    which is zero.
 
     Parameters
     ----------
@@ -231,8 +232,8 @@ def nonstationary_motion(
     duration : float
         Duration of the motion [s].
     corner : float or None
-        Frequency of the critically damped high pass, after which velocity and displacement end at zero; None for no
-        high pass [Hz].
+        Frequency of the critically damped high pass [Hz], which brings velocity and displacement back to zero. None for
+        no high pass.
 
     Returns
     -------
@@ -286,9 +287,9 @@ def _ratio(shape: float) -> float:
 
 def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: float) -> FloatArray:
     """Return noise after the drifting filter, normalised to variance 1 after the start."""
-    # Every impulse excites the oscillator of its own time. The frequency drifts in one direction, and few oscillators
-    # with small spacing suffice: polynomials of degree 9 between their responses have errors below 1e-10. If this
-    # requires more oscillators than impulses, each impulse has its own oscillator.
+    # Every impulse excites the oscillator of its own time. The frequency drifts in one direction, so that few
+    # oscillators with small spacing are sufficient: polynomials of degree 9 between their responses have errors below
+    # 1e-10. If this requires more oscillators than impulses, each impulse has its own oscillator.
     used, count = omega[:-1], noise.size - 1
     spacing = SPACING * damping * float(used.min())
     position, own = np.abs(used - used[0]) / spacing, used
@@ -302,6 +303,6 @@ def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: fl
     cosine, sine = cosine_sine(math.sqrt(1.0 - damping * damping) * step * own)
     lasting = np.ceil(FORGOTTEN / (damping * step * own))
     total, squares = resonances(noise, omega, position, shared, (decay * cosine, decay * sine), lasting)
-    # the first sample has no response yet
+    # the response at the first sample is zero
     squares[0] = 2.0
     return total / np.sqrt(0.5 * squares)  # Eq. 172
