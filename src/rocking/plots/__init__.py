@@ -1,4 +1,4 @@
-"""Pictures: bodies, models and measurements, motions, responses, animations, studies, the paper's figures."""
+"""Pictures of bodies, models, measurements, motions, responses and studies, and animations."""
 
 from lazy_loader import attach_stub
 

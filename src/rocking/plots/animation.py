@@ -49,7 +49,7 @@ _FLASH = 0.3  # duration of the mark of an impact in the animation [s]
 
 
 def animate_html(response: Response | InSpace, path: str | Path) -> Path:
-    """Write a web page with an animation of the body: play, slow down, step, drag to any instant.
+    """Write a web page with an animation of the body. The page can play, slow down, step, and show any instant.
 
     The page is one file without network access. Its content security policy allows only its own script and style.
     With ``#t=1.5`` at the end of the address, the page opens at this time.
@@ -99,7 +99,7 @@ def page(response: Response | InSpace) -> str:
         picture=html.escape(f"Animation of a {type(response.body).__name__} on moving ground: {response.summary}."),
         count=response.impacts.size,
         note=" ".join(
-            [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # both, one or none
+            [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # if they occurred
         ),
     )
 
@@ -126,7 +126,7 @@ def _assembled(form: str, script: str, summary: str, about: list[str], data: dic
     """Return a page from a template, with its content security policy."""
     style = _part("animation_page.css")
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
-    # escaped "<": the name of a motion cannot end the script element
+    # "<" is escaped, so that the name of a motion cannot end the script element
     text = json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     return Template(_part(form)).substitute(
         policy=html.escape(policy, quote=False), title=html.escape(summary[:1].upper() + summary[1:]),
@@ -135,9 +135,10 @@ def _assembled(form: str, script: str, summary: str, about: list[str], data: dic
 
 
 def page_data(response: Response) -> dict[str, Any]:
-    """Return the data of the page in SI units: histories as little-endian float32 in base64, events in full precision.
+    """Return the data of the page in SI units.
 
-    `rotation`, `velocity`, `ground` and `acceleration` have equal steps from 0 to `end`, both included.
+    Histories are little-endian float32 in base64, and events have full precision. `rotation`, `velocity`, `ground` and
+    `acceleration` have equal time steps from 0 to `end`, including both ends.
     """
     scene = scene_of(response)
     parameters, fall = response.parameters, response.overturning_time
@@ -216,7 +217,7 @@ def animate_gif(
 
 
 def slowest_speed(response: Response | InSpace, fps: float = 25.0) -> float:
-    """Return the slowest speed, to two digits, with an allowed number of frames of a GIF; 1 or more [-]."""
+    """Return the slowest speed (two digits, 1 or more) for which a GIF has an allowed number of frames [-]."""
     lasts = round(100.0 / fps) / 100.0
     return max(1.0, float(np.ceil(100.0 * _shown_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
@@ -253,7 +254,7 @@ def _packed(values: FloatArray) -> str:
 
 
 def _short(points: FloatArray) -> list[list[float]]:
-    # 1e-7 of the body size is invisible
+    # distances of 1e-7 of the body size are invisible
     unit = 10.0 ** np.floor(np.log10(np.abs(points).max(initial=0.0) or 1.0) - 6.0)
     return [[float(f"{value:.7g}") for value in row] for row in (np.round(points / unit) * unit).tolist()]
 
@@ -266,13 +267,16 @@ def _film(
     step: float,
     progress: Callable[[int, int], object] | None = None,
 ) -> None:
-    """Write frames of a duration of whole hundredths of a second [s], with a step [s] of the response between them."""
+    """Write the frames of a film.
+
+    `lasts` is the duration of a frame in whole hundredths of a second [s], `step` the step of the response [s].
+    """
     from matplotlib.animation import PillowWriter
 
     stage: Any = (
         HullStage(response, step) if isinstance(response, InSpace) else _Stage(response, scene_of(response, step))
     )
-    # the writer truncates 1000 / fps to whole milliseconds; it accepts any number, although it declares integers
+    # the writer truncates 1000 / fps to whole milliseconds; it accepts any number, although its type is integer
     rate: Any = (1.0 - 1e-9) / lasts
     writer = PillowWriter(fps=rate)
     with writer.saving(stage.figure, str(path), _DOTS):
@@ -353,12 +357,12 @@ def draw_ground(view: "Axes", scene: Scene, moved: "Affine2D") -> float:
     feet = np.arange(left - wide, right + wide, gap)
     strokes = [[(x, 0.0), (x - 0.6 * gap, -0.6 * gap)] for x in feet.tolist()]
     if scene.follows:
-        # the window moves with the ground, so the background moves in the picture
+        # the window moves with the ground, so that the background moves in the picture
         view.add_collection(LineCollection(strokes, colors=GREY, linewidths=0.7))
         strokes = [[(x, 0.0), (x, 4.0 * wide)] for x in feet[::8].tolist()]
     look: dict[str, Any] = {"colors": PALE if scene.follows else GREY, "linewidths": 0.7, "zorder": 0}
     view.add_collection(LineCollection(strokes, transform=moved + view.transData, **look))
-    # hatches and lines repeat, which allows any displacement of the ground
+    # hatches and lines are periodic, so that any displacement of the ground is possible
     return gap * (8.0 if scene.follows else 1.0)
 
 

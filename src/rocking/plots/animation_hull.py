@@ -34,7 +34,7 @@ InSpace = HullResponse | SpatialResponse | ContactResponse
 
 
 def hull_of(response: InSpace) -> HullBody:
-    """Return the body on its hull; a plane body has its own depth."""
+    """Return the body on its convex hull. A plane body keeps its depth."""
     body: Any = response.body
     if isinstance(response, ContactResponse):
         if not isinstance(body, (Block, Section)):
@@ -99,15 +99,15 @@ class HullScene:
     centre: FloatArray  # position of the centre of mass relative to the ground [m]; shape (n, 3)
     tilt: FloatArray  # angle from the initial pose [rad]
     points: FloatArray  # vertices of the hull [m]; shape (k, 3)
-    facets: list[list[int]]  # their vertices, counter-clockwise seen from outside
-    normals: FloatArray  # of the facets, outward [-]
+    facets: list[list[int]]  # vertices of the facets, counter-clockwise as seen from outside
+    normals: FloatArray  # outward normals of the facets [-]
     middle: FloatArray  # centre of the scene [m]
     reach: float  # radius of the scene [m]
     turned: float  # azimuth of the view, from x towards y [rad]
 
     @classmethod
     def of(cls, response: InSpace, step: float | None = None) -> "HullScene":
-        """Return a response at steps of time [s]; default: at most 60 steps per second."""
+        """Return the scene of a response at steps of time [s]. The default is at most 60 steps per second."""
         end, body = end_of(response), hull_of(response)
         hull = body.hull
         if step is None:
@@ -134,7 +134,7 @@ class HullScene:
 
 
 def _loop(successors: dict[int, int]) -> list[int]:
-    """Return the vertices of a facet in order, from the successor of each vertex."""
+    """Return the vertices of a facet in order, from the successors of its vertices."""
     loop = [next(iter(successors))]
     while len(loop) < len(successors):
         loop.append(successors[loop[-1]])
@@ -183,7 +183,7 @@ class HullStage:
         return np.stack([c * y - s * x, upright], axis=-1)
 
     def show(self, k: int, _: float) -> None:
-        """Show a frame: the visible facets; those of a convex body do not overlap."""
+        """Show the visible facets in a frame. Visible facets of a convex body do not overlap."""
         scene = self.scene
         turn = matrix(scene.quaternion[k])
         normals, points = scene.normals @ turn.T, scene.points @ turn.T + scene.centre[k]

@@ -1,4 +1,4 @@
-"""Scenes of animations at equal steps of time: a plane body on its feet until it lies on the ground."""
+"""Scenes of animations at equal steps of time, for a plane body on its feet until it has fallen."""
 
 import math
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _POSES = 400
 _LEVEL = 1e-9  # tolerance of the height of a corner on the ground, over its distance from the foot
 
 _STEP = 0.01
-"""Step of the integration of a fall, over 1 / p; the truncation error is below 1e-8 of the angle."""
+"""Step of the integration of a fall, over 1 / p. The truncation error is below 1e-8 of the angle."""
 _MOST_STEPS = 20_000
 _HALVINGS = 50
 
@@ -28,9 +28,9 @@ _HALVINGS = 50
 class DrawnShape:
     """A body with its ground at y = 0 and the middle between its feet at x = 0."""
 
-    # density over the largest one, and rings: the outline and its holes [m]
+    # density over the largest density, and rings: the outline and its holes [m]
     regions: list[tuple[float, list[FloatArray]]]
-    # mass points (x, y) [m] with their mass over the largest one; none for a solid body; shape (n, 3)
+    # mass points (x, y) [m] with their mass over the largest mass; empty for a solid body; shape (n, 3)
     points: FloatArray
     feet: tuple[float, float]  # left and right foot [m]
     centre: tuple[float, float]  # centre of mass [m]
@@ -46,7 +46,7 @@ class DrawnShape:
         points = np.empty((0, 3))
         if isinstance(solid, Section):
             densest = max(region.density for region in solid.regions)
-            # the section of a block has the same feet but another frame
+            # the section of a block has equal feet, but another frame
             shift = np.array([0.5 * sum(solid.local_feet), 0.0])
             regions = [(item.density / densest, [ring - shift for ring in item.rings]) for item in solid.regions]
         elif isinstance(body, MassPoints):
@@ -64,7 +64,7 @@ class DrawnShape:
     def lying(self) -> tuple[float, float]:
         """Negative and positive rotations of a body that lies on its left or right side [rad].
 
-        Each is at most a quarter turn plus the slenderness angle.
+        These rotations are at most a quarter turn plus the slenderness angle.
         """
         angles = []
         for foot, side in zip(self.feet, (-1.0, 1.0), strict=True):
@@ -95,7 +95,10 @@ class Scene:
 
 
 def scene_of(response: Response, step: float | None = None) -> Scene:
-    """Return a response until its last event or until the body lies; default: at most 120 samples per second."""
+    """Return a response until its last event or until the body has fallen.
+
+    The default is at most 120 samples per second.
+    """
     shape = DrawnShape.of(response.body)
     fall = fall_of(response, shape.lying)
     end = scene_until(response, fall)
@@ -116,7 +119,7 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
 
 
 def scene_until(response: Response, fall: "Fall | None" = None) -> float:
-    """Return the end of the animation of a response [s]; an overturning body is shown until it lies."""
+    """Return the end of the animation of a response [s]. An overturning body is shown until it has fallen."""
     fall = fall_of(response, DrawnShape.of(response.body).lying) if fall is None else fall
     return float(fall.time[-1]) if fall.time.size else shown_until(response)
 
@@ -126,7 +129,7 @@ def _window(
 ) -> tuple[bool, tuple[float, float, float, float]]:
     corners = shape.corners
     poses = np.unique(np.linspace(0, rotation.size - 1, _POSES).astype(np.int64))
-    # with the two extreme rotations, which may be between the poses of a long history
+    # both extreme rotations are added, because they may be between the poses of a long history
     poses = np.append(poses, [rotation.argmin(), rotation.argmax()])
     turned = [shape.turned(corners, float(rotation[k])) for k in poses]
     low = np.min([pose.min(axis=0) for pose in turned], axis=0)
@@ -143,18 +146,21 @@ def _window(
 class Fall:
     """Continuation of a response with overturning after its last state.
 
-    The response ends at a quarter turn, or earlier with its motion. From there, the equation of motion is integrated
-    under the remaining ground motion until a corner of the body reaches the ground. The animation ends there, because
-    the impact on a side is not part of the model.
+    The response ends at a quarter turn, or earlier at the end of its motion. After this end, the equation of motion is
+    integrated under the remaining ground motion until a corner of the body reaches the ground. The animation then ends,
+    because the impact on a side is not part of the model.
     """
 
-    time: FloatArray  # from the end of the response; empty if the body does not overturn [s]
+    time: FloatArray  # times from the end of the response [s]; empty if the body does not overturn
     rotation: FloatArray  # theta [rad]
     velocity: FloatArray  # theta' [rad/s]
 
 
 def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
-    """Return the continuation of a response after its last state; lying: rotations of the lying body [rad]."""
+    """Return the continuation of a response after its last state.
+
+    `lying` contains the rotations of the fallen body [rad].
+    """
     if response.outcome is not Outcome.OVERTURNED:
         return Fall(np.empty(0), np.empty(0), np.empty(0))
     last = response.dense_output
@@ -182,7 +188,7 @@ class _Falling:
         return side * state[1] >= side * self.lying[side > 0.0]
 
     def advanced(self, side: float, state: _State) -> tuple[float, _State]:
-        """Return side and state after a step, or at contact with the ground or the other foot within the step."""
+        """Return side and state after a step, or at an earlier contact with the ground or the other foot."""
         step = _STEP / self.response.parameters.side(side).frequency_parameter
         after = self._step(side, state, step)
         lands = side * after[1] < 0.0

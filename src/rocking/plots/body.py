@@ -1,4 +1,4 @@
-"""Pictures of `rocking restitution`: the body, and its coefficient compared with published measurements."""
+"""Pictures for `rocking restitution`: the body, and its coefficient compared with published measurements."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -39,7 +39,7 @@ def body_picture(body: Body) -> "Figure":
 
 @in_journal_style
 def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRow]]) -> "Figure":
-    """Draw a body, its coefficients with all models, and the slenderness of each foot among the measurements.
+    """Draw a body, the coefficients of all models, and the slenderness of both feet compared with the measurements.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def _body(axes: "Axes", body: Body) -> None:
 
 
 def outlines(body: Body) -> "list[tuple[Path, float]]":
-    """Return each region with its holes as a path [m], and its density over the largest; empty for mass points."""
+    """Return regions with their holes as paths [m], and density over the largest density; empty for mass points."""
     section = body.to_section() if isinstance(body, Block) else body
     if not isinstance(section, Section):
         return []

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_picture(folder: JobFolder, restitution: str | None) -> None:
-    """Raise an error for a campaign without a picture, before any result is read."""
+    """Raise an error for a campaign without a picture, before results are read."""
     question = folder.job.document
     if type(question).plot is StudyQuestion.plot:
         question.plot(None, None)  # raises the error
@@ -22,7 +22,7 @@ def check_picture(folder: JobFolder, restitution: str | None) -> None:
 
 
 def campaign_picture(folder: JobFolder, restitution: str | None = None) -> "Figure":
-    """Draw a finished campaign with one restitution; without a name, compare all restitutions."""
+    """Draw a finished campaign with one restitution. Without a name, compare all restitutions."""
     check_picture(folder, restitution)
     refuse_unfinished(folder)
     if restitution is None and comparable(folder):

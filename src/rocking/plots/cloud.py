@@ -1,4 +1,4 @@
-"""Pictures of cloud analyses: rotations over the measure, regression, overturning; and comparisons of measures."""
+"""Pictures of cloud analyses (rotations over the measure, regression, overturning), and comparisons of measures."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _ROCKS, _FALLS, _BAND = "#0070B2", "#A8420A", "#D6E6F2"
 
 _COLORS = ("#009960", "#AC8191", "#008FE6", "#AC5B2B", "#0070B2")
-_LEAST = 1e-4  # plotted value of smaller p-values
+_LEAST = 1e-4  # smaller p-values are plotted at this value
 _ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "fontsize": 6.5, "borderaxespad": 0.2}
 
 
@@ -46,7 +46,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     Raises
     ------
     InvalidValueError
-        If the argument has another type, fewer than three motions cause rocking, or 0 or all cause overturning.
+        If the argument has another type, if fewer than three motions cause rocking, or if 0 or all cause overturning.
 
     Examples
     --------

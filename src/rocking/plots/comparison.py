@@ -1,4 +1,4 @@
-"""Animations of several responses side by side: one body with different models, or different bodies."""
+"""Animations of several responses next to each other: one body with different models, or different bodies."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -39,7 +39,7 @@ def animate_comparison(
     speed: float = 1.0,
     until: float | None = None,
 ) -> Path:
-    """Write a GIF of several responses side by side, with their rotations below.
+    """Write a GIF of several responses next to each other, with the rotations below.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def animate_comparison(
     Returns
     -------
     Path
-        The written file, which repeats; its last frame lasts two seconds.
+        The written file. The animation repeats, and its last frame lasts two seconds.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def _frames(
 
 
 def _draw_curves(axes: "Axes", responses: Mapping[str, Response], end: float) -> None:
-    """Draw all rotations pale; the moving curves are plotted over them."""
+    """Draw all rotations in pale colours. The moving curves are plotted over them."""
     for level in (-1.0, 1.0):
         axes.axhline(level, color=GREY, linewidth=0.7, linestyle=DASHED)
     for response in responses.values():
@@ -194,7 +194,7 @@ class _Panel:
 
 
 def _save(frames: "list[Image]", path: Path, lasts: float) -> None:
-    """Write frames with one palette, from the first, a middle and the last frame."""
+    """Write frames with one palette, made from the first frame, a middle frame and the last frame."""
     from PIL import Image
 
     few = [frames[k] for k in (0, len(frames) // 2, -1)]

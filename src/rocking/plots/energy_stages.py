@@ -43,7 +43,7 @@ def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", ang
     Returns
     -------
     matplotlib.figure.Figure
-        Four panels with one colour scale, and the fraction of energy in each.
+        Four panels with one colour scale. A panel contains the fraction of energy.
     """
     body = _pedestal() if body is None else body
     balance = energy_balance(body, foot=foot, angular_velocity=angular_velocity)
@@ -51,7 +51,7 @@ def energy_stages_picture(body: Body | None = None, *, foot: Foot = "right", ang
     shape = min(max(height / (x1 - x0), 0.6), 3.0)
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
     x, y = _grid(body)
-    # the field extends beyond the clipping outline, to avoid a dark seam along sloping edges
+    # the field extends beyond the clipping outline, which avoids a dark line along sloping edges
     density = known_density(body, x, y)
     inside = density > 0.0
     density = np.where(inside, density, density.max())
@@ -137,7 +137,7 @@ def arrow_feet(body: Body) -> tuple[FloatArray, FloatArray]:
 
 def _grid(body: Body) -> tuple[FloatArray, FloatArray]:
     x0, _, x1, height = body.local_box
-    # density is constant within a region; samples slightly inside the box give its edge a colour
+    # density is constant within a region; samples slightly inside the box give a colour to the edge of the box
     shrink = 1e-6 * max(x1 - x0, height)
     columns = np.linspace(x0 + shrink, x1 - shrink, _GRID) + body.origin_x
     rows = np.linspace(shrink, height - shrink, _GRID) + body.ground

@@ -1,4 +1,4 @@
-"""Pictures of measurements and models: all models, the league, the calibration, the contact bed."""
+"""Pictures of measurements and models: all models, ranking of models, calibration, contact bed."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -39,7 +39,7 @@ def draw_model(axes: "Axes", name: str, low: float = _LOW, high: float = _HIGH) 
 
 
 def draw_measurements(axes: "Axes", every: DataSet, *, loss: bool = False) -> None:
-    """Draw measured coefficients, or energy losses, over slenderness, with the intervals of rounding."""
+    """Draw measured coefficients or energy losses over slenderness, with intervals that represent rounding."""
     for group in dict.fromkeys(every.group):
         data = every.rows([name == group for name in every.group])
         style = GROUP_STYLE.get(group, {"marker": "D", "label": group})
@@ -65,7 +65,7 @@ def draw_calibrated(
 
 @in_journal_style
 def models_and_measurements(calibration: Calibration, data: DataSet) -> "Figure":
-    """Draw all models with all measurements: r, and the energy loss, which distinguishes slender bodies."""
+    """Draw all models and measurements: r, and the energy loss, in which slender bodies are easier to distinguish."""
     figure, (left, right) = new_figure(DOUBLE, 3.3, columns=2)
     draw_calibrated(left, calibration)
     for name in model_styles():
@@ -83,7 +83,7 @@ def models_and_measurements(calibration: Calibration, data: DataSet) -> "Figure"
 
 @in_journal_style
 def league_figure(rows: Sequence[LeagueRow], count: int) -> "Figure":
-    """Draw the error of each model with its bootstrap interval, and by slenderness band; best first."""
+    """Draw the errors of the models with bootstrap intervals, and by slenderness band. The best model is first."""
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.19 * len(rows), columns=2, sharey=True)
     rows_y = np.arange(len(rows))[::-1]
     for y, row in zip(rows_y.tolist(), rows, strict=True):
@@ -126,7 +126,7 @@ def calibration_figure(calibration: Calibration, data: DataSet) -> "Figure":
 
 @in_journal_style
 def bed_dependence_figure() -> "Figure":
-    """Draw r of the contact bed against slenderness by points, and at h/b = 2 against hardness and damping."""
+    """Draw r of the contact bed over slenderness by number of points, and at h/b = 2 over hardness and damping."""
     figure, (left, middle, right) = new_figure(DOUBLE, 2.8, columns=3)
     ratios, two = np.linspace(1.0, 10.0, 91), np.array([2.0])
     hardness, damping = np.geomspace(*HARDNESS, 61), np.geomspace(0.5, DAMPING[1], 41)
@@ -148,7 +148,7 @@ def bed_dependence_figure() -> "Figure":
 
 @in_journal_style
 def explanations_figure(explanation: Explanation) -> "Figure":
-    """Draw the BIC relative to the best model, and the left-out score relative to one bed, with two standard errors."""
+    """Draw the BIC relative to the best model, and the left-out score relative to one bed with two standard errors."""
     ranked = explanation.ranked
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.2 * len(ranked), columns=2, sharey=True)
     rows_y = np.arange(len(ranked))[::-1]

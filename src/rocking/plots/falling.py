@@ -30,9 +30,9 @@ def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "
         Result of `simulate_many`: one body under one record rotated to all azimuths, at ascending scales, with two
         restitutions.
     azimuths : array_like
-        Direction of the first component of each motion, from x towards y, ascending [rad].
+        Directions of the first components of the motions, from x towards y, ascending [rad].
     base : array_like, shape (n, 2), optional
-        Corners of the base at any scale, plotted in the centre of the rose for orientation.
+        Corners of the base at any scale. They are plotted in the centre of the rose for orientation.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None
     overturned = results["overturned"].values[0, :, :, :, 0]
     classes = np.nan_to_num(
         overturned[..., 0] + 2.0 * overturned[..., 1], nan=4.0
-    )  # without a result the class is unknown
+    )  # the class is unknown if there is no result
     looks = [_look(results, k) for k in range(2)]
     colors = [_NONE, looks[0][0], looks[1][0], _BOTH, _UNKNOWN]
     scales = results["scale"].values

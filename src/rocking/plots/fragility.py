@@ -39,7 +39,7 @@ _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
 """Maximum numbers of points and of stripes, and minimum number of outcomes in a group of neighbouring levels."""
 
 STATES = ("#E3EDF5", "#7FB2D6", "#AC5B2B", "#AC8191", "#7A2E00")
-"""Colours from no rocking (light) to overturned (dark), distinct also in grey."""
+"""Colours from no rocking (light) to overturned (dark). They are distinct in grey."""
 
 _APART = 2.2  # horizontal offset between points of different states [pt]
 
@@ -48,10 +48,11 @@ _APART = 2.2  # horizontal offset between points of different states [pt]
 def fragility_picture(analysis: Any, *, level: float = 0.95, curves: "FragilityModel | None" = None) -> "Figure":
     """Draw a fragility analysis.
 
-    Above: fraction of motions that reach each limit state, with exact binomial intervals, and the lognormal curve of
-    each state. Levels without possible uplift are shaded. If each motion is used at several levels, the band of a curve
-    is from a bootstrap of capacities (5 to 29 motions) or of motions; otherwise from the profile likelihood. Below: the
-    fractions of the states, which add up to one. A text below the panels names states without a curve.
+    Above: fraction of motions that reach a limit state, with exact binomial intervals, and lognormal curves of the
+    states. Levels without possible uplift are shaded. If motions are used at several levels, the band of a curve
+    results from a bootstrap of capacities (5 to 29 motions) or of motions; otherwise it results from the profile
+    likelihood. Below: the fractions of the states, which add up to one. A text below the panels names states without a
+    curve.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def _fine(levels: FloatArray) -> FloatArray:
 
 
 def grouped(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return increasing levels with their counts [-]; neighbouring levels are grouped if there are too many."""
+    """Return increasing levels with their counts [-]. Neighbouring levels are grouped if there are too many."""
     # the level of a group is the geometric mean, weighted by trials; groups without trials are omitted
     group = np.arange(levels.size)
     stripes = trials.sum() >= _OUTCOMES * levels.size
@@ -177,7 +178,7 @@ def _points(axes: "Axes", analysis: Any, name: str, index: int, level: float) ->
 
 
 def draw_fit(axes: "Axes", fit: "LognormalFit", fine: FloatArray, index: int, level: float) -> None:
-    """Draw a curve with its band, if it has one."""
+    """Draw a curve and, if available, its band."""
     method: Any = "profile" if fit.counts.cluster_trials is None else "bootstrap"
     try:
         low, high = fit.band(fine, level, method)
@@ -245,7 +246,7 @@ def caption(analysis: Any) -> str:
 _CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0070B2"
 _FRACTION: dict[str, Any] = {"color": INK, "linewidth": 1.2}
 _PASSED: dict[str, Any] = {"color": _CROSS, "linewidth": 1.0, "linestyle": "--"}
-_OVER = 1.06  # plotted value of larger rotations without overturning
+_OVER = 1.06  # larger rotations without overturning are plotted at this value
 _FIRST, _LAST = 1.12, 1.72  # range of the lanes of the motions, on the axis of rotation
 
 
@@ -312,7 +313,7 @@ def incremental_dynamic_analysis_picture(analysis: IncrementalDynamicAnalysis) -
 
 
 def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
-    """Draw one motion: grey up to its first overturning, blue at higher levels without overturning."""
+    """Draw one motion, in grey up to its first overturning, and in blue at higher levels without overturning."""
     over = np.isinf(curve)
     first = int(np.argmax(over)) if over.any() else curve.size
     shown = np.where(np.isfinite(curve), np.minimum(curve, _OVER), math.nan)

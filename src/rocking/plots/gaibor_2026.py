@@ -58,7 +58,7 @@ def _line(model: str) -> dict[str, Any]:
 
 
 def _legend(figure: "Figure", looks: Sequence[dict[str, Any]], *more: Any) -> None:
-    """Put the looks of the models below a figure."""
+    """Put the legend of the models below a figure."""
     handles = [stroke(model_styles()[model]["label"], **look) for model, look in zip(MODELS, looks, strict=True)]
     legend_below(figure, [*handles, *more], len(handles) + len(more), handlelength=2.5)
 
@@ -74,7 +74,7 @@ def _of_model(result: GaiborReproduction, slenderness: int, model: str) -> str:
 
 @in_journal_style
 def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
-    """Draw the attractors of all starts over the amplitude; one row per slenderness, one column per model."""
+    """Draw the attractors of all starts over the amplitude, one row per slenderness and one column per model."""
     figure, panels = new_figure(DOUBLE, 8.6, rows=len(SLENDERNESS), columns=len(MODELS), sharex=True, sharey=True)
     grid = [(slenderness, model) for slenderness in SLENDERNESS for model in MODELS]
     lines = {"fold": ("fold", ":"), "pitchfork": ("loss of symmetry", "--")}
@@ -98,7 +98,7 @@ def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
 
 @in_journal_style
 def _exponents(result: GaiborReproduction, frequency: float) -> "Figure":
-    """Draw the largest exponent from rest over the amplitude; one panel per slenderness."""
+    """Draw the largest exponent for starts from rest over the amplitude, one panel per slenderness."""
     figure, panels = new_figure(DOUBLE, 4.0, rows=2, columns=3, sharex=True)
     looks: list[dict[str, Any]] = [
         {"color": _color(model), "marker": mark, "ls": "none"} for model, mark in zip(MODELS, MARKS, strict=False)
@@ -135,7 +135,7 @@ def _cascades(result: GaiborReproduction) -> "Figure":
 
 @in_journal_style
 def _thresholds(result: GaiborReproduction) -> "Figure":
-    """Draw fold, loss of symmetry and first doubling over slenderness, and differences from Housner's."""
+    """Draw fold, loss of symmetry and first doubling over slenderness, and differences from Housner's model."""
     figure, (left, middle, right) = new_figure(DOUBLE, 2.7, columns=3)
 
     def values(name: str, model: str, frequency: float) -> list[float]:
@@ -165,7 +165,7 @@ def _thresholds(result: GaiborReproduction) -> "Figure":
 
 @in_journal_style
 def _prevalence(result: GaiborReproduction) -> "Figure":
-    """Draw the fraction of amplitudes with complex attractors over slenderness; bars are the counting noise."""
+    """Draw the fraction of amplitudes with complex attractors over slenderness, with bars for the counting error."""
     frequencies = result.effort.frequencies
     figure, panels = new_figure(DOUBLE, 2.5, columns=len(frequencies), sharey=True)
     for axes, frequency in zip(panels, frequencies, strict=True):
@@ -182,7 +182,7 @@ def _prevalence(result: GaiborReproduction) -> "Figure":
 
 @in_journal_style
 def _basins(result: GaiborReproduction) -> "Figure":
-    """Draw the basins; one row per model, one column per slenderness."""
+    """Draw the basins, one row per model and one column per slenderness."""
     figure, panels = new_figure(DOUBLE, 4.2, rows=len(MODELS), columns=len(SLENDERNESS), sharex=True, sharey=True)
     grid = [(slenderness, model) for model in MODELS for slenderness in SLENDERNESS]
     for axes, (slenderness, model) in zip(panels, grid, strict=True):

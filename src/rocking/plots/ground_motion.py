@@ -1,4 +1,4 @@
-"""Pictures of ground motions: histories with their peaks, response spectra, and comparisons of sets."""
+"""Pictures of ground motions: histories with peaks, response spectra, and comparisons of sets."""
 
 import math
 from collections.abc import Mapping
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 _DAMPING = 0.05
 _LONGEST_TITLE = 70
-_SET_PERIODS = np.geomspace(0.05, 4.0, 60)  # periods of the spectra of sets, unless others are given [s]
+_SET_PERIODS = np.geomspace(0.05, 4.0, 60)  # default periods of the spectra of sets [s]
 
 
 @in_journal_style
@@ -58,7 +58,7 @@ def ground_motion_picture(motion: GroundMotion | Pulse, spectrum: bool = True) -
     Parameters
     ----------
     motion : GroundMotion or Pulse
-        The motion, from rest; a pulse is plotted from its formulas.
+        The motion, from rest. A pulse is plotted from its formulas.
     spectrum : bool
         If True, also draw the pseudo-acceleration for 5 % damping.
 
@@ -105,7 +105,7 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
     )
     for axes, name, unit, short, color in rows:
         time, values = curves.time, getattr(curves, name)
-        if name == "acceleration":  # zero before and after the motion
+        if name == "acceleration":  # the acceleration is zero before and after the motion
             time, values = np.pad(time, 1, "edge"), np.pad(values, 1)
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
         axes.plot(time, values, color=color, linewidth=0.8)
@@ -121,7 +121,7 @@ def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces
 
 def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
     low, peaks = max(0.02, 0.2 * motion.time_step), traces(motion).peaks
-    # slow motions are plotted up to periods well above their characteristic period
+    # for slow motions, the periods extend well above the characteristic period
     characteristic_period = 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)
     high = max(5.0, 2.0 * characteristic_period, 10.0 * low)
     periods = np.geomspace(low, high, 120)
@@ -231,7 +231,7 @@ def spectra_picture(flatfile: "Flatfile") -> "Figure":
     Parameters
     ----------
     flatfile : Flatfile
-        Result of `rocking.motions.flatfile`; RotD50 of two components, or the spectrum of a single one.
+        Result of `rocking.motions.flatfile`, with RotD50 of two components or the spectrum of a single component.
 
     Returns
     -------
@@ -265,13 +265,13 @@ def spectra_picture(flatfile: "Flatfile") -> "Figure":
 def record_set_picture(sets: Mapping[str, Any], periods: Any = _SET_PERIODS) -> "Figure":
     """Draw sets of motions: peak velocity over peak acceleration, and their spectra.
 
-    Left: one point per motion. Right: for each set the median of the pseudo-spectral acceleration with 5 % damping, and
-    the band of the middle 68 % of the motions.
+    Left: one point per motion. Right: median of the pseudo-spectral acceleration with 5 % damping of every set, and
+    band of the middle 68 % of the motions.
 
     Parameters
     ----------
     sets : mapping of str to MotionSet or sequence of GroundMotion
-        Up to six sets by name, each of two or more motions.
+        Up to six sets by name. A set has two or more motions.
     periods : array_like
         Periods of the spectra [s].
 

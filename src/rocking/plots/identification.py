@@ -35,12 +35,12 @@ _R = "coefficient of restitution r [-]"
 
 @in_journal_style
 def identification_picture(identification: Identification) -> "Figure":
-    """Draw the measurement with its fit, residuals, coefficient of each impact, and restitution models.
+    """Draw the measurement and its fit, residuals, coefficients of the impacts, and restitution models.
 
     Parameters
     ----------
     identification : Identification
-        Result of `rocking.identification.identify`; a refused identification shows only the measurement.
+        Result of `rocking.identification.identify`. For a refused identification, only the measurement is plotted.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def identification_picture(identification: Identification) -> "Figure":
         axis.set_xlabel(label)
     if identification.refused:
         axes[1].set_title("refused: no coefficient", loc="left", fontsize=7.5)
-        for axis in (axes[1], axes[3]):  # empty scales could be read as results
+        for axis in (axes[1], axes[3]):  # readers could mistake empty scales for results
             axis.set_axis_off()
     else:
         _posterior(axes[1], identification)
@@ -92,14 +92,14 @@ def identification_picture(identification: Identification) -> "Figure":
 
 
 def _heard(axes: "Axes", identification: Identification, measurement: ImpactTimes) -> None:
-    """Draw the sound, if any, and detections that are not impacts; the caller draws the lines of impacts."""
+    """Draw the sound, if any, and detections that are not impacts. The caller draws the lines of impacts."""
     axes.set_ylim(0.0, 1.1)
     axes.set_yticks([])
     axes.set_ylabel("impacts heard" if measurement.loudness is None else "loudness [-]")
     if measurement.loudness is not None:
         axes.fill_between(*measurement.loudness.T, color=GREY, linewidth=0.0)
         axes.set_xlim(0.0, float(measurement.loudness[-1, 0]))
-    if identification.impacts:  # the first and the last impact have only their time
+    if identification.impacts:  # only the times of the first and the last impact are known
         ends = zip(
             identification.residual_times[[0, -1]], (identification.impacts[0], identification.impacts[-1]), strict=True
         )
@@ -113,7 +113,7 @@ def _turned(axes: "Axes", identification: Identification) -> None:
     name = _quantity(identification)
     time, values = identification.measurement.time, getattr(identification.measurement, name)  # type: ignore[union-attr]
     axes.plot(time, values, ".", color=GREY, markersize=2.0)
-    # the plotted quantity is the first of two
+    # the first of two quantities is plotted
     count = int(np.argmax(np.append(np.diff(identification.residual_times) < 0.0, True))) + 1
     fit_times = identification.residual_times[:count]
     fit = np.interp(fit_times, time, values) - identification.residuals[:count]
@@ -125,7 +125,7 @@ def _turned(axes: "Axes", identification: Identification) -> None:
 
 
 def _quantity(identification: Identification) -> str:
-    """Return the plotted quantity of a series, the first of two."""
+    """Return the plotted quantity of a series, the first of two quantities."""
     return next(name for name in _UNITS if getattr(identification.measurement, name) is not None)
 
 
@@ -146,7 +146,7 @@ def _residuals(axes: "Axes", identification: Identification) -> None:
 
 
 def _posterior(axes: "Axes", identification: Identification) -> None:
-    """Draw the density of the mean coefficient, the interval of each side, and one row per model."""
+    """Draw the density of the mean coefficient, the intervals of both sides, and one row per model."""
     r, q = identification.mean, identification.quantiles
     density = np.diff(q).min() / np.diff(q)
     axes.axvspan(r.low, r.high, color=PALE, linewidth=0.0)
@@ -185,7 +185,7 @@ def _impacts(axes: "Axes", identification: Identification) -> None:
 
 @in_journal_style
 def trials_picture(trials: IdentifiedTrials) -> "Figure":
-    """Draw the coefficient of every trial of a folder with its interval, and the mean of all.
+    """Draw the coefficient of every trial of a folder with its interval, and the mean of all trials.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def trials_picture(trials: IdentifiedTrials) -> "Figure":
     Returns
     -------
     matplotlib.figure.Figure
-        One panel; trials without a coefficient have a cross at the left edge.
+        One panel. Trials without a coefficient have a cross at the left edge.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Pictures of inventories: rating, fraction of overturning and uplift acceleration of each object."""
+"""Pictures of inventories: ratings, fractions of overturning and uplift accelerations of the objects."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -20,9 +20,9 @@ _ROW, _MARGIN = 0.235, 1.05
 MOST = 60
 """Maximum number of objects in a picture."""
 
-_HEIGHT, _BINS = 2.1, 20  # of the distribution [in, -]
+_HEIGHT, _BINS = 2.1, 20  # height [in] and number of bins of the distribution
 _LIGHTS = {Light.RED: ("#B2182B", "s"), Light.AMBER: ("#F4A300", "^"), Light.GREEN: ("#1B7F5C", "o")}
-"""Colour and shape of a rating; a letter next to it has the same meaning."""
+"""Colour and shape of a rating. A letter next to the shape has the same meaning."""
 
 _RED: dict[str, Any] = {"color": _LIGHTS[Light.RED][0], "linewidth": 0.7, "linestyle": DASHED}
 _PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1))}
@@ -30,17 +30,17 @@ _PEAK: dict[str, Any] = {"color": INK, "linewidth": 0.8, "linestyle": (0, (1, 1)
 
 @in_journal_style
 def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
-    """Draw an inventory, or its worst objects, the worst at the top.
+    """Draw an inventory or its worst objects, with the worst object at the top.
 
-    Left: fraction of motions with overturning of each object, with its interval, and the rating as a shape with its
-    letter. Right: horizontal acceleration without uplift, compared with the peak acceleration of the hazard, if stated.
+    Left: fraction of motions with overturning per object, with its interval, and the rating as a shape and letter.
+    Right: horizontal acceleration without uplift, compared with the peak acceleration of the hazard, if stated.
 
     Parameters
     ----------
     assessment : Assessment
         Result of `rocking.decision.inventory.assess`.
     most : int
-        Maximum number of plotted objects; the title contains the total number [-].
+        Maximum number of plotted objects [-]. The title contains the total number.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def inventory_picture(assessment: Assessment, most: int = MOST) -> "Figure":
 
 @in_journal_style
 def inventory_distribution(assessment: Assessment) -> "Figure":
-    """Draw the distribution of objects by fraction of overturning and by uplift acceleration, for each rating.
+    """Draw the distribution of objects by fraction of overturning and by uplift acceleration, for every rating.
 
     Parameters
     ----------

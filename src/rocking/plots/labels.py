@@ -1,4 +1,4 @@
-"""Common labels, texts and scales of axes, and curves of a motion with their exact peaks."""
+"""Common labels, texts and scales of axes, and curves of a motion with exact peaks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
     label, measure = SYMBOLS.get(name, short_name(name)), MEASURES.get(name)
     if name not in SYMBOLS:
         unit = unit if measure is None else measure.unit
-        # a ratio is clearer by its symbol
+        # for a ratio, the symbol is clearer
         label = label if measure is None or "/" in label else measure.description
         label = f"{label} [{_UNITS.get(unit, unit)}]"
     return label.replace(r"\tan\,\alpha", r"\alpha") if linear else label
@@ -70,7 +70,7 @@ def short_name(name: str) -> str:
 
 
 def plain(text: object) -> str:
-    r"""Return a text on one line with dollar signs escaped, so that none starts a formula."""
+    r"""Return a text on one line. Dollar signs are escaped, so that no formula starts."""
     return " ".join(str(text).split()).replace("$", r"\$")
 
 
@@ -80,7 +80,7 @@ def wrapped(text: str, width: int, max_lines: int = 4) -> str:
 
 
 def geometric(values: FloatArray) -> bool:
-    """Return True if numbers grow by equal ratios rather than by equal steps; they get a log axis."""
+    """Return True if numbers increase by equal ratios rather than by equal steps. They need a logarithmic axis."""
     if values.size < 3 or values[0] <= 0.0:
         return False
     ratios, steps = np.diff(np.log(values)), np.diff(values)
@@ -102,7 +102,7 @@ def plain_log(axes: "Axes", which: str) -> None:
 
 
 def plain_numbers(axis: "Axis") -> None:
-    """Write plain numbers at the major ticks of an axis, none at the minor ticks."""
+    """Write plain numbers at the major ticks of an axis, and no numbers at the minor ticks."""
     from matplotlib.ticker import FuncFormatter, NullFormatter
 
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -115,7 +115,7 @@ def note(axes: "Axes", text: str, width: int = 62) -> None:
 
 
 def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
-    """Label an axis in another unit, with round numbers in that unit."""
+    """Label an axis in another unit, with round numbers in this unit."""
     from matplotlib.ticker import FuncFormatter, Locator
 
     axis = axes.xaxis if which == "x" else axes.yaxis
@@ -138,7 +138,7 @@ def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
 _ENOUGH = 2000  # points of a smooth curve
 
 _PER_PERIOD = 1000
-"""Steps in the shortest period of a pulse; the error of linear interpolation of a sine is 5e-6."""
+"""Steps in the shortest period of a pulse. The error of linear interpolation of a sine is 5e-6."""
 
 _MOST = 400_000
 
@@ -153,12 +153,12 @@ class Traces:
     acceleration: FloatArray  # acceleration of the ground [m/s2]
     velocity: FloatArray  # velocity of the ground, from rest [m/s]
     displacement: FloatArray  # displacement of the ground, from zero [m]
-    # time and signed value of each peak by name, exact also between the instants
+    # times and signed values of the peaks by name, exact even between the instants
     peaks: Mapping[str, Peak]
 
 
 def traces(motion: GroundMotion | Pulse) -> Traces:
-    """Return the curves of a motion for plots, with their exact peaks."""
+    """Return the curves of a motion for plots, with exact peaks."""
     if isinstance(motion, GroundMotion):
         return _of_samples(motion)
     time = np.linspace(0.0, motion.duration, _steps(motion) + 1)
@@ -173,8 +173,8 @@ def traces(motion: GroundMotion | Pulse) -> Traces:
 
 
 def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as samples: a record unchanged, a pulse at steps fine enough for linear interpolation."""
-    # the samples of a pulse begin and end with it, which preserves jumps at its ends
+    """Return a motion as samples. A record is unchanged; a pulse has steps fine enough for linear interpolation."""
+    # the samples begin and end with the pulse, which preserves jumps at its ends
     if isinstance(motion, GroundMotion):
         return motion
     steps = _steps(motion)
@@ -190,7 +190,7 @@ def _steps(pulse: Pulse) -> int:
 
 
 def _zoomed(curve: Callable[[Any], FloatArray], time: FloatArray) -> Peak:
-    # each round reduces the interval of time by a factor of 100 or more; the error of the value is quadratic
+    # every round reduces the interval of time by a factor of 100 or more; the error of the value is quadratic
     for _ in range(4):
         values = np.asarray(curve(time))
         k = int(np.abs(values).argmax())
@@ -211,7 +211,7 @@ def _of_samples(motion: GroundMotion) -> Traces:
     time, acceleration, v_fine, u_fine = (
         np.append(values.T.ravel(), end) for values, end in zip(columns, ends, strict=True)
     )
-    # velocity has its extremes at zeros of the acceleration, displacement at zeros of the velocity
+    # the velocity is extreme at zeros of the acceleration, and the displacement at zeros of the velocity
     turns = (a[:-1] < 0.0) != (a[1:] < 0.0)
     turn = np.where(turns, a[:-1] / np.where(turns, a[:-1] - a[1:], 1.0), 0.0)
     speeds = _inside(motion, v, u, turn)[0]
@@ -229,7 +229,7 @@ def _of_samples(motion: GroundMotion) -> Traces:
 
 
 def _inside(motion: GroundMotion, v: FloatArray, u: FloatArray, tau: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return velocity and displacement within each step, at a fraction `tau` of it."""
+    """Return velocity and displacement within the steps, at a fraction `tau` of the step."""
     a, rise, h = motion.acceleration[:-1], np.diff(motion.acceleration), motion.time_step
     speed = v[:-1] + h * tau * (a + 0.5 * rise * tau)
     return speed, u[:-1] + h * tau * (v[:-1] + h * tau * (0.5 * a + rise * tau / 6.0))

@@ -1,4 +1,4 @@
-"""Texts and numbers within a map: in regions with enough room, and on contour lines, without overlap of borders."""
+"""Texts and numbers in a map: in regions with enough room, and on contour lines. They do not overlap borders."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from rocking.plots.style import broken
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FINE = (240, 300)  # rows and columns of the grid of pixels for the search of positions
+FINE = (240, 300)  # rows and columns of the pixel grid for the search of positions
 
 _COLOR, _BACK = "#0070B2", "#E4EFF8"
 _ROOM = 0.035  # smallest distance of a number from other lines and empty areas, as a fraction of the panel [-]
@@ -28,7 +28,7 @@ class LabelPlace:
 
 
 def rastered(values: IntArray, x: FloatArray, y: FloatArray) -> IntArray:
-    """Return the nearest value of a map at every pixel, the lowest row first."""
+    """Return the nearest value of a map at every pixel. The lowest row is first."""
     picks = [_nearest(coordinates, count) for coordinates, count in ((y, FINE[0]), (x, FINE[1]))]
     return np.asarray(values[np.ix_(*picks)])
 
@@ -43,7 +43,7 @@ def _nearest(values: FloatArray, count: int) -> IntArray:
 
 
 def place_in(region: BoolArray, text: str, panel: tuple[float, float], size: float = 7.0) -> LabelPlace | None:
-    """Return the position of a text of a size [pt] in a region of a panel [in], farthest from the border; or None."""
+    """Return the position of a text [pt] in a region of a panel [in] that is farthest from the border, or None."""
     from scipy import ndimage
 
     if not region.any():
@@ -72,7 +72,7 @@ def _box(text: str, panel: tuple[float, float], size: float) -> tuple[int, int]:
 
 
 def labelled_contours(axes: "Axes", x: FloatArray, y: FloatArray, values: FloatArray, levels: Sequence[float]) -> None:
-    """Draw contour lines with their numbers at the widest gap; lines without room have no number."""
+    """Draw contour lines with their numbers at the widest gap. Lines without room have no number."""
     masked = np.ma.masked_invalid(values)
     contours = axes.contour(x, y, masked, levels, colors=_COLOR, linewidths=0.6, zorder=3)
     lines = [_inside(axes, np.concatenate([path.vertices, np.empty((0, 2))])) for path in contours.get_paths()]

@@ -1,4 +1,4 @@
-"""Pictures of overturning maps: modes, safe islands, boundary and peaks; on a grid or refined along the boundary."""
+"""Pictures of overturning maps (modes, safe islands, boundary, peaks), on a grid or refined along the boundary."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -40,10 +40,10 @@ CLASSES: dict[int, tuple[str, str]] = {
     LATER: ("overturns after 2 or more impacts", "#F0B26B"),
     FELL: ("overturns", "#E0812F"),
 }
-"""Names and colours of classes: light without overturning, dark with overturning, also in grey."""
+"""Names and colours of classes. Colours are light without overturning and dark with overturning, even in grey."""
 
 _SHORT = {UNLIFTED: "", FIRST: "no impact", SECOND: "after 1 impact", LATER: "after 2 or more"}
-"""Short names for regions without room for those of `CLASSES`."""
+"""Short names for regions without room for the names in `CLASSES`."""
 
 _CONTOURS = (0.1, 0.25, 0.5, 0.75)
 _BOUNDARY: dict[str, Any] = {"color": INK, "linewidth": 0.9, "zorder": 4, "solid_joinstyle": "round"}
@@ -60,7 +60,7 @@ def overturning_map_picture(
     results : xarray.Dataset
         Result of `overturning_map`.
     boundary : sequence of Polyline
-        Result of `boundary` along the same axes, plotted over the map.
+        Result of `boundary` along the same axes. It is plotted over the map.
     contours : sequence of float
         Peak rotations over alpha of the contour lines [-].
 
@@ -113,7 +113,7 @@ def _axes_of(results: Any) -> tuple[str, str]:
 
 
 def classes_of(results: "xr.Dataset") -> IntArray:
-    """Return the class of each point of a map."""
+    """Return the class of every point of a map."""
     from rocking.studies.islands import safe_islands
 
     kinds = _kinds(np.asarray(results["mode"].values))
@@ -142,7 +142,7 @@ def _mesh(axes: "Axes", x: FloatArray, y: FloatArray, kinds: IntArray) -> None:
 
 
 def draw_map(axes: "Axes", results: "xr.Dataset", kinds: IntArray) -> None:
-    """Draw the regions of a map, with labelled axes; axes with equal ratios are logarithmic."""
+    """Draw the regions of a map, with labelled axes. Axes with equal ratios are logarithmic."""
     x, y = _axes_of(results)
     values = [np.asarray(results[name].values) for name in (x, y)]
     _mesh(axes, values[0], values[1], kinds)
@@ -159,7 +159,7 @@ def draw_map(axes: "Axes", results: "xr.Dataset", kinds: IntArray) -> None:
 
 
 def _contours(axes: "Axes", results: "xr.Dataset", levels: Sequence[float]) -> IntArray:
-    """Draw contours of the peak rotation without overturning; return the band of each point."""
+    """Draw contours of the peak rotation without overturning. Return the band of every point."""
     x, y = _axes_of(results)
     peak = np.where(np.isin(results["mode"].values, (-2, -1)), np.asarray(results["peak_ratio"].values), np.nan)
     finite = peak[np.isfinite(peak)]
@@ -170,7 +170,7 @@ def _contours(axes: "Axes", results: "xr.Dataset", levels: Sequence[float]) -> I
 
 
 def _labels(axes: "Axes", results: "xr.Dataset", kinds: IntArray, bands: IntArray) -> None:
-    """Write the names of regions into them; a legend below names small regions."""
+    """Write names into the regions. A legend below names small regions."""
     x, y = (np.asarray(results[name].values) for name in _axes_of(results))
     x, y = (np.log(coordinates) if geometric(coordinates) else coordinates for coordinates in (x, y))
     class_raster, band_raster = rastered(kinds, x, y), rastered(bands, x, y)
@@ -211,7 +211,7 @@ def refined_map_picture(
     points : RefinedMap
         Result of `refined_map`.
     boundary : sequence of Polyline
-        Result of `boundary` on the same axes, one or more.
+        One or more results of `boundary` on the same axes.
     window : pair of pairs of float, optional
         Limits along x and along y of an enlarged second panel, in the units of the axes.
     title : str
@@ -220,7 +220,7 @@ def refined_map_picture(
     Returns
     -------
     matplotlib.figure.Figure
-        One panel, one column wide; two panels, two columns wide, with a window.
+        One panel, one column wide. With a window, two panels, two columns wide.
 
     Raises
     ------
@@ -278,7 +278,7 @@ def _panel(axes: "Axes", points: "RefinedMap", boundary: "Sequence[Polyline]", w
 
 
 def _nearest_kinds(points: "RefinedMap", x: FloatArray, y: FloatArray, scales: list[bool]) -> IntArray:
-    """Return the class of the nearest point, with distances in spacings of the map."""
+    """Return the class of the nearest point. Distances are in units of the spacing of the map."""
     from scipy.spatial import cKDTree
 
     scaled_points, scaled_pixels = [], []
@@ -294,7 +294,7 @@ def _nearest_kinds(points: "RefinedMap", x: FloatArray, y: FloatArray, scales: l
 
 
 def _enlarged(axes: "list[Axes]", window: "Window") -> None:
-    """Mark the window of the second panel in the first."""
+    """Mark the window of the second panel in the first panel."""
     from matplotlib.patches import Rectangle
 
     (left, right), (low, high) = window

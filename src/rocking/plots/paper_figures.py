@@ -1,4 +1,7 @@
-"""Every figure of `rocking reproduce`: those of Mao et al. (2024), redrawn from the printed values, and our own."""
+"""All figures of `rocking reproduce`: figures of Mao et al.
+
+(2024), redrawn from the printed values, and new figures.
+"""
 
 import math
 from collections.abc import Callable
@@ -57,7 +60,7 @@ def paper_figure(name: str) -> "Figure":
 
 
 def paper_figures(data: DataSet | None = None) -> "dict[str, Callable[[], Figure]]":
-    """Return the drawing function of each figure of the report by file name; data: of league and calibration."""
+    """Return the drawing functions of the figures of the report by file name. `data` are measurements."""
     data = all_measurements() if data is None else data
     posterior = calibrate() if data is all_measurements() else calibrate_on(data)
     return {
@@ -80,7 +83,7 @@ def paper_figures(data: DataSet | None = None) -> "dict[str, Callable[[], Figure
 
 @in_journal_style
 def _figure_1() -> "Figure":
-    """Draw the classical model, our own drawing: the block, its feet, half sizes, semi-diagonal and angles."""
+    """Draw the classical model (a new drawing): the block, its feet, half sizes, semi-diagonal and angles."""
     from matplotlib.patches import Arc, Polygon
 
     figure, (axes,) = new_figure(SINGLE, 3.3)
@@ -134,7 +137,7 @@ def _dimension(
 
 @in_journal_style
 def _figure_3() -> "Figure":
-    """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper."""
+    """Draw slenderness over r for Table 2. Bars are |r_r - r_e|, as in the paper."""
     figure, (axes,) = new_figure(SINGLE, 2.7)
     for name in _PAIR:
         draw_model(axes, name, 1.5, 9.0)
@@ -146,7 +149,7 @@ def _figure_3() -> "Figure":
 
 @in_journal_style
 def _figure_5() -> "Figure":
-    """Draw slenderness against r for S, M and L, with an offset of S and L; bars are |r_r - r_e|, as in Figure 3."""
+    """Draw slenderness over r for S, M and L, with an offset for S and L. Bars are |r_r - r_e|, as in Figure 3."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name in _PAIR:
         draw_model(axes, name, 1.3, 10.2)
@@ -168,7 +171,7 @@ def _with_distance_to_ked(axes: "Axes", data: DataSet, marker: str, label: str, 
 
 @in_journal_style
 def _figure_6() -> "Figure":
-    """Draw the relative errors of both models for Table 2, with the paper's zones."""
+    """Draw the relative errors of both models for Table 2, with the zones of the paper."""
     figure, (axes,) = new_figure(SINGLE, 2.7)
     _zoned(axes, datasets()["table2"])
     axes.set_ylim(-0.4, 17.0)
@@ -192,7 +195,7 @@ def _figure_7() -> "Figure":
 
 @in_journal_style
 def _figure_8() -> "Figure":
-    """Draw the absolute errors r_r - r_e and r_e - r_H against mass."""
+    """Draw the absolute errors r_r - r_e and r_e - r_H over mass."""
     figure, (axes,) = new_figure(SINGLE, 2.9)
     for name, sign, label in (("housner", -1.0, "$r_e - r_H$"), ("ked", 1.0, "$r_r - r_e$")):
         look = {"linestyle": "none", **_filled(name)}

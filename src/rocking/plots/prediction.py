@@ -35,7 +35,7 @@ _MEASURES = {"brier": "Brier", "logarithmic": "logarithmic"}
 
 @in_journal_style
 def prediction_picture(prediction: Prediction) -> "Figure":
-    """Draw the probability of overturning under each motion, and the contribution of each input to its variance.
+    """Draw the probability of overturning under every motion, and contributions of the inputs to its variance.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def _reliability(axes: "Axes", validation: Validation) -> None:
             alpha=1.0 if name == "prediction" else 0.6,
         )  # fmt: skip
         if name == "prediction":
-            for k, step in enumerate(steps):  # in two rows, since neighbours may be close
+            for k, step in enumerate(steps):  # in two rows, because neighbours may be close
                 axes.annotate(
                     str(step.count), (step.predicted, 1.03), (0, 2 + 6 * (k % 2)), textcoords="offset points",
                     ha="center", fontsize=5.5, color=color,
@@ -218,7 +218,7 @@ _MOST_PARTS = 14
 
 @in_journal_style
 def assessment_picture(assessment: BodyAssessment) -> "Figure":
-    """Draw the smallest overturning factor of each motion, and the limit factors of code methods relative to it.
+    """Draw the smallest overturning factor of every motion, and the limit factors of code methods relative to it.
 
     Parameters
     ----------

@@ -48,14 +48,14 @@ def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Fi
     body : Body
         The body.
     largest : float
-        Largest acceleration over gravity, and largest friction [-].
+        Largest acceleration over gravity, and equal largest coefficient of friction [-].
     cells : int
         Number of cells along each axis, from 2 to 400.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Cells computed by complementarity, lines by Shenton's closed forms.
+        Cells are computed by complementarity, and lines by Shenton's closed forms.
 
     Raises
     ------

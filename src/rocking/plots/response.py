@@ -1,4 +1,4 @@
-"""Picture of a response: ground motion, rotation, velocity, energy and friction demand; and its curves."""
+"""Picture of a response (ground motion, rotation, velocity, energy, friction demand), and its curves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _ROTATION, _VELOCITY, _IMPACT, _FALL = "#0070B2", "#009960", "#D96C00", "#AC8191"
 _KINETIC, _POTENTIAL, _LOST, _WORK = "#AC5B2B", "#0070B2", "#D96C00", "#222222"
 _BEYOND = 2.2  # largest plotted rotation of an overturning body, in slenderness angles
-_SMALL = 0.2  # below this fraction of the slenderness angle the panel omits the lines at +-1
+_SMALL = 0.2  # for smaller fractions of the slenderness angle, the panel omits the lines at +-1
 _LONGEST_LINE = 118  # characters that fit into one line of the small print
 _INSIDE = np.linspace(0.0, 1.0, 5)
 _REST = 0.06  # plotted time after the last event, as a fraction of the time before
@@ -175,7 +175,7 @@ def _limits(axes: "Axes", response: Response, time: FloatArray, values: list[Flo
 
 
 def motion_curves(response: Response) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times [s], rotations [rad] and velocities [rad/s]; times of impacts appear twice, for vertical jumps."""
+    """Return times [s], rotations [rad] and velocities [rad/s]. Times of impacts appear twice, for vertical jumps."""
     dense_output = response.dense_output
     rotation, velocity = dense_output.evaluated(_INSIDE)
     time = dense_output.start[:, None] + _INSIDE * dense_output.length[:, None]
@@ -183,7 +183,10 @@ def motion_curves(response: Response) -> tuple[FloatArray, FloatArray, FloatArra
 
 
 def velocity_at(response: Response, time: Any) -> FloatArray:
-    """Return the angular velocity [rad/s] at times [s] within a response; at an impact, the velocity after it."""
+    """Return the angular velocity [rad/s] at times [s] within a response.
+
+    At an impact, the velocity after the impact.
+    """
     dense_output = response.dense_output
     t = np.clip(np.asarray(time, dtype=np.float64), 0.0, dense_output.end[-1])
     k = np.clip(np.searchsorted(dense_output.start, t, side="right") - 1, 0, dense_output.start.size - 1)
@@ -193,7 +196,7 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
 
 
 def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
-    """Return rotations [rad] over the slenderness angle of their side; above 1 the centre is past the foot [-]."""
+    """Return rotations [rad] over the slenderness angle of their side [-]. Above 1, the centre is beyond the foot."""
     parameters = response.parameters
     return rotation / np.where(rotation > 0.0, parameters.right.slenderness_angle, parameters.left.slenderness_angle)
 
@@ -222,7 +225,7 @@ def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
 
 
 def ground_displacement_at(response: Response, time: FloatArray) -> FloatArray:
-    """Return the horizontal displacement of the ground [m] at times [s], from rest, integrated exactly."""
+    """Return the horizontal displacement of the ground [m] at times [s], from rest. The integration is exact."""
     segments = response.segments
     h, order = segments.step, np.arange(segments.degree + 1)
     c = response.scale * segments.horizontal

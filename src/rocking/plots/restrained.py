@@ -64,7 +64,7 @@ def restrained_picture(response: "RestrainedResponse") -> "Figure":
 
 @in_journal_style
 def pushover_picture(pushover: "Pushover") -> "Figure":
-    """Draw a pushover: moment by rotation, force by elongation of each restraint.
+    """Draw a pushover: moment over rotation, and force over elongation of the restraints.
 
     Parameters
     ----------

@@ -22,10 +22,10 @@ _BEYOND = 1e3
 
 @in_journal_style
 def rocking_spectrum_picture(results: "xr.Dataset") -> "Figure":
-    r"""Draw rocking spectra: the curves of one motion, or the median and the 16 % to 84 % band of several.
+    r"""Draw rocking spectra: the curves of one motion, or the median and the 16 % to 84 % band of several motions.
 
-    A strip below the curves shows overturning by size: bars for one motion, the fraction of motions for several. A
-    curve has a gap at overturning of the block, or of half of the motions.
+    A strip below the curves shows overturning over size, as bars for one motion or as the fraction of several motions.
+    A curve has a gap where the block overturns, or where half of the motions overturn the block.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def _curve(axes: "Axes", results: "xr.Dataset", index: int, alpha: float) -> Non
     low, middle, high = fractiles(results, index)
     label = f"{alpha:.3g}"
     if results.sizes["motion"] > 1:
-        # the band extends beyond the panel if 84 % overturned
+        # the band extends beyond the panel if the 84 % quantile overturned
         high = np.where(np.isfinite(low) & np.isnan(high), _BEYOND, high)
         axes.fill_between(period, low, high, color=look(index)["color"], alpha=0.15, linewidth=0)
     axes.plot(period, middle, label=label, linewidth=1.0, **look(index))
@@ -91,7 +91,7 @@ def _curve(axes: "Axes", results: "xr.Dataset", index: int, alpha: float) -> Non
 
 
 def fractiles(results: "xr.Dataset", index: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return quantiles (16 %, 50 %, 84 %) of the peak rotation by period [-]; NaN for overturning or no result."""
+    """Return quantiles (16 %, 50 %, 84 %) of the peak rotation by period [-]. NaN means overturning or no result."""
     selected = results.isel(slenderness_angle=index)
     mode = np.asarray(selected["mode"].values)
     peak = np.where(mode >= 0, math.inf, np.asarray(selected["peak_ratio"].values))
@@ -132,7 +132,7 @@ def _sizes(axes: "Axes", results: "xr.Dataset") -> None:
     per = 0.75 * gravity / (4.0 * math.pi**2)
     pair = (lambda t: per * np.square(t), lambda size: np.sqrt(np.maximum(size, 0.0) / per))
     if geometric(period):
-        plain_log(axes, "x")  # before the upper axis, which copies this scale
+        plain_log(axes, "x")  # must come before the upper axis, which copies this scale
     above = axes.secondary_xaxis("top", functions=pair)
     above.set_xlabel("semi-diagonal R [m]")
     if geometric(period):

@@ -1,4 +1,4 @@
-"""Pictures of the effect of the restitution on studies: maps and their difference, spectra, fragility curves."""
+"""Pictures of the effect of the restitution on studies: maps and differences, spectra, fragility curves."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 GAINED, LOST, SAME, UNKNOWN = "#AC8191", "#0070B2", "#F2F2F2", "#000000"
-"""Colours: overturns with the choice only, with the baseline only, equal outcomes, one of the two not computed."""
+"""Colours: overturns only with the choice, overturns only with the baseline, equal outcomes, not computed with both."""
 
 _BOTH = "#BDBDBD"
-_CHANGE = "PuOr_r"  # purple, white, orange: distinct for all types of colour vision, and from the colours of changes
+_CHANGE = "PuOr_r"  # purple, white, orange: distinct for all types of colour vision, not used for changes
 _PANEL = 2.35
 _MOST = 6
 
@@ -32,9 +32,9 @@ _MOST = 6
 def sensitivity_picture(sensitivity: Sensitivity, *, unit: tuple[str, float] | None = None) -> "Figure":
     """Draw a comparison of restitutions.
 
-    Maps are in columns, the baseline first. Below each other map is the map of different outcomes, with their number.
-    Spectra and fragility have one curve per choice. Fragility curves have 95 % bands; the titles contain the medians
-    and their ratios to the median of the baseline, from the same motions.
+    Maps are in columns, with the baseline first. Below the other maps are maps of different outcomes, with their
+    number. Spectra and fragility have one curve per choice. Fragility curves have 95 % bands; the titles contain the
+    medians and their ratios to the median of the baseline, from the same motions.
 
     Parameters
     ----------
@@ -42,7 +42,8 @@ def sensitivity_picture(sensitivity: Sensitivity, *, unit: tuple[str, float] | N
         Result of `map_sensitivity`, `spectrum_sensitivity`, `fragility_sensitivity` or `sensitivity`, with at most 6
         choices.
     unit : tuple of str and float, optional
-        Unit of the medians of a fragility, and its size [unit of the measure]; default: unit of the measure.
+        Unit of the medians of a fragility, and the size of this unit [unit of the measure]. Default: unit of the
+        measure.
 
     Returns
     -------
@@ -175,7 +176,7 @@ def _of_fragility(sensitivity: Sensitivity, unit: tuple[str, float] | None) -> "
             panel.plot(levels, fraction, MARKS[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
             panel.plot([], [], marker=MARKS[number], markersize=2.6, label=text, **look(number))
         panel.set_ylim(-0.03, 1.03)
-        # in the order of the legend
+        # same order as in the legend
         medians = [result.fits[state].median for result in results]
         text = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
         title = f"medians {text} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")
@@ -187,7 +188,7 @@ def _of_fragility(sensitivity: Sensitivity, unit: tuple[str, float] | None) -> "
 
 
 def _ratios(sensitivity: Sensitivity, state: str) -> str:
-    """Return a line of the ratios of medians to the baseline; empty if no choice has one."""
+    """Return a line with the ratios of medians to the baseline; empty if there is no ratio."""
     key = f"{state}: median ratio"
     rows = [row for row in sensitivity.summary() if row["choice"] != sensitivity.baseline]
     if not any(key in row for row in rows):
@@ -264,7 +265,7 @@ def difference_map_picture(sensitivity: Sensitivity, choice: str | None = None) 
 
 
 def _differences(axes: "Axes", sensitivity: Sensitivity, choice: str) -> Any:
-    """Draw the change of the peaks, and changes of outcome over it; return the colour scale."""
+    """Draw the change of the peaks, and over it the changes of outcome. Return the colour scale."""
     base, verdict = (
         sensitivity.datasets[sensitivity.baseline],
         sensitivity.differences("verdict").sel(restitution=choice).values,

@@ -7,11 +7,11 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-_DOTS, _PIXELS = 144.0, 96.0  # dots of the image, and pixels of a page, per inch
+_DOTS, _PIXELS = 144.0, 96.0  # dots of the image per inch, and pixels of a page per inch
 
 
 class ShownFigure(Figure):
-    """A matplotlib figure that IPython displays as an image, in its own style."""
+    """A matplotlib figure that IPython displays as an image, in the style of the figure."""
 
     def __init__(self, style: Mapping[str, Any], **options: Any) -> None:
         super().__init__(**options)

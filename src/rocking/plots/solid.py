@@ -1,4 +1,4 @@
-"""Pictures of 3D bodies: energy loss, stable poses, and height of the centre of mass between them."""
+"""Pictures of 3D bodies: energy loss, stable poses, and height of the centre of mass between stable poses."""
 
 import math
 from typing import TYPE_CHECKING, Any, cast
@@ -78,8 +78,8 @@ def energy_picture(
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels: loss of the units and in the slice through the centre across the axis [J/m3], and over the height
-        [J/m].
+        Three panels: loss of the units [J/m3], loss in the slice through the centre across the axis [J/m3], and loss
+        over the height [J/m].
     """
     impact = result.impact
     figure, axes = new_figure(DOUBLE, 3.4, columns=3, width_ratios=[1.0, 1.0, 0.7])
@@ -105,7 +105,7 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
     heights : ndarray, shape (n,)
         Heights of the slices above the ground [m].
     divisions : int
-        A quarter of the number of points along each side of a slice [-].
+        A quarter of the number of points along a side of a slice [-].
 
     Returns
     -------
@@ -135,7 +135,10 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
 
 
 def shaded_solid(axes: "Axes", solid: Solid, azimuth: float = -60.0, elevation: float = 18.0) -> None:
-    """Draw a body and its base into a panel in parallel projection; angles of view [degree]."""
+    """Draw a body and its base into a panel in parallel projection.
+
+    The angles define the direction of view [degree].
+    """
     _shaded(axes, _surface(solid, 8), None, _frame(azimuth, elevation))
     _base(axes, solid, _frame(azimuth, elevation))
 
@@ -167,7 +170,7 @@ def _shaded(
     normals = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     front = np.flatnonzero(normals[:, 2] > 0.0)
-    # the painter's order: far faces first
+    # far faces are plotted first
     front = front[np.argsort(seen[front, :, 2].mean(axis=1), kind="stable")]
     scale = Normalize(0.0, top)
     colours = np.full((len(front), 4), 0.8) if values is None else colormaps[_COLOURS](scale(values[front]))
@@ -193,7 +196,7 @@ def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
 def _cubes(solid: Solid, energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
     cube = box(side, side, side).corners - np.array([0.0, 0.0, 0.5 * side])
     triangles = (energies.units.centre[:, None, None] + cube).reshape(-1, 3, 3)
-    # a unit at the surface is a fraction of a cube: the loss is relative to its own volume
+    # a unit at the surface is a fraction of a cube; the loss is relative to the volume of the unit
     density = np.array([solid_part.density for solid_part in solid.local_parts])[energies.units.part]
     return triangles, np.repeat(energies.density * density, len(cube))
 
@@ -259,14 +262,14 @@ _TILTS, _AZIMUTHS, _FEW, _MANY = 91, 181, 40, 24
 def equilibria_picture(
     solid: Solid, pose: StablePose | None = None, *, equilibria: Equilibria | None = None
 ) -> "Figure":
-    """Draw the height of a body's centre of mass in all orientations, and the body on its support polygon.
+    """Draw the height of the centre of mass in all orientations, and the body on its support polygon.
 
     Parameters
     ----------
     solid : Solid
         The body.
     pose : StablePose, optional
-        Pose in the centre of the map; default: the stable pose into which the solid settles.
+        Pose in the centre of the map. The default is the stable pose to which the solid moves.
     equilibria : Equilibria, optional
         Equilibria of the solid, if computed before.
 
@@ -304,7 +307,7 @@ def _landscape(figure: "Figure", axes: "PolarAxes", equilibria: Equilibria, pose
         mark, color = _MARKS[kind]
         positions = np.array([tilt_towards(pose, member.down) for member in members]).reshape(-1, 2)
         edge: dict[str, Any] = {} if mark == "x" else {"edgecolors": "white", "linewidths": 0.5}
-        size = 22.0 * min(1.0, _MANY / max(len(members), 1))  # small marks if there are many
+        size = 22.0 * min(1.0, _MANY / max(len(members), 1))  # small marks if there are many of them
         level = 5 if kind == "stable" else 4
         axes.scatter(
             positions[:, 1], np.rad2deg(positions[:, 0]), s=size, marker=mark, color=color, zorder=level, **edge

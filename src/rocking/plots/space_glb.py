@@ -1,4 +1,4 @@
-"""A 3D body as glTF (.glb): surface, stable poses and motion, for 3D programs and for the page."""
+"""A 3D body as glTF (.glb) for 3D programs and the web page: surface, stable poses and motion."""
 
 import json
 import struct
@@ -18,15 +18,16 @@ from rocking.version import SOFTWARE
 
 _TYPES = {np.dtype(np.float32): 5126, np.dtype(np.uint32): 5125, np.dtype(np.uint8): 5121}
 _SHAPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
-_Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # rotates z up into y up, the convention of glTF
+_Z_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # rotation from z upwards to y upwards, the convention of glTF
 _ROUND = 90  # number of corners of a round base
-_FEW, _DIVISIONS = 10_000, 8  # minimum number of flat faces, by splitting, for colours; divisions of round surfaces
+_FEW, _DIVISIONS = 10_000, 8  # minimum number of flat faces (split for colours), divisions of round surfaces
 
 
 class GltfFile:
     """A 3D body and its results as one glTF file."""
 
-    # quantities without a place in glTF are in `extras`: m and s, z up, from the centre of mass in the body's axes
+    # `extras` contains quantities that glTF does not define: in m and s, z upwards, from the centre of mass in body
+    # axes
     def __init__(self, solid: Solid) -> None:
         self.solid = solid
         self.binary = bytearray()
@@ -49,7 +50,7 @@ class GltfFile:
             self.extras["mended"] = self._add((patches - centre).reshape(-1, 3).astype(np.float32))
 
     def add_equilibria(self, equilibria: Equilibria, pose: StablePose) -> None:
-        """Add stable poses, saddles and summits, and the height of the centre of mass above each lowest point."""
+        """Add stable poses, saddles and summits, and heights of the centre of mass above the lowest points."""
         heights = equilibria.height(self.points)
         low, high = equilibria.stable[0].height, float(heights.max())
         self.attributes["COLOR_0"] = self._add(_coloured((heights - low) / (high - low)))
@@ -74,7 +75,7 @@ class GltfFile:
         }  # fmt: skip
 
     def add_edges(self, edges: list[dict[str, Any]]) -> None:
-        """Add edges of the base, with the numbers of `rocking restitution`."""
+        """Add edges of the base, with the numbers that `rocking restitution` uses."""
         from_centre = np.array([*self.solid.centre[:2], 0.0])
         height = -self.extras["height"]
 
@@ -88,7 +89,7 @@ class GltfFile:
     def add_motion(self, response: HullResponse) -> None:
         """Add the motion as an animation, the tilt, and the vertices of the hull."""
         scene = HullScene.of(response)
-        quaternion = np.roll(scene.quaternion, -1, axis=1)  # scalar last, the convention of glTF
+        quaternion = np.roll(scene.quaternion, -1, axis=1)  # the scalar is last, the convention of glTF
         quaternion[1:] *= np.cumprod(np.where((quaternion[1:] * quaternion[:-1]).sum(axis=1) < 0.0, -1.0, 1.0))[:, None]
         time = self._add(scene.time.astype(np.float32), bounds=True)
         samplers = [
@@ -113,7 +114,7 @@ class GltfFile:
         path.write_bytes(head + text + struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary)
 
     def _add(self, values: np.ndarray, *, bounds: bool = False) -> int:
-        """Add an array to the file, one row per element; return the index of its accessor."""
+        """Add an array to the file, one row per element. Return the index of the accessor."""
         data, kind = np.ascontiguousarray(values), _TYPES[values.dtype]
         view = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": data.nbytes}
         accessor: dict[str, Any] = {
@@ -152,7 +153,7 @@ def _patches(solid: Solid) -> FloatArray:
 
 
 def corners_of(solid: Solid) -> FloatArray:
-    """Return the corners of the base of a body, and points of a round one [m]."""
+    """Return the corners of the base of a body, or points on a round base [m]."""
     base = solid.local_base
     if isinstance(base, SupportPolygon):
         return np.column_stack([base.vertices, np.zeros(len(base.vertices))])
@@ -173,8 +174,9 @@ def _coloured(share: FloatArray) -> np.ndarray:
 
 
 def _quaternion(turn: FloatArray) -> list[float]:
-    """Return the quaternion of a rotation, scalar last."""
-    # about the horizontal axis (t12 - t21, ...) / (2 s) with s^2 = (1 + trace) / 4; half a turn about x in the limit
+    """Return the quaternion of a rotation, with the scalar last."""
+    # rotation about the horizontal axis (t12 - t21, ...) / (2 s) with s^2 = (1 + trace) / 4; half a turn about x in the
+    # limit
     scalar = 0.5 * np.sqrt(max(0.0, 1.0 + float(np.trace(turn))))
     if scalar < 1e-9:
         return [1.0, 0.0, 0.0, 0.0]

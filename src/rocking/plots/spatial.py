@@ -24,7 +24,7 @@ _COLOURS = {
 _SLIDES = "#AC8191"
 _ON = {"face": PALE, "edge": "#0070B2", "vertex": "#AC5B2B", "flight": "#008FE6"}
 _IMPACT, _TOP = "#D96C00", "#0070B2"
-_SMALL = 1e-3  # below this fraction of the largest tilt, the azimuth has no meaning
+_SMALL = 1e-3  # for smaller fractions of the largest tilt, the azimuth has no meaning
 
 
 @in_journal_style

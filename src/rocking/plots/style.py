@@ -30,9 +30,9 @@ INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 COLORS = ("#0070B2", "#D96C00", "#009960", "#AC8191", "#AC5B2B", "#008FE6")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 MARKS = "osv^D<"
-"""Colours for all types of colour vision, each with its line and mark for print in grey."""
+"""Colours for all types of colour vision, with lines and marks for print in grey."""
 
-_OVERHANG = 12.0  # dots by which a label may be longer than its axis
+_OVERHANG = 12.0  # number of dots by which a label may exceed its axis
 DASHED = (0, (4, 2))  # line style of limits
 
 _SETTINGS: Any = {
@@ -59,7 +59,7 @@ _SETTINGS: Any = {
 
 
 def model_styles() -> dict[str, dict[str, Any]]:
-    """Return colour, line and legend of every restitution model that has a colour, by its name."""
+    """Return colour, line and legend of the restitution models that have a colour, by name."""
     return {
         name: {"color": kind.colour, "linestyle": kind.linestyle, "label": kind.legend or kind.short_name}
         for name, kind in models().items()
@@ -68,11 +68,11 @@ def model_styles() -> dict[str, dict[str, Any]]:
 
 
 def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
-    """Return a drawing function that runs in the journal style; it raises `MissingExtraError` without matplotlib."""
+    """Return a drawing function in the journal style. It raises `MissingExtraError` without matplotlib."""
 
     @wraps(draw)
     def styled(*args: P.args, **options: P.kwargs) -> T:
-        """Draw in the style."""
+        """Draw in the journal style."""
         with journal_style():
             from matplotlib.figure import Figure
 
@@ -91,7 +91,7 @@ def _fit_labels(figure: "Figure") -> None:
     candidates += [(axes.bbox, axes.yaxis.label, "height") for axes in shown]
     # labels with line breaks stay unchanged, and a single word cannot be broken
     labels = [item for item in candidates if " " in (text := item[1].get_text()) and "\n" not in text]
-    # the layout is slow, and necessary only if a label may be too long
+    # the layout is slow, and is needed only if a label may be too long
     if any(_excess(*item) > -0.15 * getattr(item[0], item[2]) for item in labels):
         figure.draw_without_rendering()
     for box, label, side in labels:
@@ -125,7 +125,7 @@ def journal_style() -> AbstractContextManager[None]:
     Returns
     -------
     context manager
-        Within it, matplotlib has the settings of a journal's column; afterwards, the previous settings apply.
+        Within the context, matplotlib has the settings of a journal column. Afterwards, the previous settings apply.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def new_figure(
     Parameters
     ----------
     width, height : float
-        Size [in]; `SINGLE` and `DOUBLE` of `rocking.plots.style` are the columns of a journal.
+        Size [in]. `SINGLE` and `DOUBLE` of `rocking.plots.style` are widths of one and two journal columns.
     rows, columns : int
         Number of panels.
     **options

@@ -1,4 +1,4 @@
-"""Pictures of intervals of amplitudes with overturning: one motion with the peak rotation, many motions in lanes."""
+"""Pictures of amplitude intervals with overturning: one motion with peak rotation, or many motions in lanes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 PGA = "peak ground acceleration [g]"
 _HEIGHT = 2.9
 _ROOM, _LEAST = 1.35, 0.045
-"""Plotted range over the last crossing, and fraction of the width below which an interval has no name."""
+"""Plotted range over the last crossing, and width fraction below which an interval has no name."""
 
 _MOST_POINTS = 100_000
 
@@ -140,7 +140,7 @@ def _shown_until(transitions: Transitions) -> float:
 
 
 def _places(transitions: Transitions, count: int) -> FloatArray:
-    """Return amplitudes, denser near crossings, where the curve rises steeply [m/s2]."""
+    """Return amplitudes [m/s2]. They are denser near crossings, where the curve is steep."""
     last = _shown_until(transitions)
     offsets = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
     around = (transitions.acceleration[:, None] * (1.0 + offsets)).ravel()
@@ -150,7 +150,7 @@ def _places(transitions: Transitions, count: int) -> FloatArray:
 
 def _curve(question: Question, amplitudes: FloatArray) -> tuple[FloatArray, IntArray]:
     sides = {name: np.repeat(value, amplitudes.size) for name, value in sides_of([question.parameters]).items()}
-    # the same random numbers at every amplitude, as in the search
+    # equal random numbers at all amplitudes, as in the search
     keys = np.zeros(amplitudes.size, dtype=np.int64)
     results, _ = question.run({**sides, "scale": amplitudes / question.motion.peak}, np.ones(amplitudes.size), keys)
     return results["peak_ratio"], results["mode"]
@@ -164,7 +164,7 @@ def _shade(axes: "Axes", transitions: Transitions, amplitudes: FloatArray, modes
         run for low, high in transitions.overturning_intervals for run in _runs(amplitudes, modes, low, min(high, last))
     ]
     for run in sorted(runs, key=lambda run: run.high / run.low):
-        # above the dashed line of alpha
+        # position above the dashed line of alpha
         axes.axvspan(run.low / g, run.high / g, color=CLASSES[run.kind][1], linewidth=0.0, zorder=2)
         if np.log(run.high / run.low) > _LEAST * np.log(last / transitions.min_pga):
             widest[run.words] = run
@@ -177,7 +177,7 @@ def _shade(axes: "Axes", transitions: Transitions, amplitudes: FloatArray, modes
 
 
 def _runs(amplitudes: FloatArray, modes: IntArray, low: float, high: float) -> list[_AmplitudeRun]:
-    """Return the runs of one class within an interval; a change is plotted halfway between two samples."""
+    """Return the runs of one class within an interval. A change is plotted halfway between two samples."""
     inside = (amplitudes > low) & (amplitudes < high) & (modes >= 0)
     if not inside.any():
         return []
@@ -221,12 +221,12 @@ def transitions_of_many_picture(
     """Draw all intervals of amplitudes with overturning, one lane per motion, one panel per restitution.
 
     Lanes are sorted by the smallest overturning acceleration of the first panel, which is marked. Between two intervals
-    of a lane, the body does not overturn under a stronger motion.
+    of a lane, the body does not overturn, although the motion is stronger.
 
     Parameters
     ----------
     transitions : mapping of str to sequence of Transitions
-        Results for each motion, by restitution.
+        Results of all motions, by restitution.
     names : sequence of str
         Names of the motions, or short marks.
     lane_title : str
@@ -242,7 +242,7 @@ def transitions_of_many_picture(
     Raises
     ------
     InvalidValueError
-        If there are no lanes, too many, or their number differs from the number of names.
+        If there are no lanes or too many lanes, or if their number differs from the number of names.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The report of an assessment: verdict, margins, probability, causes, measures, code methods, assumptions, sources."""
+"""Report of an assessment: verdict, margins, probability, causes, measures, code methods, assumptions, sources."""
 
 import math
 from collections.abc import Callable
@@ -89,7 +89,7 @@ def assessment_content(
 
 
 class GoverningHistory(NamedTuple):
-    """The plotted history, its motion and a description."""
+    """The history in the picture, with its motion and a description."""
 
     history: Any
     motion: Any
@@ -97,7 +97,11 @@ class GoverningHistory(NamedTuple):
 
 
 def governing_history(assessment: BodyAssessment) -> GoverningHistory:
-    """Return a history with overturning: under an unscaled motion, preferably that of the smallest margin, or at it."""
+    """Return a history with overturning.
+
+    The motion is unscaled if possible, preferably the motion with the smallest margin; otherwise it is scaled to this
+    margin.
+    """
     factor, model, motion, mirrored = assessment.lowest
     if assessment.standing is not None:
         return _governing_solid(assessment, assessment.standing)
@@ -124,7 +128,7 @@ def governing_history(assessment: BodyAssessment) -> GoverningHistory:
 
 
 def _governing_solid(assessment: BodyAssessment, solid: StandingSolid) -> GoverningHistory:
-    """Return the history of a solid at its smallest overturning factor, or under the unscaled first motion."""
+    """Return the history of a solid at the smallest overturning factor, or under the unscaled first motion."""
     factor, model, motion, _ = assessment.lowest
     scale, scale_text = (
         (just_above(factor), f"scaled by {factor:.3g}") if math.isfinite(factor) else (1.0, "(unscaled)")

@@ -38,7 +38,7 @@ _TRIALS = (
 
 
 def identification_content(identification: Identification, *, name: str, date: str) -> Content:
-    """Return the report of a measurement: verdict, picture, coefficient of each impact, models and method."""
+    """Return the report of a measurement: verdict, picture, coefficients of the impacts, models and method."""
     return _document_of(identification, name, date), {"measured": lambda: identification_picture(identification)}
 
 

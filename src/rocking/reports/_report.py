@@ -1,4 +1,4 @@
-"""One call for the report of every answer; one module per class of answers provides the content."""
+"""Function for the report of any result. One module per class of results provides the content."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -29,7 +29,7 @@ _CONTENTS: dict[type, Callable[..., Content]] = {
     Identification: identification_content,
     IdentifiedTrials: trials_content,
 }
-"""Function that returns document and pictures, by class of the answer."""
+"""Functions that return document and pictures, by class of the result."""
 
 
 def report(result: Any, path: str | Path, *, name: str = "", date: str | None = None, **options: Any) -> Path:
@@ -45,7 +45,7 @@ def report(result: Any, path: str | Path, *, name: str = "", date: str | None = 
     name : str
         Name of the body.
     date : str, optional
-        Printed date of the report; default: today; empty: no date.
+        Printed date of the report. The default is today; an empty text means no date.
     **options
         For a response ``friction``, the coefficient of friction compared with the friction demand [-]. For an
         assessment ``project`` and ``author``, printed at the top and at the signature.
@@ -58,8 +58,7 @@ def report(result: Any, path: str | Path, *, name: str = "", date: str | None = 
     Raises
     ------
     InvalidValueError
-        If the class has no report, the option is unknown, the answer has no result, or the extension is not
-        allowed.
+        If the class has no report, an option is unknown, there is no result, or the extension is not allowed.
     MissingExtraError
         If matplotlib, or typst (.pdf) or jinja2 (.html), is not installed.
 

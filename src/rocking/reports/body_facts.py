@@ -1,4 +1,4 @@
-"""A body and its impact in plain values, SI units: coefficients of all models, energy of KED, measurements."""
+"""A body and its impact as plain values in SI units: coefficients of all models, energy of KED, measurements."""
 
 import math
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ CLOSELY = closely(coefficient=".6f", friction_demand=".3f", impulse_ratio=".3f")
     f"coefficient{end}": Quantity(f"coefficient{end}", "1", "end of the 95 % interval", digits=".3f")
     for end in ("_low", "_high")
 }
-"""Digits of a model's coefficient and of the quantities derived from it."""
+"""Digits of the coefficient of a model and of derived quantities."""
 _MOST_VERTICES = 2000  # maximum number of plotted vertices of a ring
 _RATIOS = np.geomspace(0.8, 12.0, 40)
 
@@ -55,12 +55,12 @@ def _thinned(ring: FloatArray) -> list[list[float]]:
 
 @dataclass(frozen=True, slots=True)
 class ImpactAnswer:
-    """The tables of one body, one per requested foot."""
+    """The tables of one body, one table per requested foot."""
 
     body: Body
-    tables: dict[Foot, tuple[CoefficientRow, ...]]  # foot to rows
+    tables: dict[Foot, tuple[CoefficientRow, ...]]  # rows by foot
     gravity: float  # acceleration of gravity [m/s2]
-    identities: dict[str, tuple[IdentityCheck, ...]]  # model to its checks; empty if not requested
+    identities: dict[str, tuple[IdentityCheck, ...]]  # checks by model; empty if not requested
 
     @classmethod
     def of(
@@ -84,7 +84,7 @@ class ImpactAnswer:
         return cls(body, tables, gravity, {model.label: identity_report(body, model, foot=last) for model in checked})
 
     def answer(self) -> Answer:
-        """Return the body, KED's energy, and every model's coefficient with derived quantities."""
+        """Return the body, the energy of KED, and the coefficients of all models with derived quantities."""
         return Answer({
             "body": self.body.answer(self.gravity),
             "ked_energy_fractions": {foot: energy_balance(self.body, foot=foot).fractions for foot in self.tables},
@@ -101,7 +101,7 @@ def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -
 
 
 def stages_answer(body: Body, foot: Foot, angular_velocity: float = 1.0) -> Answer:
-    """Return the energy balance of an impact at a velocity [rad/s] with a field of velocities for each stage of KED."""
+    """Return the energy balance of an impact at a velocity [rad/s], with a velocity field per stage of KED."""
     from rocking.plots.energy_stages import STAGE_WORDS
 
     balance = energy_balance(body, foot=foot, angular_velocity=angular_velocity)

@@ -1,4 +1,4 @@
-"""A report as plain content, as one self-contained HTML file, or as a PDF set by Typst without network access."""
+"""A report as plain content, as one self-contained HTML file, or as a PDF from Typst without network access."""
 
 import hashlib
 import json
@@ -26,7 +26,7 @@ class Cell:
     """One cell of a table."""
 
     text: str
-    mark: str = "plain"  # good, fair, bad or plain: agrees, agrees in part, disagrees, not rated
+    mark: str = "plain"  # good (agrees), fair (agrees in part), bad (disagrees) or plain (not rated)
     picture: str = ""  # file name of a thumbnail, in the folder of the pictures
 
 
@@ -35,8 +35,8 @@ class Paragraph:
     """Plain text."""
 
     text: str
-    lead: str = ""  # bold text before it
-    mark: str = "plain"  # as for a cell; shown as a coloured bar or word
+    lead: str = ""  # bold text before the paragraph
+    mark: str = "plain"  # mark as for a cell; shown as a coloured bar or word
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class ReportTable:
     caption: str
     header: Sequence[str]  # column names with units
     rows: Sequence[Sequence[Cell]]
-    note: str = ""  # a line below
+    note: str = ""  # a line below the table
     stem: str = ""  # name of its CSV file
 
 
@@ -73,7 +73,7 @@ class Listing:
     """Machine-readable text in lines."""
 
     text: str
-    lead: str = ""  # text before it
+    lead: str = ""  # text before the listing
 
 
 Block = Paragraph | ReportTable | Picture | Pair | Listing
@@ -136,7 +136,7 @@ class Document:
         Returns
         -------
         dict
-            Fields by name; each block has a ``kind``.
+            Fields by name. Every block has a ``kind``.
         """
         sections = [(item.title, [_plain(block) for block in item.blocks]) for item in self.sections]
         return {
@@ -158,7 +158,7 @@ def _plain(block: Block) -> dict[str, Any]:
     if isinstance(block, Picture):
         return {"kind": "picture", "file": f"{block.stem}.svg", **asdict(block)}
     if isinstance(block, ReportTable):
-        # columns of numbers are set flush right
+        # columns of numbers are aligned to the right
         texts = [[row[k].text for row in block.rows] for k in range(len(block.header))]
         numbers = [bool(column) and all(not text or text[0] in _NUMBER for text in column) for column in texts]
         return {"kind": "table", "numbers": numbers, **asdict(block)}
@@ -168,7 +168,7 @@ def _plain(block: Block) -> dict[str, Any]:
 def table(
     caption: str, header: Sequence[str], rows: Iterable[Iterable[object]], note: str = "", stem: str = ""
 ) -> ReportTable:
-    """Return a table from cells and values, which are converted to text.
+    """Return a table from cells and values. Values are converted to text.
 
     >>> table("", ["r [-]"], [[0.5]]).rows
     [[Cell(text='0.5', mark='plain', picture='')]]
@@ -181,7 +181,7 @@ def answer_table(
     caption: str, rows: AnswerRows | Iterable[Mapping[str, Any]], names: Sequence[str] = (), note: str = "",
     stem: str = "", *, display: Display | None = None, marks: Mapping[str, Sequence[str]] | None = None,
 ) -> ReportTable:  # fmt: skip
-    """Return a table of an answer; names: columns; marks: marks of the cells by column name."""
+    """Return a table of an answer. `names` selects columns; `marks` contains marks of cells by column name."""
     columns = (display or Display()).table(rows, names)
     marked = (
         map(Cell, column.cells, (marks or {}).get(column.name) or ["plain"] * len(column.cells)) for column in columns
@@ -190,7 +190,7 @@ def answer_table(
 
 
 def judged(title: str, under: Iterable[str], sections: Sequence[ReportSection], verdict: str, mark: str) -> Document:
-    """Return a report with its verdict on top; under: texts below the title, empty texts omitted."""
+    """Return a report with its verdict at the top. `under` contains texts below the title; empty texts are omitted."""
     subtitle = ". ".join(filter(None, under))
     return Document(title, subtitle, sections, verdict=[Paragraph(verdict, "", mark)], footer=SOFTWARE)
 
@@ -216,7 +216,7 @@ def software_and_data() -> dict[str, str]:
 
 
 def render_html(document: Document, pictures: Path) -> str:
-    """Return a report as HTML, its pictures inside."""
+    """Return a report as HTML that contains its pictures."""
     jinja2 = extra("jinja2", "the HTML report")
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -238,7 +238,7 @@ def _inline(folder: Path, stem: str) -> object:
     from markupsafe import Markup
 
     text = (folder / f"{stem}.svg").read_text(encoding="utf-8")
-    # ids of different pictures must differ within a page
+    # ids must be unique within a page
     body = text[text.index("<svg") :]
     for attribute in ('id="', 'href="#', "url(#"):
         body = body.replace(attribute, f"{attribute}{stem}-")
@@ -265,7 +265,7 @@ Content = tuple[Document, dict[str, Callable[[], Any]]]
 
 
 def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], path: Path) -> None:
-    """Write a report of one body as .pdf or .html; pictures: drawing functions by stem."""
+    """Write a report of one body as .pdf or .html. `pictures` contains drawing functions by stem."""
     from rocking.plots.style import write
 
     if path.suffix.lower() not in {".pdf", ".html"}:
@@ -279,7 +279,7 @@ def write_report(document: Document, pictures: Mapping[str, Callable[[], Any]], 
 
 
 def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
-    """Return the report of a response as PDF; the same content gives the same bytes."""
+    """Return the report of a response as PDF. Equal content gives equal bytes."""
     with TemporaryDirectory(prefix="rocking-report-") as name:
         folder = Path(name)
         for stem, data in pictures.items():
@@ -289,7 +289,7 @@ def response_pdf(document: Document, pictures: Mapping[str, bytes]) -> bytes:
 
 
 def _fonts() -> list[str]:
-    """Return the folders of the fonts of the report; none without matplotlib."""
+    """Return the folders of the fonts of the report; empty without matplotlib."""
     try:
         from matplotlib import get_data_path
     except ImportError:

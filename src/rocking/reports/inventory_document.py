@@ -1,4 +1,4 @@
-"""The report of an inventory: the ranked table with ratings, the plan of measures, and limitations."""
+"""Report of an inventory: ranked table with ratings, plan of measures, and limitations."""
 
 from collections.abc import Mapping, Sequence
 
@@ -39,11 +39,11 @@ from rocking.reports.document import (
 from rocking.statistics.counts import share_interval
 
 MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
-"""Colour of a rating; its letter and its word are next to it."""
+"""Colour of a rating. Letter and word of the rating are next to the colour."""
 
 _MOST_NAMED = 5
 MOST_DRAWN = 25
-"""Maximum number of objects in the first picture; a second picture shows the distribution of more objects."""
+"""Maximum number of objects in the first picture. For more objects, a second picture shows the distribution."""
 
 GLANCE, SHARES = "glance", "shares"
 """Stems of the pictures at the top."""
@@ -54,7 +54,8 @@ def inventory_document(
 ) -> Document:
     """Return the report of an inventory.
 
-    photos: file names of thumbnails by index of the object; pictures: available stems of `GLANCE` and `SHARES`.
+    `photos` contains file names of thumbnails by index of the object. `pictures` contains the available stems of
+    `GLANCE` and `SHARES`.
     """
     say, sections = words_of(assessment), _Sections(assessment, photos or {})
     level = assessment.hazard.words(say.code)
@@ -134,7 +135,7 @@ class _Sections:
         self.assessment, self.photos, self.say = assessment, photos, words_of(assessment)
 
     def glance(self, pictures: Sequence[str]) -> ReportSection:
-        """Return the picture of all objects, or of the worst objects and of the distribution of all."""
+        """Return the picture of all objects, or pictures of the worst objects and the distribution of all objects."""
         say, count, level = self.say, len(self.assessment.verdicts), 100.0 * self.assessment.thresholds.level
         worst = say(
             "All objects, the worst at the top: fraction of motions with overturning and its {level:.10g}% interval "
@@ -225,7 +226,7 @@ class _Sections:
         return ReportSection(say("Not assessed"), [lead, reasons] if rows else [])
 
     def others(self) -> ReportSection:
-        """Return the lines of the list that are not objects, and the reasons."""
+        """Return the lines of the list that are not objects, with the reasons."""
         say, others = self.say, self.assessment.not_objects
         rows = [(line.row, line.name, say(line.reason)) for line in others]
         reasons = table(

@@ -30,21 +30,21 @@ from rocking.reports.inventory_document import GLANCE, MOST_DRAWN, SHARES, inven
 from rocking.tables import escaped
 from rocking.tables.table import writing, written_whole
 
-STEM = "inventory"  # name of every file, before its suffix
+STEM = "inventory"  # name of the files, without suffix
 
 FILLS = {Light.GREEN: "C6E7D6", Light.AMBER: "FFE3A3", Light.RED: "F6C1BC", None: "E3E6EA"}
-"""Background colour of a rating; the cell contains its word."""
+"""Background colour of a rating. The cell contains the word of the rating."""
 
 MOST_BYTES, MOST_PIXELS = 64 << 20, 100_000_000
-"""Limits of a photo; larger photos are ignored and not decoded."""
+"""Limits of a photo. Larger photos are ignored and not decoded."""
 
-SIDE = 240  # of a thumbnail, at most [pixels]
+SIDE = 240  # largest side of a thumbnail [pixels]
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "GIF", "BMP")
 _WIDTHS = {"number": 18, "name": 28, "words": 70, "advice": 70, "note": 28, "light": 14, "remarks": 40}
 
 
 def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
-    """Write thumbnails; return their file names by index of the object, empty for unreadable photos."""
+    """Write thumbnails. Return their file names by index of the object; empty for unreadable photos."""
     names = {}
     for index, verdict in enumerate(assessment.verdicts):
         if verdict.item.photo is not None:
@@ -54,7 +54,7 @@ def thumbnails(assessment: Assessment, folder: Path) -> dict[int, str]:
 
 
 def _thumbnail(photo: Path, path: Path) -> bool:
-    """Write a thumbnail of a file of any content; return True if it was written."""
+    """Write a thumbnail of a file with any content. Return True if the thumbnail was written."""
     try:
         image, ops = extra("PIL.Image", "thumbnails"), extra("PIL.ImageOps", "thumbnails")
         if not photo.is_file() or photo.stat().st_size > MOST_BYTES:
@@ -72,7 +72,7 @@ def _thumbnail(photo: Path, path: Path) -> bool:
 
 
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
-    """Write an assessment in all formats; return the files, and the messages on missing libraries."""
+    """Write an assessment in all formats. Return the files, and messages on missing libraries."""
     with writing(f"to {folder}"):
         folder.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
@@ -86,13 +86,13 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
 
 
 def write_inventory_file(assessment: Assessment, path: Path) -> Path:
-    """Write an assessment in one format; after an error no incomplete file remains."""
+    """Write an assessment in one format. After an error, no incomplete file remains."""
     check_form(path)
     return _write_whole(assessment, path)
 
 
 def check_form(path: Path) -> None:
-    """Raise an error if the extension of a file is not a format of an inventory."""
+    """Raise an error if the extension of a file is not allowed for an inventory."""
     if _form(path) not in _WRITERS:
         forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
         raise InvalidValueError(
@@ -113,13 +113,13 @@ def _write_whole(assessment: Assessment, path: Path) -> Path:
 
 
 def inventory_json(assessment: Assessment) -> str:
-    """Return an assessment as JSON: one object; SI units."""
+    """Return an assessment as one JSON object in SI units."""
     return json.dumps(answer_of(assessment).plain(), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def _document(assessment: Assessment, path: Path) -> None:
     write = render_pdf if _form(path) == "pdf" else write_html
-    # the renderer writes its source temporarily into the folder of the pictures, which is not the user's folder
+    # the renderer temporarily writes its source into the folder of the pictures, which is not the folder of the user
     with TemporaryDirectory() as name:
         folder = Path(name)
         document = inventory_document(assessment, thumbnails(assessment, folder), _drawn(assessment, folder))
@@ -127,14 +127,14 @@ def _document(assessment: Assessment, path: Path) -> None:
 
 
 def _drawn(assessment: Assessment, folder: Path) -> list[str]:
-    """Draw the pictures at the top of the report; return their stems, none without objects."""
+    """Draw the pictures at the top of the report. Return their stems; empty if there are no objects."""
     from rocking.plots.inventory import inventory_distribution, inventory_picture
     from rocking.plots.style import write
 
     count = len(assessment.verdicts)
     try:
         with warnings.catch_warnings():
-            # the text of the SVG may be in any script and uses the fonts of the reader
+            # the text of the SVG may be in any script, and uses the fonts of the reader
             warnings.filterwarnings("ignore", "Glyph .* missing from font")
             if count:
                 write(inventory_picture(assessment, MOST_DRAWN), folder / f"{GLANCE}.svg")
@@ -146,7 +146,7 @@ def _drawn(assessment: Assessment, folder: Path) -> list[str]:
 
 
 def _csv(assessment: Assessment, path: Path) -> None:
-    # Excel needs the byte order mark to read UTF-8
+    # Excel reads UTF-8 only with a byte order mark
     path.write_text(as_csv(assessment), encoding="utf-8-sig", newline="")
 
 
@@ -185,7 +185,7 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
         *([say("not covered"), item] for item in limits(assessment)),
     ])  # fmt: skip
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
-    buffer = BytesIO()  # on a full disk, openpyxl would raise again after the file was closed
+    buffer = BytesIO()  # on a full disk, openpyxl would raise a second error after the file was closed
     book.save(buffer)
     path.write_bytes(buffer.getvalue())
 
@@ -195,7 +195,7 @@ def _fill(sheet: Any, lines: list[list[Any]]) -> None:
         for k, value in enumerate(line, start=1):
             cell = sheet.cell(row=i, column=k)
             if isinstance(value, str):
-                # always a string, never a formula; control characters cannot be stored
+                # the value is a string, never a formula; control characters cannot be stored
                 cell.value = "".join(character for character in value if character.isprintable()) or None
                 cell.data_type = "s" if cell.value is not None else "n"
             else:

@@ -13,21 +13,21 @@ _MOST = 200
 
 
 def motion_sources(motions: Sequence[MotionSummary]) -> ReportTable:
-    """Return the table of the source and the processing steps of motions."""
+    """Return the table of sources and processing steps of motions."""
     rows = provenance_rows(motions)
     note = f"{len(rows) - _MOST} more motions; the JSON output lists all." if len(rows) > _MOST else ""
     return table("", ["motion", "source and processing steps, in order"], rows[:_MOST], note)
 
 
 def peak_display(motions: Sequence[MotionSummary], **own: Quantity) -> Display:
-    """Return the display of peaks in g, of ground or floor motions; own: quantities of this table only."""
+    """Return the display of peaks of ground or floor motions in g, with quantities of this table only."""
     labels = zip(("pga", "pgv"), peak_names(motion.support for motion in motions), strict=True)
     peaks = {name: replace(QUANTITIES[name], label=label, digits=".3g") for name, label in labels}
     return Display(acceleration="g", own=peaks | own)
 
 
 def motion_table(prediction: Prediction) -> ReportTable:
-    """Return the table of motions with the probabilities under each motion."""
+    """Return the table of motions with the probabilities under every motion."""
     rows = [
         {
             "motion": motion.name, "pga": motion.peak, "pgv": motion.peak_velocity, "duration": motion.duration,

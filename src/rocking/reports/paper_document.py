@@ -1,4 +1,4 @@
-"""The report of `rocking reproduce`: recomputed results, and the content of the report by section."""
+"""Report of `rocking reproduce`: recomputed results, and content of the report by section."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -72,7 +72,7 @@ TABLES = {
     "Table 2": ("table2",),
     "Table 3": ("S", "M", "L"),
 }
-"""The paper's tables and their data sets."""
+"""Tables of the paper and their data sets."""
 
 PRINTED_CORRELATION = {"table2": "0.946", "S": "0.998", "M": "0.996", "L": "0.998"}  # section 3.2 of the paper
 _TITLES = {"table2": "Table 2", "S": "Table 3, S", "M": "Table 3, M", "L": "Table 3, L"}
@@ -83,15 +83,15 @@ _MODELS = (("Housner", Housner()), ("KED", Ked()))
 class Reproduction:
     """The paper, recomputed."""
 
-    tables: dict[str, tuple[TableRow, ...]]  # table to rows, printed and recomputed
+    tables: dict[str, tuple[TableRow, ...]]  # rows by table, printed and recomputed
     claims: tuple[Claim, ...]  # claims with verdicts
     errata: tuple[Erratum, ...]  # differences found by recomputing
     league: tuple[LeagueRow, ...]  # all models compared with all measurements
     calibration: Calibration  # the calibrated default, with independent measurements
-    coverage: Coverage  # coverage of its intervals for data not used in the fit
+    coverage: Coverage  # coverage of the intervals for data not used in the fit
     hierarchy: HierarchicalCalibration  # calibration with effects of laboratories, interfaces and blocks
     left_out: tuple[LeftOut, ...]  # groups compared with predictions from the other groups
-    data: DataSet  # measurements of league and calibrations
+    data: DataSet  # measurements for the ranking and the calibrations
     verdict: tuple[str, ...]  # conclusions as sentences
 
     def answer(self) -> Answer:
@@ -121,7 +121,7 @@ def _row_answer(row: TableRow) -> dict[str, Any]:
 
 
 def reproduce(measurements: DataSet | None = None) -> Reproduction:
-    """Recompute the paper; measurements: data of league and calibration, by default those of the paper."""
+    """Recompute the paper. `measurements` are data for ranking and calibration, by default those of the paper."""
     data = all_measurements() if measurements is None else measurements
     standings = league(measurements=data)
     tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}

@@ -18,8 +18,8 @@ Figures = dict[str, Callable[[], Any]]
 def write_folder(
     document: Document, figures: Figures, answer: Answer, folder: Path, step: Step
 ) -> tuple[list[Path], list[str]]:
-    """Write report, tables, figures and numbers; there are three steps more than figures."""
-    # returns the main files, and messages on files that need a missing package, with its installation
+    """Write report, tables, figures and numbers. The number of steps is the number of figures plus three."""
+    # returns the main files, and messages about files that need a missing package, with the installation command
     pictures, tables = folder / "figures", folder / "tables"
     with writing(f"to {folder}"):
         for directory in (pictures, tables):
@@ -53,7 +53,7 @@ def _draw(figures: Figures, folder: Path, step: Step) -> None:
         step(stem.replace("_", " "))
         figure = draw()
         write(figure, folder / f"{stem}.png")
-        figure.set_layout_engine(None)  # the layout is final, and serves the other format too
+        figure.set_layout_engine(None)  # the layout is final and is also used for the other format
         write(figure, folder / f"{stem}.svg")
 
 

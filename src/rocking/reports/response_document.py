@@ -1,4 +1,4 @@
-"""The report of one body under one motion: body, energy loss of an impact, response, and how to repeat the run."""
+"""Report of one body under one motion: body, energy loss of an impact, response, and commands for a new run."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -51,10 +51,10 @@ class ResponseReport:
     """Inputs and results of a report."""
 
     impact: ImpactAnswer  # body and coefficients
-    motion: Motion | None  # the motion, scaled; None for free rocking
-    measures: dict[str, Measure]  # its intensity measures
-    responses: Mapping[str, Response]  # by label of the restitution; at least one
-    refused: Mapping[str, str]  # reason for a missing response, by label
+    motion: Motion | None  # the scaled motion; None for free rocking
+    measures: dict[str, Measure]  # intensity measures of the motion
+    responses: Mapping[str, Response]  # responses by label of the restitution; at least one response
+    refused: Mapping[str, str]  # reasons for missing responses, by label
     friction: float  # coefficient of friction between body and ground [-]
     name: str = ""  # name of the body
     date: str = ""  # day of the report
@@ -64,7 +64,7 @@ class ResponseReport:
 
 
 PICTURES = ("body", "coefficients", "motion", "response")
-"""Stems of the pictures of a report; free rocking has no ``motion``."""
+"""Stems of the pictures of a report. Free rocking has no picture ``motion``."""
 
 
 def response_document(results: ResponseReport) -> Document:

@@ -1,4 +1,4 @@
-"""Agreement of several models, a restitution as text, and the data of a motion."""
+"""Agreement of several models, text of a restitution, and data of a motion."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -96,11 +96,11 @@ def restitution_words(label: str) -> str:
 def measures_of(
     motion: GroundMotion | Pulse, samples: GroundMotion, curves: Traces | None = None
 ) -> dict[str, Measure]:
-    """Return the intensity measures of a motion; peaks of a pulse come from its formulas."""
+    """Return the intensity measures of a motion. Peaks of a pulse result from its formulas."""
     measures = intensity_measures(samples)
     if not isinstance(motion, Pulse):
         return measures
-    # the formulas give these three exactly
+    # the formulas give these three measures exactly
     peaks = (traces(motion) if curves is None else curves).peaks
     exact = {f"pg{name[0]}": abs(value) for name, (_, value) in peaks.items()}
     return measures | {key: replace(measures[key], value=value) for key, value in exact.items()}

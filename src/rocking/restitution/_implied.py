@@ -1,4 +1,4 @@
-"""Implications of a coefficient of restitution: impulse position, friction demand and energy loss."""
+"""Mechanical implications of a coefficient of restitution: impulse position, friction demand and energy loss."""
 
 import math
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ from rocking.bodies import Body
 from rocking.conventions import Foot, opposite
 from rocking.messages import Message
 
-# models exactly at a bound meet it to rounding (Housner has k = 1)
+# a model exactly at a bound satisfies the bound only to rounding (Housner has k = 1)
 _SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Implication:
-    """Mechanics behind one coefficient of one body.
+    """Mechanical implications of one coefficient of one body.
 
     Parameters
     ----------
@@ -27,13 +27,13 @@ class Implication:
     impulse_x : float
         Position of the impulse on the ground in the user's coordinates [m].
     friction_demand : float
-        Friction coefficient below which the foot slips during the impact [-].
+        Friction demand of the impact [-]. With a smaller coefficient of friction, the foot slips during the impact.
     energy_loss : float
-        Energy loss of the impact over the kinetic energy before, 1 - r^2 I_O'/I_O [-].
+        Energy loss over the kinetic energy before the impact, 1 - r^2 I_O'/I_O [-].
     largest_coefficient : float
         Energy bound sqrt(I_O / I_O') on the coefficient [-].
     within_base, within_energy : bool
-        True if the impulse acts on the base; true if the impact creates no energy.
+        `within_base` is True if the impulse acts on the base. `within_energy` is True if the impact creates no energy.
     """
 
     coefficient: float
@@ -48,7 +48,7 @@ class Implication:
 
     @property
     def admissible(self) -> bool:
-        """True if one impulse on the base can produce the coefficient without creating energy."""
+        """True if one impulse on the base can give the coefficient without creating energy."""
         return self.within_base and self.within_energy
 
     @property
@@ -67,8 +67,8 @@ class Implication:
 def energy_bound(body: Body, foot: Foot) -> float:
     """Return the largest coefficient of restitution at which an impact creates no energy.
 
-    The bound is sqrt(I_old / I_new) with the moments of inertia about the feet; it exceeds 1 for one of two different
-    feet [-].
+    The bound is sqrt(I_old / I_new) with the moments of inertia about the feet [-]. If the feet differ, the bound
+    exceeds 1 for one foot.
 
     >>> from rocking import Block
     >>> energy_bound(Block(width=1.0, height=2.0), "left")

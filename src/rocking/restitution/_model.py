@@ -1,4 +1,4 @@
-"""Base classes of restitution models: a coefficient for an impact, with reference, assumptions, domain and defects."""
+"""Base classes of restitution models: coefficient of an impact, reference, assumptions, domain and defects."""
 
 import math
 from abc import ABC, abstractmethod
@@ -20,7 +20,7 @@ _FLATTEST, _TALLEST = 1e-18, 1e18
 
 
 class Flag(Enum):
-    """Reason for a coefficient that differs from the equation of its model; the value is a sentence for reports."""
+    """Reason why a coefficient differs from the equation of its model. The value is a sentence for reports."""
 
     STOPS = Message("the model gives r <= 0: the body stops at the impact (r = 0) and does not step onto the new foot")
 
@@ -34,11 +34,11 @@ class Restitution:
     model : RestitutionModel
         The model.
     raw : float
-        Value of the model's equation, also outside its domain [-].
+        Value of the equation of the model [-]. It may be outside the domain of the model.
     coefficient : float
         theta_dot_after / theta_dot_before, within the domain of the model [-].
     flags : tuple of Flag
-        Reasons for a difference of `coefficient` and `raw`; empty inside the domain.
+        Reasons for a difference between `coefficient` and `raw`; empty inside the domain.
     """
 
     model: "RestitutionModel"
@@ -50,38 +50,38 @@ class Restitution:
 class RestitutionModel(ABC):
     """Base class of restitution models, published or derived.
 
-    A model of your own is a subclass with `name` and `raw_coefficient`; see the documentation, "add a model".
+    A user-defined model is a subclass with `name` and `raw_coefficient`. See the documentation, "add a model".
 
     Attributes
     ----------
     name : str
         Name in the registry and on the command line.
     title : str
-        The model in one line.
+        Description of the model in one line.
     short_name, legend : str
-        Name in sentences, and in the legend of a picture if different; by default `name`.
+        Name in sentences, and name in the legend of a picture. By default `name`.
     colour : str
-        Colour of its curves; a model without colour is not part of comparison plots.
+        Colour of the curves. A model without colour is not part of comparison plots.
     linestyle : str or tuple
-        Line style of its curves for matplotlib, distinct in grey print.
+        Line style of the curves for matplotlib, distinct in grey print.
     reference : str
         Publication with DOI, or the derivation in this project.
     assumptions, known_defects : tuple of str
-        Assumptions of the model, and cases in which they are known to fail.
+        Assumptions of the model, and known cases in which the assumptions fail.
     domain : str
-        Bodies to which the model applies, and its result for others.
+        Bodies to which the model applies, and its result for other bodies.
     inertia_only : bool
-        True if the model depends on mass, centre, polar inertia and feet only.
+        True if the model depends only on mass, centre, polar inertia and feet.
     can_stop : bool
-        True if the equation can give r <= 0, for a body that stops at the impact.
+        True if the equation can give r <= 0, which means that the body stops at the impact.
     keeps_energy : bool
         True if no impact creates energy, including impacts onto the longer lever.
     sees_old_foot : bool
-        True if an impact with coincident feet, which is no impact, has no energy loss.
+        True if the model gives no energy loss for coincident feet, for which there is no impact.
     slender_limit : float
         Limit of the coefficient for slender rectangles [-].
     trials : tuple of str
-        Parameters, in the form of a label, for the common tests of all models.
+        Parameters for the common tests of all models, in the form of a label.
 
     Examples
     --------
@@ -114,7 +114,7 @@ class RestitutionModel(ABC):
 
     @abstractmethod
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
-        """Return the value of the model's equation for a body, without the limits of its domain.
+        """Return the value of the equation of the model for a body. The limits of the domain are not applied.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class RestitutionModel(ABC):
         """
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the values of the model's equation for homogeneous rectangles.
+        """Return the values of the equation of the model for homogeneous rectangles.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class RestitutionModel(ABC):
         Returns
         -------
         float
-            theta_dot_after / theta_dot_before, zero for a body that stops [-].
+            theta_dot_after / theta_dot_before [-]; zero for a body that stops.
         """
         return self.evaluate(body, foot).coefficient
 
@@ -198,7 +198,7 @@ class RestitutionModel(ABC):
         Returns
         -------
         ndarray
-            theta_dot_after / theta_dot_before, of equal shape, zero for a body that stops [-].
+            theta_dot_after / theta_dot_before, with equal shape [-]; zero for a body that stops.
 
         Raises
         ------
@@ -233,7 +233,7 @@ class RestitutionModel(ABC):
         ratios = checks.real_array("slenderness_ratio", slenderness)
         flat = ratios.ravel()
         result = np.empty_like(flat)
-        # pieces fit in the cache, since moving the data costs more than the arithmetic
+        # pieces fit in the cache, because moving the data takes longer than the arithmetic
         for start in range(0, flat.size, _PIECE):
             piece = flat[start : start + _PIECE]
             smallest = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, array=ratios)
@@ -241,7 +241,10 @@ class RestitutionModel(ABC):
         return result.reshape(ratios.shape)
 
     def _fill(self, slenderness: FloatArray, smallest: float, out: FloatArray) -> None:
-        """Write the coefficients of a piece; smallest: its smallest slenderness; fast models override it."""
+        """Write the coefficients of a piece.
+
+        `smallest` is its smallest slenderness. Fast models override this method.
+        """
         raw = self.raw_of_slenderness(slenderness)
         if not math.isfinite(float(raw.sum())):
             raise InvalidValueError(
@@ -251,7 +254,7 @@ class RestitutionModel(ABC):
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Parameters of the model and their values; empty for most models."""
+        """Parameters of the model with their values; empty for most models."""
         try:
             return {field.name: getattr(self, field.name) for field in fields(self) if field.init}  # type: ignore[arg-type]
         except TypeError:
@@ -259,17 +262,17 @@ class RestitutionModel(ABC):
 
     @property
     def label(self) -> str:
-        """Name with parameters, in the form for the command line: ``shifted-impulse:k=0.6``."""
+        """Name with parameters in the form of the command line, such as ``shifted-impulse:k=0.6``."""
         values = ",".join(f"{name}={value:.4g}" for name, value in self.parameters.items())
         return f"{self.name}:{values}" if values else self.name
 
 
 class InertiaModel(RestitutionModel):
-    """Base class of models of the impact geometry, for one body or arrays of bodies."""
+    """Base class of models that depend on the impact geometry, for one body or arrays of bodies."""
 
     @abstractmethod
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Return the values of the model's equation for impacts.
+        """Return the values of the equation of the model for impacts.
 
         Parameters
         ----------
@@ -279,7 +282,7 @@ class InertiaModel(RestitutionModel):
         Returns
         -------
         ndarray
-            Values, of the shape of the fields of the geometry [-].
+            Values [-], with the shape of the fields of the geometry.
         """
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:

@@ -1,4 +1,4 @@
-"""The calibrated default: a factor times a shifted impulse, with the posterior of the published measurements."""
+"""The calibrated default: a factor times the shifted-impulse model, with the posterior of published measurements."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,12 +14,12 @@ from rocking.restitution.shifted_impulse import shifted
 
 NAMES = ("eta", "k", "s", "gamma")
 KEPT = Path(__file__).parent / "data" / "calibrated.npz"
-"""Posterior of `rocking.evidence.calibrate_hierarchy`, written by `make calibration`; a test compares both."""
+"""Posterior of `rocking.evidence.calibrate_hierarchy`, written by `make calibration`. A test compares both."""
 
 
 @lru_cache(maxsize=2)
 def kept(path: Path) -> dict[str, Any]:
-    """Return a stored posterior: samples, marginals, joint weights of eta and k, summary, and other arrays.
+    """Return a stored posterior: samples, marginals, joint weights of eta and k, summary and further arrays.
 
     The function `arrays_of` in `rocking.evidence.calibration` writes the file.
     """
@@ -37,8 +37,8 @@ def kept(path: Path) -> dict[str, Any]:
 class Calibrated(InertiaModel):
     """Expected coefficient of a body, from the posterior of the published measurements.
 
-    The coefficient is the mean over a factor eta and a position k of the impulse. For its uncertainty, and for the
-    scatter of single bodies, see `rocking.evidence.restitution_distribution`.
+    The coefficient is the mean over a factor eta and an impulse position k. For the uncertainty of the coefficient and
+    the scatter of single bodies, see `rocking.evidence.restitution_distribution`.
 
     Examples
     --------
@@ -65,25 +65,26 @@ class Calibrated(InertiaModel):
     sees_old_foot = False
 
     def __post_init__(self) -> None:
-        """Set the limit of slender bodies, which is the mean factor."""
+        """Set the limit for slender bodies, which is the mean factor."""
         object.__setattr__(self, "slender_limit", float(sum(weight * eta for eta, _, weight in _nodes())))
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Return the mean over the posterior, with each node limited by the energy bound [-]."""
+        """Return the mean over the posterior [-]. The energy bound limits every node."""
         bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)  # Eq. 29
         means = (weight * np.minimum(eta * shifted(geometry, k), bound) for eta, k, weight in _nodes())
         return np.asarray(sum(means))  # Eq. 293
 
 
 def scatter(mean: FloatArray, floor: FloatArray | float, slope: FloatArray | float) -> FloatArray:
-    """Return the standard deviation of a measured coefficient around its prediction, floor (1 - mean)^slope [-]."""
+    """Return the standard deviation of measured coefficients about the prediction, floor (1 - mean)^slope [-]."""
     return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
 
 
 def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> FloatArray:
     """Return random coefficients from the posterior of the measurements, within the energy bound [-].
 
-    which: position in the samples of the posterior; level: probability within the scatter; both in [0, 1).
+    `which` is the position in the samples of the posterior, and `level` the probability within the scatter. Both are in
+    [0, 1).
     """
     from scipy.special import ndtr, ndtri
 
@@ -94,11 +95,11 @@ def drawn(geometry: ImpactGeometry, which: FloatArray, level: FloatArray) -> Flo
     deviation = scatter(mean, floor, slope)
     low, high = ndtr(-mean / deviation), ndtr((bound - mean) / deviation)
     r = mean + deviation * ndtri(low + (high - low) * level)
-    return np.asarray(np.round(np.clip(r, 0.0, bound), 12))  # equal on all processors, in spite of different powers
+    return np.asarray(np.round(np.clip(r, 0.0, bound), 12))  # rounded, because powers depend on the processor
 
 
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[tuple[Any, ...], ...]:
-    """Return the mean factor, impulse position and weight for each position in the samples."""
+    """Return mean factor, impulse position and weight for every position in the samples."""
     eta, k = kept(KEPT)["samples"][:, :2].T
     return tuple((eta[k == node].mean(), node, (k == node).mean()) for node in map(np.float64, sorted(set(k.tolist()))))

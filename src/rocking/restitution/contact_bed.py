@@ -15,11 +15,11 @@ from rocking.restitution._model import InertiaModel, Restitution
 from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table, stated_error
 from rocking.restitution.impact import ImpactGeometry
 
-_NEARLY = 1.02  # ratio of friction to demand above which the base sticks during the impact
+_NEARLY = 1.02  # for larger ratios of friction to demand, the base sticks during the impact
 
 
 class CoefficientSource(Enum):
-    """Source of a coefficient of the contact bed; the value is a sentence for reports."""
+    """Source of a coefficient of the contact bed. The value is a sentence for reports."""
 
     TABLE = "interpolated in the table of resolved impacts, within its stated error"
     RESOLVED = "resolved in time for this body on this bed, outside the range of the table"
@@ -27,37 +27,37 @@ class CoefficientSource(Enum):
 
 @dataclass(frozen=True, slots=True)
 class BedRestitution(Restitution):
-    """Coefficient of restitution with its source, table or resolved impact."""
+    """Coefficient of restitution with its source: the table, or an impact resolved in time."""
 
-    source: CoefficientSource = CoefficientSource.TABLE  # table, or an impact resolved in time
+    source: CoefficientSource = CoefficientSource.TABLE  # the table, or an impact resolved in time
     stated_error: float = 0.0  # error of the table, or of the integration of the impact [-]
 
 
 @dataclass(frozen=True)
 class ContactBedModel(InertiaModel):
-    """Impulse position by a bed of Kelvin-Voigt points: kappa times the half base from the middle of the base.
+    """Impulse position from a bed of Kelvin-Voigt points: kappa times half the base from the middle of the base.
 
-    ``r = (rho - s a) / (rho + s (2 - a))`` with rho = (I_C + m h^2) / (m w^2), w half the distance of the feet,
-    a the old lever and s the impulse ahead of the plumb line over w; kappa is interpolated in a table of impacts
-    resolved in time. Two points give Housner's impact, many damped points an impulse near the middle of the half base.
-    Impacts outside the table, or with sliding, are resolved in time, in one millisecond each: `evaluate` returns the
-    source.
+    The model is ``r = (rho - s a) / (rho + s (2 - a))`` with rho = (I_C + m h^2) / (m w^2), w half the distance of the
+    feet, a the old lever over w, and s the distance of the impulse ahead of the plumb line over w. A table of impacts
+    resolved in time gives kappa by interpolation. Two points give Housner's impact. Many damped points give an impulse
+    near the middle of half the base. Impacts outside the table or with sliding are resolved in time, which takes about
+    one millisecond per impact. `evaluate` returns the source.
 
     Parameters
     ----------
     points : int
-        Number of contact points from foot to foot; the table has 2, 3, 5, 11 and 41 [-].
+        Number of contact points from foot to foot [-]. The table has 2, 3, 5, 11 and 41 points.
     damping : float
-        Damping ratio zeta = c / (2 sqrt(k m)) of the bed; 0.05 to 5 in the table [-].
+        Damping ratio zeta = c / (2 sqrt(k m)) of the bed [-]. The table has values from 0.05 to 5.
     hardness : float
-        Landing speed of the new foot times sqrt(k / m) over gravity; 30 to 1000 in the table [-]. A harder bed and a
-        faster impact are equivalent.
+        Landing speed of the new foot times sqrt(k / m) over gravity [-]. The table has values from 30 to 1000. A harder
+        bed and a faster impact are equivalent.
     friction : float
-        Coefficient of friction; infinite by default. A base sticks for values above m h w / (I_C + m h^2), w the lever
-        of the new foot, for all numbers of points; for smaller values the impact is resolved [-].
+        Coefficient of friction [-]; infinite by default. For all numbers of points, a base sticks for values above m h
+        w / (I_C + m h^2) with the lever w of the new foot. For smaller values, the impact is resolved in time.
     allowed_error : float
-        Largest stated error for the use of the table; for damping >= 1 the error is 0.001 to 0.002, largest for squat
-        bodies [-].
+        Largest stated error for the use of the table [-]. For damping >= 1, the error is 0.001 to 0.002, and is largest
+        for squat bodies.
 
     Raises
     ------
@@ -120,19 +120,19 @@ class ContactBedModel(InertiaModel):
 
     @property
     def label(self) -> str:
-        """Name with the parameters that differ from their defaults: ``contact-bed:points=5``."""
+        """Name with the parameters that differ from their defaults, such as ``contact-bed:points=5``."""
         defaults = {field.name: field.default for field in fields(self)}
         values = ",".join(f"{name}={value:.4g}" for name, value in self.parameters.items() if value != defaults[name])
         return f"{self.name}:{values}" if values else self.name
 
     @property
     def tabulated(self) -> bool:
-        """True if the bed is inside the table; a squat or sliding body on it may still be outside."""
+        """True if the bed is inside the table. A squat or sliding body on this bed may still be outside."""
         inside = self.points in POINTS and DAMPING[0] <= self.damping <= DAMPING[1]
         return inside and HARDNESS[0] <= self.hardness <= HARDNESS[1]
 
     def evaluate(self, body: Body, foot: Foot = "right") -> BedRestitution:
-        """Return the coefficient of a body with its flags and source."""
+        """Return the coefficient of a body with flags and source."""
         result = super().evaluate(body, foot)
         geometry = ImpactGeometry.of_body(body, foot)
         read = bool(self._uses_table(geometry))
@@ -155,7 +155,7 @@ class ContactBedModel(InertiaModel):
         return np.asarray(np.minimum(r, np.sqrt(geometry.old_gyration / geometry.new_gyration)))  # Eq. 29
 
     def _uses_table(self, geometry: ImpactGeometry) -> BoolArray:
-        """Return True if the table applies: bed inside, stated error small enough, base without sliding."""
+        """Return True if the table applies: the bed is inside, the stated error is small, and the base sticks."""
         longest = np.maximum(geometry.old_lever, geometry.new_lever)
         need = geometry.height * longest / geometry.base_gyration
         sticks = self.friction >= _NEARLY * need
@@ -180,7 +180,7 @@ class ContactBedModel(InertiaModel):
 def tabulated(
     geometry: ImpactGeometry, points: int, damping: FloatArray | float, hardness: FloatArray | float
 ) -> FloatArray:
-    """Return the coefficients from the table for arrays of beds, broadcast, within the energy bound [-]."""
+    """Return the coefficients from the table for broadcast arrays of beds, within the energy bound [-]."""
     half = 0.5 * (geometry.old_lever + geometry.new_lever)
     gyration = geometry.base_gyration / half**2
     old, new = geometry.old_lever / half, geometry.new_lever / half
@@ -188,7 +188,7 @@ def tabulated(
     bed = table.bed(points, damping, hardness)
     arm = table.position(bed, 1.0 / (1.0 + gyration), old - 1.0) - (old - 1.0)
     denominator = gyration + arm * new
-    # for a plumb line far outside the table the impulse could be behind it
+    # for a plumb line far outside the table, the impulse could be behind the plumb line
     bound = np.sqrt(geometry.old_gyration / geometry.new_gyration)
     # Eq. 19
     r = np.where(denominator > 0.0, (gyration - arm * old) / np.where(denominator > 0.0, denominator, 1.0), bound)

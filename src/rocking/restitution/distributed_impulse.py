@@ -1,4 +1,4 @@
-"""Distributed impulse: contact pressure follows the downward speed to the power q, over the base."""
+"""Distributed impulse: contact pressure is proportional to the downward speed to the power q, over the base."""
 
 import math
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ _NODES, _WEIGHTS = gauss_legendre(60)
 
 @dataclass(frozen=True)
 class DistributedImpulse(InertiaModel):
-    """Flat base that lands point after point, with pressure ~ (downward speed)^q while a point descends.
+    """Flat base that lands one point after another. The pressure is ~ (downward speed)^q as long as a point descends.
 
-    ``r = exp(-Int kappa s_c / (1 + kappa s_c sigma) d(sigma))`` over the base, sigma the point that has just
-    stopped descending, s_c(sigma) the centre of the pressure ahead of it, kappa = m / (I_C + m h^2). The result is a
-    closed form for contact of the full base, and a quadrature for separate contact areas.
+    The model is ``r = exp(-Int kappa s_c / (1 + kappa s_c sigma) d(sigma))`` over the base. Here sigma is the point
+    that has just stopped descending, s_c(sigma) is the centre of the pressure ahead of this point, and kappa = m / (I_C
+    + m h^2). The result is a closed form for contact of the full base, and a quadrature for separate contact areas.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class DistributedImpulse(InertiaModel):
         return distributed(geometry, np.asarray(self.q))
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
-        """Return the closed form for contact of the full base, otherwise the quadrature over its areas [-]."""
+        """Return the closed form for contact of the full base, otherwise the quadrature over the contact areas [-]."""
         geometry = ImpactGeometry.of_body(body, foot)
         patches = contact_of(body, foot)
         if is_whole_base(patches, geometry):
@@ -91,12 +91,12 @@ class DistributedImpulse(InertiaModel):
 
 
 def distributed(geometry: ImpactGeometry, q: FloatArray) -> FloatArray:
-    """Return the coefficients of bases in contact from foot to foot, for arrays of exponents, broadcast [-]."""
+    """Return the coefficients of bases in contact from foot to foot, for broadcast arrays of exponents [-]."""
     start, end = -geometry.old_lever, geometry.new_lever
     c = 1.0 / (geometry.base_gyration * (q + 2.0))
     e = c * (q + 1.0) * end
     lowest = np.clip(-0.5 * (q + 1.0) * end, start, end)
-    # D = 1 + kappa s_c sigma > 0: the stopped points rise
+    # D = 1 + kappa s_c sigma > 0, because the stopped points rise
     leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
@@ -106,7 +106,7 @@ def distributed(geometry: ImpactGeometry, q: FloatArray) -> FloatArray:
 
 def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) -> FloatArray:
     force, moment = np.zeros_like(sigma), np.zeros_like(sigma)
-    # distances over the largest one: powers neither overflow nor depend on the unit
+    # distances are divided by the largest distance, so that powers do not overflow or depend on the unit
     reach = np.maximum(patches[-1, 1] - sigma, 0.0) if patches.size else np.zeros_like(sigma)
     ahead = reach > 0.0
     scale = np.where(ahead, reach, 1.0)
@@ -114,7 +114,7 @@ def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) 
         near, far = np.maximum(a - sigma, 0.0) / scale, np.maximum(b - sigma, 0.0) / scale
         force += _power_difference(near, far, q + 1.0)
         moment += _power_difference(near, far, q + 2.0)
-    # no flat stretch ahead: the impulse acts at the foot
+    # without a flat stretch ahead, the impulse acts at the foot
     centre = np.divide(moment, force, out=np.zeros_like(sigma), where=force > 0.0)
     return np.where(force > 0.0, sigma + reach * centre, end)  # Eq. 111
 

@@ -17,7 +17,7 @@ class Fixed(RestitutionModel):
     Parameters
     ----------
     r : float
-        Coefficient of restitution, ratio of velocities, not of energies [-].
+        Coefficient of restitution, the ratio of velocities (not of energies) [-].
 
     Raises
     ------

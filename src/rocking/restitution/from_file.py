@@ -20,11 +20,11 @@ from rocking.restitution._model import RestitutionModel
 from rocking.restitution.registry import built, model, number, parameters_in, put, withdraw
 
 _WORD = re.compile(r"(?:(?P<eta>[^*]+)\*)?(?P<path>.+?\.py)(?::(?P<name>\w*)(?::(?P<parameters>.*))?)?")
-_VARIABLE = "ROCKING_MODELS"  # environment variable: a file with models, registered by name
+_VARIABLE = "ROCKING_MODELS"  # environment variable with the path of a file with models, which are registered by name
 _OWN = "own model, "
 _ROUNDING = 1e-9
 _IMPACT = "for h/b = {ratio:g}, feet at {left:g} and {right:g} m, onto the {onto} one"
-# colours and line styles of models without them, different from those of the package
+# colours and line styles for models that define none; they differ from those of the package
 _LOOKS = (
     ("#a8642a", (0, (9, 2))),
     ("#2f8f83", (0, (2, 3))),
@@ -33,11 +33,11 @@ _LOOKS = (
 )
 _SOURCES: dict[type, tuple[str, str]] = {}
 _FILES: set[str] = set()
-_REGISTERED: dict[str, tuple[str, tuple[type[RestitutionModel], ...]]] = {}  # source and models by file
+_REGISTERED: dict[str, tuple[str, tuple[type[RestitutionModel], ...]]] = {}  # source text and models by file
 
 
 def file_of(word: str) -> str | None:
-    """Return the file in the name of a model; None for other names.
+    """Return the file in the name of a model; None for names without a file.
 
     >>> file_of("0.98*models/mine.py:Mine:share=0.3"), file_of("0.98*ked")
     ('models/mine.py', None)
@@ -47,7 +47,7 @@ def file_of(word: str) -> str | None:
 
 
 def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
-    """Return the model of a name with a file; the hash of the file identifies its class."""
+    """Return the model of a name with a file. The hash of the file identifies the class of the model."""
     match = _WORD.fullmatch(word)
     file = Path(file_of(word) or word) if path is None else path
     try:
@@ -65,14 +65,14 @@ def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
 
 
 def register_own() -> None:
-    """Register all models of the file in the environment variable ROCKING_MODELS after checks.
+    """Check and register all models of the file that the environment variable ROCKING_MODELS names.
 
-    After a change of the file, its present models replace its former ones.
+    After a change of the file, its present models replace its former models.
     """
     path = os.environ.get(_VARIABLE, "")
     if not path:
         return
-    path = os.environ[_VARIABLE] = str(Path(path).absolute())  # processes of studies start in other folders
+    path = os.environ[_VARIABLE] = str(Path(path).absolute())  # studies start processes in other folders
     before, old = _REGISTERED.get(path, (None, ()))
     try:
         source = _own_source(path)
@@ -82,7 +82,7 @@ def register_own() -> None:
     except RockingError:
         _REGISTERED.pop(path, None)
         raise
-    finally:  # a name in both versions stays registered
+    finally:  # a name that is in both versions stays registered
         for kind in old if _REGISTERED.get(path) != (before, old) else ():
             withdraw(kind)
 
@@ -97,7 +97,7 @@ def _own_source(path: str) -> str:
 
 
 def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...]) -> tuple[type[RestitutionModel], ...]:
-    """Register all models of a file in place of its former ones; none of them after an error."""
+    """Register all models of a file instead of its former models. After an error, none is registered."""
     with blamed(path):
         kinds = [registered for registered in _kinds(source, path).values() if not inspect.isabstract(registered)]
         if not kinds:
@@ -117,16 +117,16 @@ def _registered(source: str, path: str, old: tuple[type[RestitutionModel], ...])
             kind.title = kind.title or name
             if not kind.colour:
                 kind.colour, kind.linestyle = _LOOKS[position % len(_LOOKS)]
-            if not kind.reference.startswith(_OWN):  # an unchanged file has its reference already
+            if not kind.reference.startswith(_OWN):  # in an unchanged file, the reference is already extended
                 kind.reference = f"{_OWN}{_signed(source, path)}: {kind.reference}"
     return tuple(kinds)
 
 
 def origin_of(label: str) -> dict[str, str]:
-    """Return the file of a user's model, for the provenance of results; empty for other models."""
+    """Return the file of a user-defined model for the provenance of results; empty for other models."""
     name = label.rpartition("*")[2].partition(":")[0]
     sources = [source for kind, source in _SOURCES.items() if getattr(kind, "name", None) == name]
-    return {"restitution_file": _signed(*sources[-1])} if sources else {}  # the latest one
+    return {"restitution_file": _signed(*sources[-1])} if sources else {}  # the latest version
 
 
 def _signed(source: str, where: str) -> str:
@@ -134,7 +134,7 @@ def _signed(source: str, where: str) -> str:
 
 
 def _check_promises(candidate: RestitutionModel) -> None:
-    """Refuse a model that violates common properties of models, on rectangles and asymmetric bodies."""
+    """Raise an error if a model violates common properties of models, for rectangles and asymmetric bodies."""
     ratios = [0.05, 0.3, 1.0, 2.0, 4.0, 10.0, 100.0]
     for ratio, r in zip(ratios, candidate.of_slenderness(ratios).tolist(), strict=True):
         if not 0.0 <= r <= 1.0 + _ROUNDING:
@@ -169,7 +169,7 @@ def _check_promises(candidate: RestitutionModel) -> None:
 
 @contextmanager
 def blamed(where: str) -> Iterator[None]:
-    """Add the file of a user's model to its errors."""
+    """Add the file of a user-defined model to errors of the model."""
     try:
         yield
     except RockingError:
@@ -183,7 +183,7 @@ def blamed(where: str) -> Iterator[None]:
 
 
 def in_own_model(error: BaseException) -> str:
-    """Return file, line and text of an error in a user's model; empty for other errors."""
+    """Return file, line and text of an error in a user-defined model; empty for other errors."""
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in _FILES]
     return f"{frames[-1].filename}, line {frames[-1].lineno}: {type(error).__name__}: {error}" if frames else ""
 
@@ -201,7 +201,7 @@ def _kind(source: str, where: str, name: str) -> type[RestitutionModel]:
 
 
 def _kinds(source: str, where: str) -> dict[str, type[RestitutionModel]]:
-    """Return the models of a file by name; each can be pickled with its source."""
+    """Return the models of a file by name. A model can be pickled together with its source."""
     with blamed(where):
         module = _module(source, where)
     kinds = {
@@ -211,13 +211,13 @@ def _kinds(source: str, where: str) -> dict[str, type[RestitutionModel]]:
     }
     for kind in kinds.values():
         _SOURCES.pop(kind, None)
-        _SOURCES[kind] = (source, where)  # the latest one
+        _SOURCES[kind] = (source, where)  # the latest version
         copyreg.pickle(kind, _reduced)
     return kinds
 
 
 def _module(source: str, where: str) -> ModuleType:
-    """Return the module of a file, run once per content, with a name from its hash."""
+    """Return the module of a file, with a name from its hash. The file is run once per content."""
     name = f"rocking_model_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
     if name not in sys.modules:
         module = ModuleType(name)
@@ -225,7 +225,7 @@ def _module(source: str, where: str) -> ModuleType:
         _FILES.add(where)
         sys.modules[name] = module
         try:
-            exec(compile(source, where, "exec"), module.__dict__)  # code of the user
+            exec(compile(source, where, "exec"), module.__dict__)  # runs code of the user
         except BaseException:
             del sys.modules[name]
             raise

@@ -1,4 +1,4 @@
-"""The sentence that names the restitution model of a result, and the reason for it."""
+"""Sentence with the restitution model of a result and the reason for the model."""
 
 from rocking.conventions import COMPARED_RESTITUTIONS, DEFAULT_RESTITUTION
 from rocking.messages import Message
@@ -16,7 +16,7 @@ _STATED = "Restitution model of the result: {model}, as stated in the input."
 
 
 def label_of(name: str, *, in_space: bool) -> str:
-    """Return the label of a restitution model in a result; in_space: True for a 3D body.
+    """Return the label of a restitution model in a result. `in_space` is True for a 3D body.
 
     >>> label_of("ked", in_space=True), label_of("ked", in_space=False), label_of("0.9", in_space=True)
     ('ked-3d', 'ked', '0.9')
@@ -25,7 +25,7 @@ def label_of(name: str, *, in_space: bool) -> str:
 
 
 def headline(label: str, *, in_space: bool = False) -> Message:
-    """Return the sentence with the model of a result and its reason; in_space: True for a 3D body.
+    """Return the sentence with the model of a result and its reason. `in_space` is True for a 3D body.
 
     >>> str(headline("ked"))
     'Restitution model of the result: ked, as stated in the input.'

@@ -1,4 +1,4 @@
-"""Horizontal momentum: vertical velocities vanish, angular momentum of horizontal velocities is conserved."""
+"""Horizontal momentum: vertical velocities vanish, and angular momentum of horizontal velocities is conserved."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from rocking.restitution.impact import ImpactGeometry
 
 @dataclass(frozen=True)
 class HorizontalMomentum(InertiaModel):
-    """KED's first stage followed by conservation of angular momentum instead of energy.
+    """First stage of KED, followed by conservation of angular momentum instead of energy.
 
     ``r = Int y^2 dm / I_O'``, which is ``cos(alpha)^2 = lambda^2 / (1 + lambda^2)`` for a homogeneous rectangle.
 

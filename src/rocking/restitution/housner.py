@@ -1,4 +1,4 @@
-"""Housner (1963): angular momentum about the new foot is conserved; any inertia, asymmetric feet."""
+"""Housner (1963): angular momentum about the new foot is conserved. Generalised to any inertia and asymmetric feet."""
 
 from dataclasses import dataclass
 
@@ -39,6 +39,6 @@ class Housner(InertiaModel):
     inertia_only = True
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Return r by Eq. 4, Mao et al. 2024, for any inertia and asymmetric feet [-]."""
+        """Return r by Eq. 4 of Mao et al. (2024), for any inertia and asymmetric feet [-]."""
         # Eq. 2; Eq. 4, Mao et al. 2024
         return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration

@@ -1,4 +1,4 @@
-"""Check of a model and a body against identities of rigid-body mechanics."""
+"""Checks of a model and a body by identities of rigid-body mechanics."""
 
 import math
 import warnings
@@ -11,7 +11,7 @@ from rocking.restitution._implied import implied
 from rocking.restitution._model import RestitutionModel
 
 _EXACT = 1e-9
-# relative distance of nearly coincident feet; correct models are within its square root
+# relative distance of nearly coincident feet; errors of correct models are below its square root
 _NEARLY_COINCIDENT = 1e-6
 _STATEMENTS = {
     "scale": "the coefficient does not depend on size",
@@ -68,12 +68,12 @@ def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right"
     model : RestitutionModel
         The model.
     foot : {"left", "right"}
-        The foot on which it lands.
+        The foot on which the body lands.
 
     Returns
     -------
     tuple of IdentityCheck
-        Scale, density, mirror, coincident pivots, inertia alone, energy bound, round trip, impulse on the base.
+        Checks: scale, density, mirror, coincident pivots, inertia alone, energy bound, round trip, impulse on the base.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right"
     (left, right), x = body.feet, body.centre[0]
     gap = 0.5 * _NEARLY_COINCIDENT * (right - left)
     with warnings.catch_warnings():
-        # modified bodies need no warnings: larger, lighter, with nearly coincident feet
+        # no warnings for modified bodies (larger, lighter, or with nearly coincident feet)
         warnings.simplefilter("ignore", PlausibilityWarning)
         r, r_back = model.coefficient(body, foot), model.coefficient(body, opposite(foot))
         others = {
@@ -117,7 +117,7 @@ def identity_report(body: Body, model: RestitutionModel, *, foot: Foot = "right"
 
 
 def _dumbbells(body: Body) -> list[MassPoints]:
-    """Return pairs of masses with the body's mass, centre and polar inertia: horizontal, and vertical if possible."""
+    """Return pairs of masses with mass, centre and polar inertia of the body: horizontal and, if possible, vertical."""
     moments = body.local_moments
     arm = math.sqrt(moments.polar / moments.mass)
     arms = [(arm, 0.0)] + ([(0.0, arm)] if arm <= moments.y else [])

@@ -10,10 +10,10 @@ from rocking.conventions import FloatArray, Foot, opposite
 
 @dataclass(frozen=True, slots=True)
 class ImpactGeometry:
-    """Levers and inertia of an impact, per unit mass; fields are numbers or arrays of equal shape.
+    """Levers and inertia of an impact, per unit mass. Fields are numbers or arrays of equal shape.
 
-    The body turns about the old foot before and about the new foot after the impact; the x axis is directed from the
-    old to the new foot, with the plumb line of the centre of mass as origin.
+    The body turns about the old foot before the impact and about the new foot after the impact. The x axis is directed
+    from the old to the new foot. Its origin is the plumb line of the centre of mass.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class ImpactGeometry:
     new_lever : ndarray
         Distance of the new foot ahead of the plumb line [m].
     spread_x, spread_y : ndarray
-        Central second moments over mass, of x and of y [m2].
+        Central second moments of x and of y, divided by the mass [m2].
 
     Examples
     --------
@@ -57,7 +57,7 @@ class ImpactGeometry:
         Returns
         -------
         ImpactGeometry
-            Fields are zero-dimensional arrays.
+            Geometry; its fields are zero-dimensional arrays.
         """
         new, old, moments = body.side(foot), body.side(opposite(foot)), body.local_moments
         return cls(
@@ -80,7 +80,7 @@ class ImpactGeometry:
         Returns
         -------
         ImpactGeometry
-            Fields are arrays of the same shape.
+            Geometry; its fields are arrays with the shape of `slenderness`.
         """
         h = np.asarray(slenderness, dtype=np.float64)
         ones = np.ones_like(h)

@@ -1,4 +1,4 @@
-"""The interface factor: additional loss by mortar, tape, dust or rubber."""
+"""The interface factor: additional energy loss by mortar, tape, dust or rubber."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -45,7 +45,7 @@ class Interface(RestitutionModel):
     sees_old_foot: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse a factor that would create energy."""
+        """Raise an error for a factor that would create energy."""
         wrapped: object = self.model
         if not isinstance(wrapped, RestitutionModel):
             raise UnknownModelError(
@@ -65,7 +65,7 @@ class Interface(RestitutionModel):
 
     @property
     def label(self) -> str:
-        """Factor and wrapped model: ``0.98*ked``."""
+        """Factor and wrapped model, such as ``0.98*ked``."""
         return f"{self.eta:.4g}*{self.model.label}"
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:

@@ -14,21 +14,22 @@ from rocking.errors import InvalidValueError
 from rocking.portable import each, gauss_legendre
 from rocking.restitution._model import RestitutionModel
 
-# slenderness below which the closed form loses more than two digits, and the series replaces it
+# for smaller slenderness, the closed form loses more than two digits, so that the series is used
 _SERIES_BELOW = 0.3
 _SERIES = np.array([(-1.0) ** j / ((2 * j - 1) * (2 * j + 3)) for j in range(14, 0, -1)])
-# Gauss-Legendre nodes for edges with a small difference of end angles, where the closed form cancels
+# Gauss-Legendre nodes for edges with a small difference of end angles, for which the closed form has cancellation
 _NODES, _WEIGHTS = gauss_legendre(12)
 _GAUSS_BEYOND = 5.0
 _FEW = 256
 
 
 def fill_rectangles(ratio: FloatArray, smallest: float, out: FloatArray) -> None:
-    """Write KED's coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form)."""
-    # ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``. ratio:
-    # slenderness ratios l = h/b > 0 [-]; smallest: a lower bound of them [-]; out: r, of equal shape, with a relative
-    # error below 3e-14 [-]
-    # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
+    """Write the KED coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form)."""
+    # ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``.
+    # ratio: slenderness ratios l = h/b > 0 [-]
+    # smallest: a lower bound of the ratios [-]
+    # out: r, with equal shape and a relative error below 3e-14 [-]
+    # N/D in partial fractions with t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
     np.subtract(ratio, t, out=out)
     # numpy's arctan is fast, but its last digit depends on the processor
@@ -57,13 +58,13 @@ def _series(t: FloatArray) -> FloatArray:
 
 def ring_integral(ring: FloatArray) -> float:
     """Return the exact integral of y^4 / (x^2 + y^2) over the area inside a ring [m4]."""
-    # by Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
-    # elementary integral for every straight edge
+    # by Green's theorem, this is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle, with
+    # an elementary integral for every straight edge
     return 0.25 * float(edge_integrals(ring, np.roll(ring, -1, axis=0)).sum())  # Eq. 8
 
 
 def edge_integrals(start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return the integrals of y^4 d(phi), phi the polar angle, along straight edges; shape (n,)."""
+    """Return the integrals of y^4 d(phi) along straight edges, where phi is the polar angle; shape (n,)."""
     length = np.sqrt(np.square(end - start).sum(axis=1))
     tau = (end - start) / np.maximum(length, 1e-300)[:, None]
     offset = tau[:, 1] * start[:, 0] - tau[:, 0] * start[:, 1]
@@ -78,7 +79,7 @@ def edge_integrals(start: FloatArray, end: FloatArray) -> FloatArray:
 
 
 def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
-    # size of the Bernstein ellipse through the pole u = i * offset; 12 nodes err by its power -24
+    # size of the Bernstein ellipse through the pole u = i * offset; the error of 12 nodes is its power -24
     z = (1j * np.abs(offset) - 0.5 * (u0 + u1)) / (0.5 * (u1 - u0))
     root = np.sqrt(z * z - 1.0)
     return np.maximum(np.abs(z + root), np.abs(z - root)) > _GAUSS_BEYOND
@@ -111,8 +112,8 @@ class Ked(RestitutionModel):
     """Kinetic energy distribution over the mass points, for plane bodies.
 
     ``r^2 = Int y^4 / (y^2 + (x_new - x)^2) dm / Int (y^2 + (x_new - x)^2) dm`` (Eq. 17, Mao et al. 2024):
-    stage 1 removes the vertical velocity of every mass point, stage 2 the component along the line to the new foot,
-    stage 3 converts the remaining kinetic energy to rotation about the new foot.
+    stage 1 removes the vertical velocity of every mass point, stage 2 removes the component along the line to the new
+    foot, and stage 3 converts the remaining kinetic energy to rotation about the new foot.
 
     Examples
     --------
@@ -146,7 +147,7 @@ class Ked(RestitutionModel):
     )
 
     def raw_coefficient(self, body: Body, foot: Foot) -> float:
-        """Return r by Eq. 17, Mao et al. 2024, over the mass distribution of the body [-]."""
+        """Return r by Eq. 17 of Mao et al. (2024), over the mass distribution of the body [-]."""
         if isinstance(body, Block) and body.known is None and body.stands_on_corners:
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
@@ -166,7 +167,7 @@ class Ked(RestitutionModel):
 def projected_moment(body: Body, foot: Foot) -> float:
     """Return the numerator of Eq. 17, the integral of ``y^4 / |S - O'|^2 dm``.
 
-    Register a new kind of body with ``@projected_moment.register``.
+    To support a new kind of body, register a function with ``@projected_moment.register``.
 
     Parameters
     ----------
@@ -216,13 +217,13 @@ def _of_points(points: FloatArray, masses: FloatArray) -> float:
     """Return the sum over mass points relative to the new foot [kg m2]."""
     x, y = points.T
     squared = x * x + y * y
-    # a mass at the new foot has no velocity after the impact: its contribution is zero
+    # a mass at the new foot has no velocity after the impact, so that its contribution is zero
     ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)  # Eq. 9
     return float((masses * ratio).sum())
 
 
 def _of_quarters(body: Body, foot: Foot) -> float:
-    """Return the projected moment of a body with stated moments, with its mass in the quarters of its box [kg m2]."""
+    """Return the projected moment of a body with stated moments, with masses in the quarters of its box [kg m2]."""
     pivot = np.array([body.local_feet[foot == "right"], 0.0])
     rings, corners, (inside, outside) = quarters(body.local_moments, body.local_box)
     areas = [abs(float(np.prod(ring[2] - ring[0]))) for ring in rings]
@@ -232,7 +233,7 @@ def _of_quarters(body: Body, foot: Foot) -> float:
 
 
 STAGES = ("before", "stage 1", "stage 2", "after")
-"""Before the impact; without vertical component; without component along the line to the new foot; redistributed."""
+"""Stages: before impact, without vertical component, without component towards the new foot, redistributed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,7 +272,7 @@ class EnergyBalance:
         return {stage: energy / before for stage, energy in self.totals.items()}
 
     def velocities(self, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
-        """Return the velocities at points of the body after each stage.
+        """Return the velocities at points of the body after the stages.
 
         Parameters
         ----------
@@ -283,7 +284,7 @@ class EnergyBalance:
         dict of str to ndarray
             Velocities (v_x, v_y) by stage, with an additional last dimension of length 2 [m/s].
         """
-        # a clockwise rotation leads to the right foot, a counter-clockwise one to the left
+        # a clockwise rotation leads to the right foot, a counter-clockwise rotation to the left foot
         sense = 1.0 if self.foot == "right" else -1.0
         feet = dict(zip(("left", "right"), self.body.feet, strict=True))
         up = np.asarray(y, dtype=np.float64) - self.body.ground
@@ -300,7 +301,7 @@ class EnergyBalance:
         }
 
     def energy_density(self, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
-        """Return the kinetic energy per volume at points after each stage.
+        """Return the kinetic energy per volume at points after the stages.
 
         Parameters
         ----------
@@ -318,7 +319,7 @@ class EnergyBalance:
 
 
 def known_density(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return `density_at` [kg/m3]; an error for a body with stated moments."""
+    """Return `density_at` [kg/m3]. Raise an error for a body with stated moments."""
     if body.known is not None:
         raise InvalidValueError(
             "the energy field needs the distribution of mass, but this body has moments only; describe the body by "

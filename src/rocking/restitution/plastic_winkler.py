@@ -1,4 +1,4 @@
-"""Plastic Winkler bed: pressure proportional to indentation while a point descends, zero afterwards."""
+"""Plastic Winkler bed: pressure is proportional to indentation as long as a point descends, and zero afterwards."""
 
 import math
 from bisect import bisect_right
@@ -21,10 +21,10 @@ _REACH = float(np.log(100.0))
 
 @dataclass(frozen=True)
 class PlasticWinkler(InertiaModel):
-    """Flat base on springs without rebound; the result does not depend on their stiffness.
+    """Flat base on springs without rebound. The result does not depend on the stiffness of the springs.
 
-    Pressure is k_w times indentation while a point descends, zero afterwards. The integration uses moments: the state
-    is (v, omega, Y = Int v dt, Theta = Int omega dt), without a mesh along the base.
+    The pressure is k_w times the indentation as long as a point descends, and zero afterwards. The integration uses
+    moments and no mesh along the base. The state is (v, omega, Y = Int v dt, Theta = Int omega dt).
 
     Examples
     --------
@@ -56,7 +56,7 @@ class PlasticWinkler(InertiaModel):
         return np.array(values)[inverse].reshape(kappa.shape)
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the coefficients of homogeneous rectangles; large arrays by interpolation [-]."""
+        """Return the coefficients of homogeneous rectangles [-]. For large arrays, they are interpolated."""
         logarithm = np.log(slenderness)
         inside = np.abs(logarithm) <= _REACH
         if len(set(slenderness.ravel().tolist())) <= _LARGEST_BATCH or not inside.all():
@@ -73,19 +73,19 @@ class PlasticWinkler(InertiaModel):
 
 @lru_cache(maxsize=4096)
 def _impact(kappa: float, back: float, edges: tuple[float, ...]) -> float:
-    """Return the velocity ratio for levers over the new lever; kappa = m b_new^2 / (I_C + m h^2) [-]."""
+    """Return the velocity ratio, with kappa = m b_new^2 / (I_C + m h^2) [-]. Levers are divided by the new lever."""
     stretches = np.reshape(edges, (-1, 2))
     if float((stretches[:, 1] - stretches[:, 0]).sum()) <= 1e-9 * (1.0 + back):
-        # feet without area: the impulse acts at the new foot (Housner)
+        # for feet without area, the impulse acts at the new foot (Housner)
         return (1.0 - kappa * back) / (1.0 + kappa)  # Eq. 2
     end, velocity = land(kappa, back, stretches)
-    # after the bed the body turns about its end; from there it steps onto the foot (Housner)
+    # after the bed, the body turns about the end of the base and then steps onto the foot (Housner)
     return velocity * (1.0 + kappa * end) / (1.0 + kappa)  # Eq. 110
 
 
 @lru_cache(maxsize=1)
 def _log_odds() -> "np.polynomial.Chebyshev":
-    # ln(r / (1 - r)) over ln(h/b) is smooth, and linear at both ends: r ~ (h/b)^2 and 1 - r ~ (h/b)^-2
+    # ln(r / (1 - r)) over ln(h/b) is smooth and linear at both ends, with r ~ (h/b)^2 and 1 - r ~ (h/b)^-2
     def odds(logarithm: FloatArray) -> FloatArray:
         r = PlasticWinkler().of_geometry(ImpactGeometry.of_slenderness(np.exp(logarithm)))
         return np.asarray(np.log(r / (1.0 - r)))
@@ -93,7 +93,7 @@ def _log_odds() -> "np.polynomial.Chebyshev":
     return np.polynomial.Chebyshev.interpolate(odds, _DEGREE, domain=[-_REACH, _REACH])
 
 
-# the contact ends exponentially: speed of the tip, over that at the start, at the end of the computation
+# the contact ends exponentially; the computation ends at this ratio of the tip speed to its initial value
 _AT_REST = 1e-14
 _STOPPED = 1e-9
 _ORDER = 20
@@ -104,12 +104,13 @@ _State = tuple[float, ...]
 
 
 def land(kappa: float, back: float, stretches: FloatArray) -> tuple[float, float]:
-    """Return the end of the contact and the velocity after the bed, for levers over the new lever."""
-    # The state is (v, omega, Int v dt, Int omega dt): a point x of the base descends while omega x > v, with a pressure
-    # of k_w times its indentation. The equations have a kink where the edge v / omega of the pressure passes an end of
-    # a stretch: the integration restarts there. Returns the end of the base that leaves the bed last, or the foot if it
-    # is nearer, over the lever of the new foot [-]; and the angular velocity then over that before, zero for a body
-    # that stops [-].
+    """Return the end of the contact and the velocity after the bed. Levers are divided by the new lever."""
+    # The state is (v, omega, Int v dt, Int omega dt). A point x of the base descends if omega x > v, with a pressure of
+    # k_w times its indentation. The equations have a kink when the edge v / omega of the pressure passes an end of a
+    # stretch, at which the integration restarts.
+    # The first result is the end of the base that leaves the bed last, or the foot if it is nearer, over the lever of
+    # the new foot [-]. The second result is the ratio of angular velocities after and before, zero for a body that
+    # stops [-].
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)
     section, direction = bed.first_section(-back), 1
@@ -120,13 +121,13 @@ def land(kappa: float, back: float, stretches: FloatArray) -> tuple[float, float
 
 
 class _Bed:
-    """Force and moment of the springs, by the section of the base in which the pressure ends."""
+    """Force and moment of the springs, for the section of the base in which the pressure ends."""
 
     def __init__(self, kappa: float, stretches: FloatArray) -> None:
         self.stretches: list[list[float]] = stretches.tolist()
         self.edges = [edge for stretch in self.stretches for edge in stretch]
         self.end = min(self.edges[-1], 1.0)
-        # the stiffness of the bed only scales time: this choice gives similar durations for all sizes
+        # the stiffness of the bed only scales time; this choice gives similar durations for all sizes
         self.push = 1.0 / sum(far - near for near, far in self.stretches)
         self.turn = -kappa * self.push
 
@@ -140,13 +141,13 @@ class _Bed:
         section = bisect_right(self.edges, edge)
         if section == 0 or self.edges[section - 1] != edge:
             return section
-        # at the end of a stretch, the first force decides the direction
+        # at the end of a stretch, the first force determines the direction
         length, first, second = self.moments_beyond(section - 1)
         falls = self.push * (first - edge * length) >= edge * self.turn * (second - edge * first)
         return section if falls else section - 1
 
     def follow(self, state: _State, section: int) -> tuple[_State, int]:
-        """Return the state at the end of a section or of the contact, and the step to the next section."""
+        """Return the state at the end of a section or of the contact, and the direction of the next section."""
         ends = [(self.edges[section], 1)] if section < len(self.edges) - 1 else []
         if section > 0:
             ends.append((self.edges[section - 1], -1))
@@ -170,7 +171,7 @@ class _Bed:
         square: list[float] = []
         cube: list[float] = []
         inside = section % 2 == 1
-        end = self.edges[section] if inside else 0.0  # zero where the pressure ends between two stretches
+        end = self.edges[section] if inside else 0.0  # zero if the pressure ends between two stretches
         reach, lever, inertia = [length + end], [first + 0.5 * end * end], [second + end**3 / 3.0]
         for k in range(_ORDER):
             if k:
@@ -191,7 +192,7 @@ class _Bed:
 
 
 def _at_edge(series: list[list[float]], step: float, edge: float, sign: int) -> _State:
-    """Return the state at an edge that was passed in a step, by bisection to the last bit."""
+    """Return the state at an edge that the pressure passed in a step, by bisection to the last bit."""
     start, stop = 0.0, step
     while start < (middle := 0.5 * (start + stop)) < stop:
         v, omega, *_ = _at(series, middle)
@@ -206,7 +207,7 @@ def _product(left: list[float], right: list[float]) -> float:
 
 
 def _step(series: list[list[float]]) -> float:
-    """Return the range of the series: the last two terms are below the rounding of the state."""
+    """Return the range of the series in which the last two terms are below the rounding of the state."""
     v, omega = series[0][0], series[1][0]
     bound = _RELATIVE * max(abs(v), abs(omega))
     last, before = (max(abs(terms[-k]) for terms in series) + 1e-300 for k in (1, 2))

@@ -24,7 +24,7 @@ from rocking.restitution.plastic_winkler import PlasticWinkler
 from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 BOUND_ROUNDING = 1e-9
-"""Allowed excess of a coefficient over its energy bound, relative to the bound: rounding of I_O and r."""
+"""Allowed relative excess of a coefficient over its energy bound, for rounding of I_O and r."""
 
 _MODELS: dict[str, type[RestitutionModel]] = {
     kind.name: kind
@@ -41,7 +41,7 @@ def models() -> dict[str, type[RestitutionModel]]:
     Returns
     -------
     dict of str to type
-        Name to class; a copy.
+        Classes by name, as a copy.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def models() -> dict[str, type[RestitutionModel]]:
 
 
 def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
-    """Register a model class under its name; usable as a decorator.
+    """Register a model class under its name. This function can be used as a decorator.
 
     Parameters
     ----------
@@ -68,13 +68,13 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     Raises
     ------
     InvalidValueError
-        If the class is not a model, has no name, or its name is in use.
+        If the class is not a model, if it has no name, or if its name is in use.
     """
     return put(kind)
 
 
 def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = ()) -> type[RestitutionModel]:
-    """Register a model class; over: classes that it may replace."""
+    """Register a model class. `over` contains classes that it may replace."""
     candidate: object = kind
     if not (inspect.isclass(candidate) and issubclass(candidate, RestitutionModel)):
         raise InvalidValueError(
@@ -93,7 +93,7 @@ def put(kind: type[RestitutionModel], over: Sequence[type[RestitutionModel]] = (
 
 
 def check_complete(kind: type[RestitutionModel]) -> None:
-    """Refuse a model class without a required method."""
+    """Raise an error for a model class without a required method."""
     lacking = sorted(kind.__abstractmethods__)
     if lacking:
         raise InvalidValueError(
@@ -180,7 +180,7 @@ def _parsed(text: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, fl
 
 
 def parameters_in(text: str, label: str, others: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters in the text after a name, with other parameters."""
+    """Return the parameters in the text after a name, together with other parameters."""
     values = dict(others)
     for item in filter(None, text.split(",")):
         key, equals, value = item.partition("=")
@@ -220,7 +220,7 @@ def number(name: str, text: str) -> float:
 
 
 def of_no_kind(restitution: object) -> str:
-    """Return the description of an object that is not a restitution, with its missing members."""
+    """Return a description of an object that is not a restitution, with its missing members."""
     kind = restitution if isinstance(restitution, type) else type(restitution)
     if kind is restitution:
         return f"the class {kind.__name__}; use an object, {kind.__name__}()"
@@ -306,7 +306,7 @@ def coefficient_of_restitution(
     Returns
     -------
     float
-        theta_dot_after / theta_dot_before; zero for a body that stops at the impact [-].
+        theta_dot_after / theta_dot_before [-]; zero for a body that stops at the impact.
 
     Raises
     ------

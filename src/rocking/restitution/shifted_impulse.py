@@ -12,15 +12,15 @@ from rocking.restitution.impact import ImpactGeometry
 
 @dataclass(frozen=True)
 class ShiftedImpulse(InertiaModel):
-    """Angular momentum is conserved about a point of the base, a = k b_new ahead of the plumb line.
+    """Angular momentum is conserved about a point of the base, at a = k b_new ahead of the plumb line.
 
     ``r = (I_C + m (h^2 - a b_old)) / (I_C + m (h^2 + a b_new))``; k = 1 is Housner, k = 0 has no loss.
 
     Parameters
     ----------
     k : float
-        Position of the impulse between plumb line (0) and new foot (1) [-]; 2/3 is the slender limit of KED and
-        of a viscous flat contact.
+        Impulse position between plumb line (0) and new foot (1) [-]. For slender bodies, KED and a viscous flat contact
+        have the limit 2/3.
 
     Raises
     ------

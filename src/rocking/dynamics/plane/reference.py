@@ -1,8 +1,8 @@
 """The reference engine: Taylor steps of variable order and length, and event times exact to rounding.
 
-The reference engine computes one history at a time. It shares no code with the fast engine, so that the two engines
-verify each other. The order is up to 30, and the size of the last terms determines the length of a step. Newton's
-method locates zeros between the zeros of the slope.
+The reference engine computes one history at a time. It has no code in common with the fast engine, so that the two
+engines verify each other. The order is up to 30, and the size of the last terms determines the length of a step.
+Newton's method locates zeros between the zeros of the slope.
 """
 
 import math

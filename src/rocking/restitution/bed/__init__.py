@@ -1,4 +1,4 @@
-"""The contact bed: an impact resolved in time on contact points with stiffness, damping and friction."""
+"""The contact bed: impacts resolved in time, on contact points with stiffness, damping and friction."""
 
 from rocking.restitution.bed.contact_bed import BaseFriction, ContactBed, Coulomb, RegularisedCoulomb, Sticking
 from rocking.restitution.bed.impact import BedImpact, BedImpacts, BedStatus, bed_impact, bed_impacts

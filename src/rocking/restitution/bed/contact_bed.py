@@ -1,4 +1,4 @@
-"""The bed: contact points of the base, their laws, and friction along the base line."""
+"""The bed: contact points of the base, laws of the contact points, and friction along the base line."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from rocking.restitution.impact import contact_of
 
 
 class FrictionKind(IntEnum):
-    """The branches of the fast engine."""
+    """Branches of the fast engine."""
 
     STICKING = 0
     COULOMB = 1
@@ -26,20 +26,20 @@ class FrictionKind(IntEnum):
 class BaseFriction(ABC):
     """Friction between base and bed.
 
-    All points of a flat base have one velocity u along the base line, so that all stick or all slide: the shear force
-    is ``|T| <= mu N`` with N the sum of all normal forces. The distribution of a sticking force over the points is not
-    determined; results use the proportions of the normal forces.
+    All points of a flat base have the same velocity u along the base line, so that all points stick or all points
+    slide. The shear force is ``|T| <= mu N``, where N is the sum of all normal forces. The distribution of a sticking
+    force over the points is not determined. Results divide it in proportion to the normal forces.
     """
 
     @property
     @abstractmethod
     def numbers(self) -> tuple[FrictionKind, float, float]:
-        """Kind, coefficient of friction [-] and creep speed [m/s]."""
+        """Kind of friction, coefficient of friction [-] and creep speed [m/s]."""
 
 
 @dataclass(frozen=True)
 class Sticking(BaseFriction):
-    """The base cannot slide (u = 0 always), as in docs/theory/restitution.md and docs/theory/contact_bed.md."""
+    """The base cannot slide (u = 0 at all times), as in docs/theory/restitution.md and docs/theory/contact_bed.md."""
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:
@@ -58,7 +58,7 @@ class SlidingFriction(BaseFriction):
 
 @dataclass(frozen=True)
 class Coulomb(SlidingFriction):
-    """Set-valued friction: ``u = 0`` and ``|T| <= mu N``, or ``T = -mu N sign(u)``; the switches are located.
+    """Set-valued friction: ``u = 0`` and ``|T| <= mu N``, or ``T = -mu N sign(u)``. Switching times are located.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Coulomb(SlidingFriction):
     Raises
     ------
     InvalidValueError
-        If it is negative.
+        If the coefficient is negative.
     """
 
     @property
@@ -80,15 +80,15 @@ class Coulomb(SlidingFriction):
 class RegularisedCoulomb(SlidingFriction):
     """Smooth friction: T = -mu N u / sqrt(u^2 + v^2).
 
-    Instead of sticking, the base creeps at u = v / sqrt((mu N / T)^2 - 1), below v for T < 0.7 mu N: this is the error
-    of the law.
+    Instead of sticking, the base creeps at u = v / sqrt((mu N / T)^2 - 1). This creep is the error of the law. It is
+    below v for T < 0.7 mu N.
 
     Parameters
     ----------
     coefficient : float
         mu [-].
     creep : float
-        v, small compared with the landing speed [m/s].
+        Creep speed v [m/s], small compared with the landing speed.
 
     Raises
     ------
@@ -122,19 +122,19 @@ class ContactBed:
     law : ContactLaw
         One copy of the contact law.
     shares : array_like, optional
-        Copies of the law under each point; by default equal fractions with sum 1 [-].
+        Number of copies of the law under every point [-]. By default, equal fractions with sum 1.
     heights : array_like, optional
-        Profile of the base: heights of the points over the base line [m].
+        Profile of the base: heights of the points above the base line [m].
     friction : BaseFriction, optional
         By default the base cannot slide.
     kinematics : {"exact", "small"}
-        Exact rotation of a rigid body, or the small-base kinematics of Psycharis and Jennings (1983) without sideways
-        displacement, for a base that sticks.
+        Exact rotation of a rigid body; or, for a base that sticks, the small-base kinematics of Psycharis and Jennings
+        (1983) without sideways displacement.
 
     Raises
     ------
     InvalidValueError
-        If positions do not increase, or an array has another length or values that are not finite.
+        If positions do not increase, or if an array has another length or contains values that are not finite.
 
     Examples
     --------
@@ -183,21 +183,24 @@ class ContactBed:
         friction: BaseFriction | None = None,
         kinematics: Kinematics = "exact",
     ) -> Self:
-        """Return equal points along the base of a body, including its feet; the law is that of the bed.
+        """Return a bed with equal points along the base of a body, including its feet.
+
+        The law is that of the entire bed.
 
         Parameters
         ----------
         body : Body
-            The body; there are no points between separate contact stretches of its base.
+            The body. There are no points between separate contact stretches of its base.
         count : int
-            Number of points, two or more; a body with point contacts has its two feet only.
+            Number of points, two or more. A body with point contacts has only its two feet.
         law : ContactLaw
             The law of the bed.
         foot : {"left", "right"}
             The new foot.
         rule : {"trapezoid", "ends"}
-            Half weights at the ends of a stretch by the trapezoidal rule, or equal weights for all points. The first
-            converges quadratically with the spacing to the continuous bed, the second linearly.
+            Trapezoidal rule with half weights at the ends of a stretch, or equal weights for all points. With
+            decreasing spacing, the trapezoidal rule converges quadratically to the continuous bed, and equal weights
+            converge linearly.
         friction : BaseFriction, optional
             By default the base cannot slide.
         kinematics : {"exact", "small"}
@@ -220,12 +223,12 @@ class ContactBed:
         return cls(positions, law, shares / shares.sum(), friction=friction or Sticking(), kinematics=kinematics)
 
     def with_profile(self, heights: Any) -> Self:
-        """Return the bed with a base that is not flat.
+        """Return the bed under a base that is not flat.
 
         Parameters
         ----------
         heights : array_like
-            Heights of the points over the base line; negative for a bulge [m].
+            Heights of the points above the base line [m]; negative for a bulge.
 
         Returns
         -------
@@ -241,7 +244,7 @@ class ContactBed:
 
 
 def _along(patches: FloatArray, body: Body, count: int, foot: Foot) -> tuple[FloatArray, FloatArray]:
-    """Return points [m] and their lengths of the base [m]."""
+    """Return points [m], and the lengths of the base that belong to the points [m]."""
     left, right = body.local_feet[0] - body.local_moments.x, body.local_feet[1] - body.local_moments.x
     ends = (left, right) if foot == "right" else (-right, -left)
     if count == 2 or len(patches) == 0:

@@ -22,7 +22,7 @@ def _module() -> ModuleType | None:
 
 
 def available() -> bool:
-    """Return True if the fast engine of the bed was built with this installation; otherwise the reference runs."""
+    """Return True if the fast engine of the bed was built with this installation. Otherwise the reference is used."""
     return _module() is not None
 
 
@@ -45,7 +45,7 @@ def compute_one(setup: Setup, most_steps: int = MOST_STEPS) -> Run:
 
 
 def many(setups: Sequence[Setup], threads: int) -> Results:
-    """Return the results of many impacts; rows are independent, and the number of threads changes no bit."""
+    """Return the results of many impacts. Rows are independent, and the number of threads does not change results."""
     module = _module()
     assert module is not None
     firsts: dict[int, int] = {}

@@ -1,8 +1,8 @@
-"""Impacts on a bed, resolved in time, and their coefficient of restitution by three measures with a common limit.
+"""Impacts on a bed, resolved in time, and their coefficients of restitution by three measures with a common limit.
 
-The first measure is the next peak, without the energy of hops and vibration. The second measure is the energy at the
-end, which includes this energy. The third measure is the angular velocity at the end of an impulsive impact, which has
-no peak (docs/theory/contact_bed.md).
+The first measure is the next peak, which excludes the energy of hops and vibration. The second measure is the energy at
+the end, which includes the energy of hops and vibration. The third measure is the angular velocity at the end of an
+impulsive impact, for which there is no peak (docs/theory/contact_bed.md).
 """
 
 import math
@@ -24,7 +24,7 @@ from rocking.restitution.bed.setup import Results, Setup, settlement, setup_of
 
 
 class BedStatus(Enum):
-    """Status of the computation of an impact; the value is a sentence for reports."""
+    """Status of the computation of an impact. The value is a sentence for reports."""
 
     PEAK = "the rotation reached its next peak"
     PARTED = "the contact with the bed has ended"
@@ -38,7 +38,7 @@ class BedStatus(Enum):
 class Emergent:
     """Coefficients of restitution of one impact."""
 
-    # theta_dot_after / theta_dot_before by each measure; NaN for a measure that does not apply [-]
+    # theta_dot_after / theta_dot_before by the three measures [-]; NaN if a measure does not apply
     by_peak: float
     by_energy: float
     by_velocity: float
@@ -46,7 +46,7 @@ class Emergent:
 
     @property
     def coefficient(self) -> float:
-        """Coefficient by the peak, otherwise by the velocity of an impulsive impact, otherwise by energy [-]."""
+        """Coefficient by the first available measure: peak, velocity of an impulsive impact, energy [-]."""
         values = (self.by_peak, self.by_velocity, self.by_energy)
         return next((value for value in values if not math.isnan(value)), math.nan)
 
@@ -75,7 +75,7 @@ def emergent_of(setup: Setup, row: Results) -> Emergent:
         return Emergent(by_peak, 0.0, math.nan, stopped=True)
     weight = rigid.mass * setup.gravity
     depth, elastic = settlement(rigid, setup.law, rotation, weight)
-    # above rigid rest, plus the static energy of the foot
+    # energy above rigid rest, plus the static energy of the foot
     energy = row["energy_end"] - weight * rigid.lift(0.0) + (weight * depth - elastic)
     return Emergent(by_peak, ratio(energy), math.nan, stopped=False)
 
@@ -98,14 +98,14 @@ class BedImpact:
     setup : Setup
         Body, bed, start.
     results : dict of str to float
-        Results by the names in `setup.RESULTS` and `setup.COUNTS`, such as "bed_loss" [J] or "contacts", the number of
-        contacts of the body with the bed, one more than the number of hops.
+        Results by the names in `setup.RESULTS` and `setup.COUNTS`, such as "bed_loss" [J]. "contacts" is the number of
+        contacts of the body with the bed, which is the number of hops plus one.
     samples : dict of str to ndarray
         History by the names in `setup.SAMPLES`.
     forces : ndarray, shape (samples, points)
-        Normal force of each point [N].
+        Normal forces of the points [N].
     intervals : ndarray, shape (contacts, 3)
-        Point, start and end of each contact; the end is infinite for a permanent contact [-, s, s].
+        Point, start and end of every contact [-, s, s]. The end is infinite for a permanent contact.
     """
 
     setup: Setup
@@ -131,7 +131,7 @@ class BedImpact:
 
     @property
     def impulse_position(self) -> FloatArray:
-        """Position k(t) of the resultant, from the middle of the base (0) to the new foot (1); NaN in flight [-]."""
+        """Position k(t) of the resultant [-], from the middle of the base (0) to the new foot (1); NaN in flight."""
         normal = self.samples["normal"]
         with np.errstate(invalid="ignore", divide="ignore"):
             positions = self.samples["moment"] / normal
@@ -150,13 +150,13 @@ class BedImpact:
 
     @property
     def duration(self) -> float:
-        """Time from the first touch beyond the old foot to contact at the new foot at rest only [s]."""
+        """Time from the first touch beyond the old foot until only the new foot, at rest, is in contact [s]."""
         touch, parting = self.results["touch"], self.results["parting"]
         return float(parting - touch) if 0.0 <= touch <= parting else math.nan
 
     @property
     def audit(self) -> float:
-        """Energy at the end plus losses minus energy at the start, over the energy before the impact [-]."""
+        """Energy balance error (energy at the end + losses - energy at the start) over the energy before impact [-]."""
         return float(self.results["residual"] / self.setup.energy)
 
 
@@ -182,16 +182,16 @@ def bed_impact(
     rotation : float, optional
         Initial rotation about the old foot [rad].
     angular_velocity : float, optional
-        theta_dot at landing, in place of `rotation` [rad/s].
+        theta_dot at landing [rad/s], instead of `rotation`.
     impulsive : bool
-        Without gravity, from flat contact to the end of contact: the limit of a hard bed for laws that absorb the
-        impact in one contact.
+        True for an impact without gravity, from flat contact to the end of contact. For laws that absorb the impact in
+        one contact, this is the limit of a hard bed.
     ground_acceleration : (float, float)
         Horizontal and vertical acceleration of the ground during the impact [m/s2].
     tolerance : float
-        Error of a step relative to the depth and speed of the impact [-].
+        Error of a step, relative to the depth and speed of the impact [-].
     engine : {"auto", "fast", "reference"}
-        Compiled engine or SciPy.
+        Compiled engine ("fast") or SciPy ("reference").
 
     Returns
     -------
@@ -237,7 +237,7 @@ class BedImpacts:
     results : dict of str to ndarray
         Columns by name, as for `BedImpact`.
     emergent : tuple of Emergent
-        Coefficients of restitution by three measures; NaN for an impact that failed.
+        Coefficients of restitution by three measures; NaN for failed impacts.
     """
 
     setups: Sequence[Setup]
@@ -246,7 +246,7 @@ class BedImpacts:
 
     @property
     def coefficient(self) -> FloatArray:
-        """Coefficients of restitution [-]; NaN for an impact that failed, see `status`."""
+        """Coefficients of restitution [-]; NaN for failed impacts, see `status`."""
         return np.array([row.coefficient for row in self.emergent])
 
     @property
@@ -256,29 +256,29 @@ class BedImpacts:
 
     @property
     def status(self) -> list[BedStatus]:
-        """Status of each computation."""
+        """Status of every computation."""
         return [status_of(code) for code in self.results["status"]]
 
     @property
     def audit(self) -> FloatArray:
-        """Energy at the end plus losses minus energy at the start, over the energy before each impact [-]."""
+        """Energy balance errors (energy at the end + losses - energy at the start) over energy before impact [-]."""
         return np.asarray(self.results["residual"] / np.array([setup.energy for setup in self.setups]))
 
 
 def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
-    """Return many impacts; results of a row depend neither on the threads nor on other rows.
+    """Return many impacts. Results of a row depend neither on the number of threads nor on other rows.
 
     Parameters
     ----------
     setups : iterable of Setup
         Impacts from `setup_of`.
     threads : int
-        Threads of the fast engine.
+        Number of threads of the fast engine.
 
     Returns
     -------
     BedImpacts
-        One row per impact, in the order of `setups`; a failed impact has a status and a coefficient of NaN.
+        One row per impact, in the order of `setups`. A failed impact has a status, and its coefficient is NaN.
 
     Raises
     ------

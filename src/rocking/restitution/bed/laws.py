@@ -1,4 +1,4 @@
-"""Laws of contact points: force from depth, speed and greatest depth."""
+"""Laws of contact points: force as a function of depth, speed and largest depth."""
 
 import math
 from abc import ABC, abstractmethod
@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError
 
 
 class LawKind(IntEnum):
-    """The branches of the fast engine."""
+    """Branches of the fast engine."""
 
     KELVIN_VOIGT = 0
     HUNT_CROSSLEY = 1
@@ -23,10 +23,10 @@ class LawKind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class LawNumbers:
-    """Numbers of a law for a body of given mass, in the form of both engines."""
+    """Numbers of a law for a body of given mass, in the form that both engines use."""
 
     kind: LawKind  # branch of the equations
-    stiffness: float  # of one copy of the law [N/m, or N/m^exponent]
+    stiffness: float  # stiffness of one copy of the law [N/m, or N/m^exponent]
     damping: float = 0.0  # Kelvin-Voigt dashpot [N s/m]
     exponent: float = 1.0  # power of the depth [-]
     viscosity: float = 0.0  # Hunt-Crossley chi [s/m]
@@ -34,9 +34,9 @@ class LawNumbers:
 
 
 class ContactLaw(ABC):
-    """Normal force of a contact point, never tensile.
+    """Normal force of a contact point. It is never tensile.
 
-    A contact point has `share` copies of the law: forces, stiffness and damping are proportional to it.
+    A contact point has `share` copies of the law. Forces, stiffness and damping are proportional to `share`.
     """
 
     @abstractmethod
@@ -46,22 +46,24 @@ class ContactLaw(ABC):
         Parameters
         ----------
         mass : float
-            Mass of the body, for a damping ratio [kg].
+            Mass of the body [kg], which a damping ratio needs.
 
         Returns
         -------
         LawNumbers
-            Stiffness, damping and other numbers in SI.
+            Stiffness, damping and other numbers in SI units.
         """
 
 
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
     """Return the force of one copy of a law [N]."""
-    # Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
-    # max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. See
-    # docs/theory/contact_bed.md; Walton and Braun (1986) for the unloading branch. depth: depths d of the points [m];
-    # speed: their rates d', positive during loading [m/s]; deepest: greatest depths so far, for plastic unloading [m].
-    # Returns forces on the body, upwards [N].
+    # Kelvin-Voigt: ``F = max(0, k d + c d')``. Hunt-Crossley: ``F = k d^n max(0, 1 + chi d')``. Plastic unloading: ``F
+    # = max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``. All are zero for d <= 0. See
+    # docs/theory/contact_bed.md, and Walton and Braun (1986) for the unloading branch.
+    # depth: depths d of the points [m]
+    # speed: rates d' of the depths, positive during loading [m/s]
+    # deepest: largest depths up to now, for plastic unloading [m]
+    # The result contains the forces on the body, upwards [N].
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.KELVIN_VOIGT:
         value = law.stiffness * depth + law.damping * speed  # Eq. 117
@@ -90,7 +92,7 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
 
 
 def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
-    """Return the depth at which a law absorbs an energy at constant speed, the depth scale of an impact [m]."""
+    """Return the depth at which a law absorbs an energy at constant speed [m]. It is the depth scale of an impact."""
     order = law.exponent + 1.0
     spring = float((order * energy / (copies * law.stiffness)) ** (1.0 / order)) if law.stiffness > 0.0 else math.inf
     return min(spring, energy / (copies * law.damping * speed)) if law.damping > 0.0 else spring
@@ -98,21 +100,21 @@ def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float)
 
 @dataclass(frozen=True)
 class KelvinVoigt(ContactLaw):
-    """Linear spring and dashpot: F = k d + c d' while that is above zero and d > 0.
+    """Linear spring and dashpot: F = k d + c d' if this is above zero and d > 0, otherwise zero.
 
     Parameters
     ----------
     stiffness : float
-        k of one copy of the law; zero for a dashpot only [N/m].
+        k of one copy of the law [N/m]; zero for a dashpot without spring.
     damping : float, optional
-        c of one copy [N s/m]; by default from `damping_ratio`.
+        c of one copy of the law [N s/m]. By default, c results from `damping_ratio`.
     damping_ratio : float, optional
-        zeta with c = 2 zeta sqrt(k m), m the mass of the body [-].
+        zeta [-], which gives c = 2 zeta sqrt(k m) with the mass m of the body.
 
     Raises
     ------
     InvalidValueError
-        If a value is negative, both dampings are given, or the law has no force.
+        If a value is negative, if both damping parameters are given, or if the law has no force.
 
     Examples
     --------
@@ -152,7 +154,7 @@ class KelvinVoigt(ContactLaw):
         damping_ratio : float
             zeta of the bed [-].
         confinement : float
-            E_eff / E, above one for a layer that cannot bulge sideways [-].
+            E_eff / E [-]. It is above 1 for a layer that cannot bulge sideways.
 
         Returns
         -------
@@ -179,7 +181,7 @@ class KelvinVoigt(ContactLaw):
 
 @dataclass(frozen=True)
 class HuntCrossley(ContactLaw):
-    """Power-law spring with a damping proportional to its force: F = k d^n (1 + chi d').
+    """Power-law spring with damping proportional to the spring force: F = k d^n (1 + chi d').
 
     Hunt and Crossley 1975, J. Appl. Mech. 42:440.
 
@@ -188,9 +190,9 @@ class HuntCrossley(ContactLaw):
     stiffness : float
         k of one copy of the law [N/m^n].
     exponent : float
-        n, 1.5 for round points [-].
+        n [-], which is 1.5 for round points.
     viscosity : float
-        chi, about 3 (1 - e) / (2 v) for a velocity ratio e near one at landing speed v [s/m].
+        chi [s/m], about 3 (1 - e) / (2 v) for a velocity ratio e near 1 at the landing speed v.
 
     Raises
     ------
@@ -248,10 +250,12 @@ class Hertz(ContactLaw):
 
 @dataclass(frozen=True)
 class PlasticUnloading(ContactLaw):
-    """Linear loading, steeper unloading: stiffness k for first loading, k / e^2 for unloading and reloading.
+    """Linear loading and steeper unloading.
 
-    A single point rebounds with the velocity ratio e; each point has its own greatest depth. With e = 0 there is no
-    rebound (the plastic Winkler bed of docs/theory/restitution.md). Use e = 0 for impulsive impacts only, because the
+    The stiffness is k for first loading, and k / e^2 for unloading and reloading.
+
+    A single point rebounds with the velocity ratio e. Every point has its own largest depth. With e = 0, there is no
+    rebound (plastic Winkler bed of docs/theory/restitution.md). Use e = 0 only for impulsive impacts, because the
     contact chatters under a permanent load.
 
     Parameters
@@ -259,7 +263,7 @@ class PlasticUnloading(ContactLaw):
     stiffness : float
         k of one copy of the law [N/m].
     rebound : float
-        e, velocity after over velocity before for a single point [-].
+        e, the ratio of velocities after and before for a single point [-].
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""Independent engine of the contact bed: sums over all points, with SciPy's integrators.
+"""Independent engine of the contact bed: sums over all points, with integrators of SciPy.
 
-It has no code in common with the fast engine. For laws without memory it needs no switches: forces use maximum and
-minimum, and the error control of the integrator resolves the kinks. Only sticking and sliding are located.
+This engine has no code in common with the fast engine. For laws without memory, it does not locate switches: forces use
+maximum and minimum, and the error control of the integrator resolves the kinks. Only changes between sticking and
+sliding are located.
 """
 
 import math
@@ -23,7 +24,7 @@ Y, THETA, U, W, OMEGA, TRAVEL, BED_LOSS, FRICTION_LOSS, IMPULSE, MOMENT, SHEAR, 
 
 
 class Field:
-    """Right-hand side of an impact: state, losses and the deepest depths of the points."""
+    """Right-hand side of the equations of an impact: state, losses and largest depths of the points."""
 
     def __init__(self, setup: Setup) -> None:
         self.setup = setup
@@ -32,7 +33,7 @@ class Field:
         self.slip = 0
 
     def points(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return depths [m], their rates [m/s] and the forces [N] of all points."""
+        """Return depths [m], rates of the depths [m/s] and forces [N] of all points."""
         positions, heights = self.bed.positions, self.bed.heights
         if self.bed.kinematics == "small":
             depth, rate = -(x[Y] - positions * x[THETA] + heights), -(x[W] - positions * x[OMEGA])
@@ -67,7 +68,7 @@ class Field:
 
     @property
     def held(self) -> bool:
-        """True if the base sticks."""
+        """True if the base sticks to the bed."""
         return self.kind is FrictionKind.STICKING or (self.kind is FrictionKind.COULOMB and self.slip == 0)
 
     def __call__(self, _: float, x: FloatArray) -> FloatArray:
@@ -92,7 +93,7 @@ class Field:
         return float(((value - spring) * rate)[depth > 0.0].sum())
 
     def energy(self, x: FloatArray) -> tuple[float, float]:
-        """Return mechanical and elastic energy."""
+        """Return the mechanical energy (including the elastic energy), and the elastic energy."""
         r = self.setup.rigid
         m, h, u = r.mass, r.height, x[U] + r.height * x[OMEGA]
         kinetic = 0.5 * m * (u * u + x[W] ** 2) + 0.5 * r.inertia * x[OMEGA] ** 2
@@ -116,7 +117,7 @@ def compute_one(setup: Setup, method: Method = "DOP853", tolerance: float | None
     """Compute one impact with its history."""
     from scipy.integrate import solve_ivp
 
-    integrate: Any = solve_ivp  # the stubs of solve_ivp lack callable objects
+    integrate: Any = solve_ivp  # the type stubs of solve_ivp do not allow callable objects
     field = Field(setup)
     x = np.concatenate([setup.state, np.zeros(7 + len(setup.rigid.bed.positions))])
     x[PAST:] = np.maximum(field.points(x)[0], 0.0)
@@ -149,7 +150,7 @@ def compute_one(setup: Setup, method: Method = "DOP853", tolerance: float | None
 
 
 def _events(field: Field) -> list[tuple[Event, int]]:
-    """Return the events that end an interval with their status; -1 for sticking and sliding."""
+    """Return the events that end an interval, with their status; -1 for changes between sticking and sliding."""
     setup = field.setup
     events: list[tuple[Event, int]] = []
 

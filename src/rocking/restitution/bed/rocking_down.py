@@ -1,4 +1,4 @@
-"""Free rocking on a bed, impact after impact."""
+"""Free rocking on a bed over several impacts."""
 
 from dataclasses import dataclass, replace
 
@@ -22,11 +22,11 @@ _AT_REST = 1e-3
 class BedRocking:
     """Peaks of free rocking on a bed."""
 
-    rotations: FloatArray  # |rotation| at the start and at each peak [rad]
+    rotations: FloatArray  # |rotation| at the start and at the peaks [rad]
     times: FloatArray  # times of the peaks [s]
-    touches: FloatArray  # start of the impacts between the peaks: first contact beyond the old foot [s]
-    # ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one if the energy of a hop
-    # returns [-]
+    touches: FloatArray  # starts of the impacts between the peaks (first contact beyond the old foot) [s]
+    # ratio of the velocities at which rigid rocking would leave and reach theta = 0 [-]; above 1 if the energy of a hop
+    # returns
     coefficients: FloatArray
 
 
@@ -35,8 +35,8 @@ def bed_free_rocking(
 ) -> BedRocking:
     """Return the peaks of free rocking from one foot over several impacts, with hops and vibration.
 
-    With light damping (zeta <= 0.1) the energy of hops enters the next impact, and the ratio from peak to peak
-    scatters: it is then not a property of the body (docs/theory/contact_bed.md).
+    With light damping (zeta <= 0.1), the energy of hops enters the next impact, and the ratio from peak to peak
+    scatters. The ratio is then not a property of the body (docs/theory/contact_bed.md).
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def bed_free_rocking(
     rotation : float
         Initial rotation [rad].
     peaks : int
-        Largest number of peaks; fewer if the body no longer rocks from foot to foot.
+        Largest number of peaks. There are fewer peaks if the body no longer rocks from foot to foot.
     tolerance : float
         Relative error of a step [-].
 
@@ -87,7 +87,7 @@ def bed_free_rocking(
             angles.append(row["rotation"])
             times.append(now)
             touches.append(now - row["time"] + row["touch"])
-        elif row["rotation"] > angles[-1]:  # vibration caused a double peak
+        elif row["rotation"] > angles[-1]:  # two peaks, caused by vibration
             angles[-1], times[-1] = row["rotation"], now
         lingers = row["rotation"] <= 0.0
         setup = _turned(setup, row)
@@ -103,7 +103,7 @@ def _velocity(rigid: RigidRocking, rotation: float) -> float:
 
 
 def _turned(setup: Setup, row: Results) -> Setup:
-    """Return the next half cycle, mirrored."""
+    """Return the mirrored setup of the next half cycle."""
     bed = setup.rigid.bed
     mirror = replace(bed, positions=-bed.positions[::-1], shares=bed.shares[::-1], heights=bed.heights[::-1])
     state = (row["y"], -row["rotation"], -row["u"], row["w"], -row["angular_velocity"])

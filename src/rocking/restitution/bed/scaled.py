@@ -16,7 +16,7 @@ from rocking.restitution.bed.impact import BedStatus, bed_impacts
 from rocking.restitution.bed.laws import KelvinVoigt
 from rocking.restitution.bed.setup import Setup, setup_of
 
-RELEASE = 0.05  # initial rotation over the smallest slenderness angle: rocking of small amplitude [-]
+RELEASE = 0.05  # initial rotation over the smallest slenderness angle [-], for rocking of small amplitude
 _TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
 
 
@@ -29,13 +29,13 @@ class ScaledImpact:
     0.7
     """
 
-    flatness: float  # 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
+    flatness: float  # 1 / (1 + rho) [-], with rho = (I_C + m h^2) / (m w^2), w half the distance of the feet
     offset: float  # distance from the plumb line back to the middle of the base, over w [-]
-    points: int  # contact points from foot to foot
+    points: int  # number of contact points from foot to foot
     damping: float  # damping ratio of the whole bed [-]
     hardness: float  # landing speed of the new foot times sqrt(k / m) over gravity [-]
-    friction: float = math.inf  # coefficient of friction; infinite for a base that cannot slide [-]
-    # m h^2 / (I_C + m h^2), for the height of the centre of a base that slides [-]
+    friction: float = math.inf  # coefficient of friction [-]; infinite for a base that cannot slide
+    # m h^2 / (I_C + m h^2) [-], which gives the height of the centre for a base that slides
     height_share: float = 0.7
 
     def __post_init__(self) -> None:
@@ -57,7 +57,7 @@ def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) 
     """Return coefficients of restitution resolved in time [-]."""
     setups = [impact.setup for impact in impacts]
     r = np.full(len(setups), np.nan)
-    # chattering points can exceed the number of steps: retry with another tolerance
+    # chattering points can exceed the allowed number of steps; retry with another tolerance
     for tolerance in _TOLERANCES:
         failed = np.flatnonzero(np.isnan(r))
         if failed.size == 0:
@@ -92,7 +92,7 @@ def _bed(
     shares = np.ones(points)
     shares[[0, -1]] = 0.5
     law = KelvinVoigt(stiffness, damping_ratio=damping)
-    # sliding needs the exact kinematics; for sticking the table uses small rotations
+    # sliding needs the exact kinematics; for sticking, the table uses small rotations
     slides = not isinstance(friction, Sticking)
     return ContactBed(
         np.linspace(*feet, points), law, shares / shares.sum(), friction=friction,

@@ -1,4 +1,4 @@
-"""Setup of an impact for both engines, and rigid rocking on the points of a bed as its reference."""
+"""Setup of an impact for both engines, and rigid rocking on the points of a bed as a reference."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from rocking.restitution.bed.laws import LawKind, LawNumbers, depth_absorbing, s
 
 @dataclass(frozen=True)
 class RigidRocking:
-    """Body on rigid points: pivot, potential and inertia at each rotation."""
+    """Body on rigid points: pivot, potential and inertia as functions of the rotation."""
 
     mass: float  # mass, inertia: mass [kg] and polar moment about the centre of mass [kg m2]
     inertia: float
@@ -44,7 +44,7 @@ class RigidRocking:
         return np.asarray(self.bed.positions * math.sin(rotation) - self.bed.heights * math.cos(rotation))
 
     def potential(self, rotation: float) -> float:
-        """Return the potential energy above rest on the bed, m g (lift + h (cos theta - 1)) [J]."""
+        """Return the potential energy relative to the body at rest on the bed, m g (lift + h (cos theta - 1)) [J]."""
         fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
         return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)  # Eq. 126
 
@@ -63,7 +63,10 @@ class RigidRocking:
         return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)  # Eq. 127
 
     def furthest(self, side: float) -> float:
-        """Return |theta| of greatest potential on a side, at most pi/4, beyond which the body overturns [rad]."""
+        """Return |theta| of the largest potential on a side, at most pi/4 [rad].
+
+        Beyond this rotation, the body overturns.
+        """
         reach = max(side * self.bed.ends[1 if side > 0 else 0], 0.0)
         angle = (
             math.asin(min(reach / self.height, 1.0))
@@ -74,7 +77,7 @@ class RigidRocking:
 
 
 def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: float) -> tuple[float, float]:
-    """Return the static depth of the pivot below rigid rocking [m] and the elastic energy [J] under a load [N]."""
+    """Return the static depth of the pivot below rigid rocking [m], and the elastic energy [J], under a load [N]."""
     bed, pivot = rigid.bed, rigid.pivot(rotation)
     tilt = rotation if bed.kinematics == "small" else math.sin(rotation)
     turned = 1.0 if bed.kinematics == "small" else math.cos(rotation)
@@ -82,7 +85,7 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     alone = max(load / float(bed.shares[pivot]), 0.0)
     depth = deepest = float((alone / law.stiffness) ** (1.0 / law.exponent)) if law.stiffness else 0.0
     shallow = np.delete(above, pivot).min() >= deepest
-    # the load is a convex increasing function of depth: Newton's method converges from above, from one foot
+    # the load is a convex increasing function of depth, so that Newton's method converges from above, from one foot
     for _ in range(0 if shallow else 60):
         pressed = np.maximum(depth - above, 0.0)
         slope = law.exponent * law.stiffness * pressed ** (law.exponent - 1.0)
@@ -113,7 +116,7 @@ SAMPLES: Final = (
 """Columns of the history of an impact."""
 
 
-Results = dict[str, Any]  # a number or a column for each of `RESULTS` and `COUNTS`
+Results = dict[str, Any]  # numbers or columns by the names in `RESULTS` and `COUNTS`
 
 Run = tuple[Results, dict[str, FloatArray], FloatArray, FloatArray]
 """Results of one impact, columns of `SAMPLES`, forces of the points, and intervals of contact."""
@@ -131,18 +134,18 @@ class Setup:
 
     rigid: RigidRocking  # body and bed
     law: LawNumbers  # contact law under this body
-    # at the start: base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s], rotation
-    # rate [rad/s]
+    # initial state: height y of the base centre [m], rotation [rad], velocities u, w along and across the base [m/s],
+    # rotation rate [rad/s]
     state: tuple[float, float, float, float, float]
-    landing_velocity: float  # theta_dot of rigid rocking on the old foot as it reaches theta = 0 [rad/s]
-    energy: float  # kinetic energy of that rocking [J]
-    # scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the bed's length [m]
+    landing_velocity: float  # theta_dot of rigid rocking on the old foot at theta = 0 [rad/s]
+    energy: float  # kinetic energy of rigid rocking at theta = 0 [J]
+    # scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the length of the bed [m]
     depth: float
     speed: float
     half_base: float
-    old_foot: int  # points in contact before and after the impact
+    old_foot: int  # indices of the points in contact before and after the impact
     new_foot: int
-    impulsive: bool  # True without gravity
+    impulsive: bool  # True for an impact without gravity
     push: float  # horizontal ground acceleration [m/s2]
     tolerance: float  # relative error of a step [-]
     longest: float  # time limit of the computation [s]
@@ -174,16 +177,16 @@ def setup_of(
     tolerance: float = 1e-9,
     gravity: float = conventions.g,
 ) -> Setup:
-    """Return the setup of an impact after checks; parameters as in `bed_impact`.
+    """Return the setup of an impact after checks. The parameters are those of `bed_impact`.
 
     Parameters
     ----------
     body : Body
         The body.
     bed : ContactBed
-        Its bed.
+        Bed of the body.
     rotation, angular_velocity : float, optional
-        Initial rotation [rad] or angular velocity at landing [rad/s], one of them.
+        Either the initial rotation [rad] or the angular velocity at landing [rad/s].
     impulsive : bool
         True for an impact without gravity.
     ground_acceleration : (float, float)
@@ -253,8 +256,8 @@ def _accelerations(values: object) -> tuple[float, float]:
 
 
 def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: float | None) -> tuple[float, float]:
-    """Return the initial rotation [rad] and the landing velocity [rad/s]; one of them is given."""
-    # the start has the energy of the requested velocity, at rest if half the range of rotations is sufficient
+    """Return the initial rotation [rad] and the landing velocity [rad/s], of which one is given."""
+    # the start has the energy of the requested velocity; it is at rest if half the range of rotations is sufficient
     if (rotation is None) == (angular_velocity is None):
         raise InvalidValueError("use rotation or angular_velocity, exactly one of them")
     if len(rigid.bed.positions) < 2 or not rigid.bed.ends[0] < 0.0 < rigid.bed.ends[1]:
@@ -274,7 +277,7 @@ def _release(rigid: RigidRocking, rotation: float | None, angular_velocity: floa
 
 
 def _angle_of(rigid: RigidRocking, landing: float, limit: float) -> float:
-    """Return the initial rotation for a landing velocity, at most a limit [rad]."""
+    """Return the initial rotation for a landing velocity [rad], not above a limit."""
 
     def missing(angle: float) -> float:
         return 0.5 * rigid.inertia_about(rigid.pivot(angle)) * landing**2 - rigid.potential(angle)
@@ -291,12 +294,12 @@ def _angle_of(rigid: RigidRocking, landing: float, limit: float) -> float:
 def _on_the_old_foot(
     rigid: RigidRocking, law: LawNumbers, old: int, angle: float, landing: float
 ) -> tuple[float, float, float, float, float]:
-    """Return the state of rigid rocking at an angle, with the old foot at its static depth in the bed."""
+    """Return the state of rigid rocking at an angle. The old foot is at its static depth in the bed."""
     inertia, bed = rigid.inertia_about(old), rigid.bed
     energy = max(0.5 * inertia * landing**2 - rigid.potential(angle), 0.0)
     turning = math.sqrt(2.0 * energy / inertia) if energy > 1e-12 * inertia * landing**2 else 0.0
     load = max(rigid.support(angle, turning), 0.0)
     y = rigid.lift(angle) - settlement(rigid, law, angle, load)[0]
-    # rotation about the point: its velocity vanishes in body axes
+    # the body rotates about the point, so that the velocity of the point vanishes in body axes
     along = -float(bed.heights[old]) * turning if bed.kinematics == "exact" else 0.0
     return (y, angle, along, float(bed.positions[old]) * turning, turning)

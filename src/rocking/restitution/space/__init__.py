@@ -1,4 +1,4 @@
-"""Restitution of a body in space: impacts between corners and edges."""
+"""Restitution of 3D bodies: impacts between corners and edges."""
 
 from rocking.restitution.space.calibrated import SpatialCalibrated
 from rocking.restitution.space.energies import UnitEnergies, unit_energies

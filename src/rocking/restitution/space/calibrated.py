@@ -1,4 +1,7 @@
-"""The calibrated model in 3D: the plane model gives a landing of the full base, in each direction."""
+"""The calibrated model in 3D.
+
+For every direction, the plane model gives the coefficient of a landing of the full base.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -20,7 +23,7 @@ class CalibratedPosition(ImpulsePosition):
     """Position k at which a landing of the full base has the coefficient of the plane model."""
 
     def coefficient(self, landing: BaseLanding) -> float:
-        """Return the coefficient of the plane model, which depends on levers and moment of inertia only [-]."""
+        """Return the coefficient of the plane model, which depends only on levers and moment of inertia [-]."""
         gyration = landing.over_foot / self.moments.mass - self.height**2
         lengths = self.height, landing.old_lever, landing.new_lever, gyration, 0.0
         geometry = ImpactGeometry(*map(np.asarray, lengths))
@@ -29,7 +32,7 @@ class CalibratedPosition(ImpulsePosition):
 
 @lru_cache(maxsize=256)
 def calibrated_position(moments: SolidMoments, base: Base) -> CalibratedPosition:
-    """Return the impulse position by the calibrated model; cached by moments and base."""
+    """Return the impulse position by the calibrated model. Results are cached by moments and base."""
     return CalibratedPosition(moments, base)
 
 
@@ -37,11 +40,11 @@ def calibrated_position(moments: SolidMoments, base: Base) -> CalibratedPosition
 class SpatialCalibrated(ImpulsePositionModel):
     """The calibrated model: a landing of the full base has the coefficient of the plane model in its direction.
 
-    The coefficient gives the position k of the impulse between the feet (Eqs. 4, 104). As in `SpatialKed` this k holds
-    for steps of any length in the same direction, with angular momentum about the impulse's point (Eq. 103). A loss
-    larger than Housner's has k above 1, beyond the new foot.
+    The coefficient gives the impulse position k between the feet (Eqs. 4, 104). As in `SpatialKed`, this k applies to
+    steps of any length in the same direction, with angular momentum conserved about the point of the impulse (Eq. 103).
+    An energy loss larger than Housner's gives k above 1, beyond the new foot.
 
-    This closure is part of this project and not validated by measurements of impacts in 3D.
+    This closure is an assumption of this project. It is not validated by measurements of 3D impacts.
     """
 
     name = "calibrated-3d"

@@ -1,4 +1,4 @@
-"""Energy loss of every unit of a body in an impact: the paper's division into units, in space."""
+"""Energy loss of the units of a 3D body in an impact, after the division into units in the paper."""
 
 from dataclasses import dataclass
 
@@ -36,12 +36,12 @@ class UnitEnergies:
 
     @property
     def lost(self) -> FloatArray:
-        """Energy that each unit loses in stages 1 and 2 [J]."""
+        """Energy losses of the units in stages 1 and 2 [J]."""
         return np.asarray(self.before - self.left)
 
     @property
     def density(self) -> FloatArray:
-        """Energy that each unit loses over its mass [J/kg]."""
+        """Energy losses of the units over their masses [J/kg]."""
         return np.asarray(self.lost / self.units.mass)
 
     def layers(self, count: int, height: float | None = None) -> tuple[FloatArray, FloatArray]:
@@ -52,14 +52,14 @@ class UnitEnergies:
         count : int
             Number of layers of equal height.
         height : float, optional
-            Top of the highest layer over the ground [m]; by default the highest unit.
+            Top of the highest layer above the ground [m]. By default, the top of the highest unit.
 
         Returns
         -------
         heights : ndarray, shape (count + 1,)
-            Ends of the layers over the ground [m].
+            Ends of the layers above the ground [m].
         lost : ndarray, shape (count,)
-            Energy loss of each layer [J].
+            Energy losses of the layers [J].
 
         Raises
         ------
@@ -87,7 +87,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     Returns
     -------
     UnitEnergies
-        Energies of every unit; their sums converge to the exact integrals with the declared order of the units.
+        Energies of the units. Their sums converge to the exact integrals with the declared order of the units.
 
     Raises
     ------
@@ -114,8 +114,8 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
-    """Return the energy loss of stages 1 and 2 at points of a part [m], over its volume [J/m3]."""
-    # the body is upright, and the points are in the user's coordinates
+    """Return the energy loss per volume of stages 1 and 2 at points of a part [m], in J/m3."""
+    # the body is upright, and the points are in coordinates of the user
     (solid, origin), _ = impact.standing_solid, impact.placed_solid
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - solid.origin + origin)
     return np.asarray(0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1)))

@@ -1,4 +1,4 @@
-"""Horizontal momentum in space: vertical velocities vanish, angular momentum of horizontal ones is conserved."""
+"""Horizontal momentum in 3D: vertical velocities vanish, and angular momentum of horizontal velocities is conserved."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,9 @@ from rocking.restitution.space.model import SpatialModel
 
 @dataclass(frozen=True)
 class SpatialHorizontalMomentum(SpatialModel):
-    """KED's first stage followed by conservation of angular momentum, in space.
+    """First stage of KED in 3D, followed by conservation of angular momentum.
 
-    ``I_B w* = Int s x P_h v_- dm``; about an edge its component along the edge.
+    ``I_B w* = Int s x P_h v_- dm``. About an edge, only the component along the edge is used.
     """
 
     name = "horizontal-momentum-3d"

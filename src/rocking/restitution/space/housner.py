@@ -1,4 +1,4 @@
-"""Housner's impact in space: plastic and sticking, with angular momentum about the new support conserved."""
+"""Housner's impact in 3D: plastic and sticking, with angular momentum conserved about the new support."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""An impact in space, independent of the model: pivot, landing, momenta and energies."""
+"""A 3D impact, independent of the model: pivot, landing, momenta and energies."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.portable import applied, dot, norm, solution, times
 
-Placed = tuple[Solid, FloatArray]  # a solid, and the origin of its own frame in axes of the body [m]
+Placed = tuple[Solid, FloatArray]  # a solid, and the origin of the frame of the solid in axes of the body [m]
 UP = np.array([0.0, 0.0, 1.0])  # normal of the ground
 
 NO_MATTER = (
@@ -25,7 +25,7 @@ NO_SOLID = (
     "motion of the base and energy loss of units need a solid: give the impact its matter; "
     "for the angular velocity only, use model.turned(impact)"
 )
-"""Message for a body without a solid if base or units are needed."""
+"""Message for a body without a solid, if base or units are needed."""
 
 _UNIT = 1e-9
 
@@ -34,8 +34,8 @@ _UNIT = 1e-9
 class SpatialImpact:
     """Impact of a rigid body in any attitude that turns about a point of the ground and lands on a point or an edge.
 
-    All vectors are in body axes. The ground may be tilted in these axes: a body that falls from a corner onto an edge
-    of its base is tilted at the landing.
+    All vectors are in body axes. The ground may be tilted in these axes, because a body that falls from a corner onto
+    an edge of its base is tilted at the landing.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ class SpatialImpact:
     up : ndarray, shape (3,)
         Normal of the ground [-].
     matter : callable, optional
-        Function that returns the body as a solid and the origin of its frame [m], for models with a distribution of
-        mass.
+        Function that returns the body as a solid, and the origin of the frame of the solid [m]. Models with a
+        distribution of mass need this function.
     base : Base, optional
-        Base of the body, in its axes [m]; needed by calibrated-3d.
+        Base of the body in body axes [m], which calibrated-3d needs.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class SpatialImpact:
 
     Examples
     --------
-    A prism 1 x 1 x 4, as moments, from a corner onto the opposite one: 59/71.
+    A prism 1 x 1 x 4, given by moments, falls from a corner onto the opposite corner: 59/71.
 
     >>> import numpy as np
     >>> from rocking.restitution.space import SpatialHousner
@@ -111,12 +111,12 @@ class SpatialImpact:
 
     @property
     def standing_solid(self) -> Placed:
-        """The body as an upright solid, and the origin of the solid's frame [m].
+        """The body as an upright solid, and the origin of the frame of the solid [m].
 
         Raises
         ------
         InvalidValueError
-            If there is no solid, or the ground is tilted in its axes.
+            If there is no solid, or if the ground is tilted in axes of the solid.
         """
         if self.matter is None:
             raise InvalidValueError(NO_SOLID)
@@ -182,12 +182,12 @@ class SpatialImpact:
         Parameters
         ----------
         momentum : ndarray, shape (3,)
-            Angular momentum about the landing point; for an edge, the component along it applies [kg m2/s].
+            Angular momentum about the landing point [kg m2/s]. For an edge, only the component along the edge is used.
 
         Returns
         -------
         ndarray, shape (3,)
-            Angular velocity; along the edge for a landing on an edge [rad/s].
+            Angular velocity [rad/s]. For a landing on an edge, it is along the edge.
         """
         along = self.edge
         if along is None:
@@ -205,7 +205,7 @@ class SpatialImpact:
         return self.moments.second_about(np.zeros(3))
 
     def _momentum(self, projection: FloatArray) -> FloatArray:
-        # s x (G s) summed over the body needs the second moments only
+        # the sum of s x (G s) over the body needs only the second moments
         spread = times(self._second, times(projection, self.spin).T)
         turning = np.array([spread[1, 2] - spread[2, 1], spread[2, 0] - spread[0, 2], spread[0, 1] - spread[1, 0]])
         shift = self.moments.mass * applied(skew(self.moments.centre), applied(projection, self.landing_velocity))

@@ -1,6 +1,6 @@
-"""Models in 3D by the position of the impulse of a landing of the full base, in each direction (Eq. 104).
+"""3D models by the impulse position of a landing of the full base, for every direction (Eq. 104).
 
-The position k is an analytic function of the azimuth of the step as long as neither foot changes. Polynomials
+The position k is an analytic function of the azimuth of the step between azimuths at which a foot changes. Polynomials
 interpolate a few exact values between these azimuths.
 """
 
@@ -24,16 +24,16 @@ from rocking.restitution.space.impact import SpatialImpact
 from rocking.restitution.space.integrals import exact_moment, height_squared
 from rocking.restitution.space.model import SpatialFlag, SpatialModel
 
-HIGHEST = 32  # degree of the polynomials, at most
+HIGHEST = 32  # largest degree of the polynomials
 
 _SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-10, 1e-7
 _ARCS = 8
-_PIECE = 4096  # points per block, which fits in the cache
+_PIECE = 4096  # points per block; a block fits in the cache
 
 
 @dataclass(frozen=True, eq=False)
 class BaseLanding:
-    """Landing of the full base in one direction, from the old foot onto the new one."""
+    """Landing of the full base in one direction, from the old foot onto the new foot."""
 
     edge: FloatArray  # unit vector along the new foot [-]; shape (3,)
     offset: float  # distance of the new foot from the origin, in the direction of the step [m]
@@ -58,7 +58,7 @@ class ImpulsePosition(ABC):
         """Return the coefficient of restitution of a landing of the full base [-]."""
 
     def at(self, step: FloatArray) -> float:
-        """Return k of the landing in a direction in the frame of the solid; above 1 beyond the new foot [-]."""
+        """Return k of the landing in a direction, in the frame of the solid [-]; above 1 beyond the new foot."""
         angle, breaks = math.atan2(float(step[1]), float(step[0])), self.breaks
         if angle < breaks[0]:
             angle += 2.0 * math.pi
@@ -67,11 +67,11 @@ class ImpulsePosition(ABC):
         return _value(self.piece(index), (2.0 * angle - low - high) / (high - low))
 
     def of_step(self, step: FloatArray) -> float:
-        """Return k of a step in the frame of the body; 1 for a step of length zero [-]."""
+        """Return k of a step in the frame of the body [-]; 1 for a step of length zero."""
         return self.at(step) if float(np.abs(step).max()) > _ROUNDING * self.size else 1.0
 
     def piece(self, index: int) -> list[float]:
-        """Return Chebyshev coefficients of k between azimuth `number` of `breaks` and the next."""
+        """Return Chebyshev coefficients of k between the azimuth `index` of `breaks` and the next azimuth."""
         if index not in self._pieces:
             low, high = self.breaks[index : index + 2]
             self._pieces[index] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
@@ -113,13 +113,13 @@ class KedPosition(ImpulsePosition):
         self.solid, self.size = solid, solid.size
 
     def coefficient(self, landing: BaseLanding) -> float:
-        """Return the square root of the ratio of kinetic energies after and before [-]."""
+        """Return the square root of the ratio of kinetic energies after and before the impact [-]."""
         projected = self._projected(landing.edge, landing.offset)
         total = landing.over_foot + self.moments.mass * landing.new_lever**2
         return math.sqrt(max(projected, 0.0) / total)  # Eq. 17, Mao et al. 2024
 
     def _projected(self, edge: FloatArray, offset: float) -> float:
-        """Return the numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
+        """Return the numerator of Eq. 17 about a level line at an offset from the origin of the frame of the solid."""
         total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
         for part in self.solid.local_parts:
             exact = exact_moment(part, point, edge)
@@ -129,7 +129,7 @@ class KedPosition(ImpulsePosition):
 
 @lru_cache(maxsize=256)
 def impulse_position(solid: Solid) -> KedPosition:
-    """Return the impulse position by KED; cached by solid."""
+    """Return the impulse position by KED. Results are cached by solid."""
     return KedPosition(solid)
 
 
@@ -156,7 +156,7 @@ def _reach(base: Base, x: float, y: float) -> float:
 
 @lru_cache(maxsize=16)
 def _cloud(part: Part) -> FloatArray:
-    # z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction
+    # z^4/(t^2 + z^2) is homogeneous about any line on the ground; for all directions, it is rough only for small z
     shape, top = part.shape, float(part.box()[1][2])
     negligible = _NEGLIGIBLE * shape.moments().mass * top * top
     batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, height_squared)
@@ -204,13 +204,13 @@ _ROUNDING = 1e-12
 
 
 class ImpulsePositionModel(SpatialModel):
-    """Base class of models with angular momentum conserved about a point between the old and the new pivot."""
+    """Base class of models that conserve angular momentum about a point between the old and the new pivot."""
 
     highest: ClassVar[float] = 1.0  # largest k; 1 is the new foot (Housner's model)
 
     @abstractmethod
     def position(self, impact: SpatialImpact) -> ImpulsePosition:
-        """Return the position of the impulse of landings of the full base.
+        """Return the impulse position of landings of the full base.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class ImpulsePositionModel(SpatialModel):
         """
 
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Return the velocity with angular momentum conserved about the impulse position, or along an edge [rad/s]."""
+        """Return the velocity from angular momentum about the impulse position, or along an edge [rad/s]."""
         step, axis = _step(impact), impact.edge
         k = min(self.position(impact).of_step(step), self.highest)
         velocity = _velocity_about(impact, step, k)
@@ -243,17 +243,18 @@ class ImpulsePositionModel(SpatialModel):
 
 @dataclass(frozen=True)
 class SpatialKed(ImpulsePositionModel):
-    """Kinetic energy distribution with an impulse position, for steps of any size between any pivots.
+    """Kinetic energy distribution with an impulse position, for steps of any length between any pivots.
 
-    The paper gives the energy loss of a landing of the full base, and with it the impulse position: k times the half
-    distance between the feet (`ImpulsePosition`), at most 1, the new foot, beyond which the contact force is tensile.
-    The model uses this k, not the coefficient, for a step from any pivot P to any pivot Q: the impulse acts at
-    ``X = (P + Q)/2 + k (Q - P)/2``, and angular momentum about X is conserved,
-    ``I_C w+ + m rho_X x (w+ x rho_Q) = I_C w- + m rho_X x (w- x rho_P)``; about an edge its component along the edge.
-    A rectangle that lands on its edge has the coefficient of the paper. The loss of a step of length zero is zero, that
-    of n small steps is 1/n of that of a large step, and a rim rolls without loss.
+    The paper gives the energy loss of a landing of the full base. From this loss follows the impulse position, k times
+    half the distance between the feet (`ImpulsePosition`). k is limited to 1, the new foot, because the contact force
+    would be tensile beyond. The model uses this k, not the coefficient, for a step from any pivot P to any pivot Q. The
+    impulse acts at ``X = (P + Q)/2 + k (Q - P)/2``. Angular momentum about X is conserved (about an edge, its
+    component): ``I_C w+ + m rho_X x (w+ x rho_Q) = I_C w- + m rho_X x (w- x rho_P)``.
 
-    The closure is part of this project, not of the paper.
+    A rectangle that lands on its edge has the coefficient of the paper. A step of length zero has no loss. The loss of
+    n small steps is 1/n of the loss of one large step, so that a rim rolls without loss.
+
+    The closure is an assumption of this project, not of the paper.
     """
 
     name = "ked-3d"
@@ -288,7 +289,7 @@ class SpatialKed(ImpulsePositionModel):
         return (SpatialFlag.CUT,) * self.cut(impact.solid, _step(impact)) + super().flags(impact, velocity)
 
     def cut(self, solid: Solid, step: FloatArray) -> bool:
-        """Return True if k of a step is limited: the base is too narrow in this direction for the loss of the paper.
+        """Return True if k of a step is limited, because the base is too narrow in this direction for the loss.
 
         Parameters
         ----------
@@ -300,7 +301,7 @@ class SpatialKed(ImpulsePositionModel):
         Returns
         -------
         bool
-            True if the impulse position is moved to the new foot from beyond.
+            True if the impulse position is beyond the new foot and is moved to the new foot.
         """
         return impulse_position(solid).of_step(step) > 1.0 + _ROUNDING
 
@@ -312,13 +313,13 @@ def _step(impact: SpatialImpact) -> FloatArray:
 
 
 def _velocity_about(impact: SpatialImpact, step: FloatArray, k: float) -> FloatArray:
-    """Return the velocity with the angular momentum about X, (1 - k)/2 of the step behind the landing [rad/s]."""
+    """Return the velocity from angular momentum about X, at (1 - k)/2 of the step behind the landing point [rad/s]."""
     arm, back = impact.moments.centre, 0.5 * (1.0 - k) * impact.moments.mass * step
     momentum = impact.angular_momentum + _cross(back, _centre_velocity(impact))
     inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back  # Eq. 103
     if impact.edge is not None:
         return impact.edge * (dot(impact.edge, momentum) / dot(impact.edge, applied(inertia, impact.edge)))
-    # Cramer's rule for a matrix that is not symmetric: equal on all processors
+    # Cramer's rule for a matrix that is not symmetric; it gives equal bits on all processors
     a, b, c = inertia.T
     volume = dot(a, _cross(b, c))
     return np.array([dot(momentum, _cross(*pair)) for pair in ((b, c), (c, a), (a, b))]) / volume  # Eq. 103

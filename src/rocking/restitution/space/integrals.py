@@ -1,8 +1,9 @@
-"""Integrals over the mass of a solid, homogeneous about its landing point or edge, as sums over its surface.
+"""Integrals over the mass of a solid as sums over its surface. Integrands are homogeneous about landing point or edge.
 
-Stage 2 of KED depends on the attitude through the projection only, so that the moments are computed once per landing.
-They are not the tensors K of Eq. 106 but their components: v along the direction that stage 2 removes, or allows, is
-``(linear . A u + quadratic . B W)/length``, with the components of s and their products, in one symmetric matrix.
+Stage 2 of KED depends on the attitude only through the projection, so that the moments are computed once per landing.
+The moments are not the tensors K of Eq. 106, but their components in one symmetric matrix. The component of v along the
+direction that stage 2 removes, or allows, is ``(linear . A u + quadratic . B W)/length``, with the components of s
+(linear) and their products (quadratic).
 """
 
 import math
@@ -23,7 +24,7 @@ from rocking.restitution.ked import edge_integrals, ring_integral
 Features = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 _NEGLIGIBLE = 1e-17
-# a round surface is close to its tangent over a long distance: this is sufficient for 1e-10 of the integral
+# a round surface is close to its tangent over a long distance; this value is sufficient for 1e-10 of the integral
 _NEGLIGIBLE_ROUND = 1e-13
 _ALONG = 1e-12
 _STEEP = 1e-3
@@ -31,7 +32,7 @@ _CACHED = 256
 
 
 def line_moment(solid: Solid, edge: Edge) -> float:
-    """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in space."""
+    """Return ``Int z^4/(t^2 + z^2) dm`` about a line, the numerator of Eq. 17 (Mao et al. 2024) in 3D."""
     return _line_moment(solid, *edge.point.tolist(), *edge.direction.tolist())
 
 
@@ -70,7 +71,7 @@ def _extruded_moment(part: Part, prism: Prism, point: FloatArray, edge: FloatArr
 
 
 class _Facets:
-    """Flat faces of a part in its position, with each common edge once."""
+    """Flat faces of a part in its position. Common edges of faces are included once."""
 
     def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
         self.vertices, self.faces = vertices, faces
@@ -81,7 +82,7 @@ class _Facets:
         self.signs = np.where(ends[:, 0] == self.ends[self.numbers, 0], 1.0, -1.0)
 
     def moment(self, point: FloatArray, edge: FloatArray) -> float:
-        """Return ``Int z^4/(t^2 + z^2) dV`` about a line, t and z across it, z upwards [m5]."""
+        """Return ``Int z^4/(t^2 + z^2) dV`` about a line [m5], with t and z normal to the line and z upwards."""
         s = self.vertices - point
         cones = (self.areas * s[self.faces[:, 0]]).sum(axis=1)
         along = self.areas[:, 0] * edge[0] + self.areas[:, 1] * edge[1]
@@ -91,7 +92,7 @@ class _Facets:
         projected = np.stack([s[:, 1] * edge[0] - s[:, 0] * edge[1], s[:, 2]], axis=1)
         start, end = projected[self.ends[weights != 0.0]].swapaxes(0, 1)
         total = float((weights[weights != 0.0] * edge_integrals(start, end)).sum()) / 20.0  # Eq. 322
-        # along the line the other faces have no projected area, and would cancel
+        # other faces have no projected area along the line, and would cause cancellation
         horizontal_faces, distance = TriangleSurface(s[self.faces[~steep]]), distance_to(edge)
         negligible = _NEGLIGIBLE * float(np.abs(cones).sum() * np.square(s[:, 2]).max())
         for points, areas in samples([horizontal_faces], distance, negligible, height_squared):
@@ -117,7 +118,7 @@ def norm(s: FloatArray) -> FloatArray:
 
 
 def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
-    """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, degree k entry by entry."""
+    """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, with degree k of every entry."""
     distance, bound = graded
     shape, shift = part.shape, part.translation - point
     negligible = (_NEGLIGIBLE if isinstance(shape, Polyhedron) else _NEGLIGIBLE_ROUND) * shape.moments().mass
@@ -146,9 +147,9 @@ class KeptMoments:
     """Moments of the mass points with the velocities after stage 2 of KED."""
 
     form: FloatArray  # products of n quadratic and m linear features over the squared length; shape (n + m, n + m)
-    directions: FloatArray  # A: the directions of the linear features [-]; shape (m, 3)
-    products: FloatArray  # coefficients of each linear feature times s in the quadratic features [-]; shape (n, m, 3)
-    # mass, first and second moments about the landing point, from which the form is subtracted at a corner; zero at an
+    directions: FloatArray  # A: directions of the linear features [-]; shape (m, 3)
+    products: FloatArray  # coefficients of linear features times s in the quadratic features [-]; shape (n, m, 3)
+    # mass, first and second moments about the landing point; at a corner, the form is subtracted from these; zero at an
     # edge, where the form is added
     totals: tuple[float, FloatArray, FloatArray]
     sign: float
@@ -178,11 +179,11 @@ class KeptMoments:
 
     @cached_property
     def _factors(self) -> FloatArray:
-        """B: coefficient of each quadratic feature in ``sum A_i W_ik s_k``, shape (n, 3, 3)."""
+        """B: coefficients of the quadratic features in ``sum A_i W_ik s_k``, shape (n, 3, 3)."""
         return np.asarray(np.einsum("nqk,qi->nik", self.products, self.directions))
 
     def coefficients(self, drift: FloatArray, gradient: FloatArray) -> FloatArray:
-        """Return a field of velocities u [m/s] + W s, W [1/s], in the features of the form, quadratic ones first."""
+        """Return the coefficients of a velocity field u + W s (u [m/s], W [1/s]) in the features, quadratic first."""
         quadratic = applied(self._factors.reshape(-1, 9), gradient.ravel())
         return np.concatenate([quadratic, applied(self.directions, drift)])
 
@@ -198,7 +199,7 @@ class KeptMoments:
 
 def kept_moments(solid: Solid, onto: Corner | Edge) -> KeptMoments:
     """Return the moments after stage 2 of KED about a corner or an edge in the frame of the solid [m]."""
-    # about a corner two of three directions remain: the trace is twice the mass; about an edge it is the mass
+    # about a corner, two of three directions remain, so that the trace is twice the mass; about an edge, it is the mass
     if isinstance(onto, Edge):
         return _about_line(solid, *onto.point.tolist(), *onto.direction.tolist())
     return _about_point(solid, *onto.point.tolist())
@@ -233,7 +234,7 @@ def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -
 
 
 def edge_frame(direction: FloatArray) -> FloatArray:
-    """Return the axes of an edge as rows: e along it, f = n x e level across it, and g = e x f."""
+    """Return the axes of an edge as rows: e along the edge, f = n x e horizontal across the edge, and g = e x f."""
     across = np.cross(_UP, direction)
     across /= math.sqrt(dot(across, across))
     return np.stack([direction, across, np.cross(direction, across)])
@@ -242,7 +243,7 @@ def edge_frame(direction: FloatArray) -> FloatArray:
 def _corner_features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
     inverse = 1.0 / np.maximum(norm(s), 1e-300)
     quadratic = s[:, _PAIRS[:, 0]] * s[:, _PAIRS[:, 1]]
-    # degrees over |s|: one less than those of the features
+    # degrees over |s| are one less than the degrees of the features
     return np.column_stack([quadratic, s]) * inverse[:, None], np.repeat([1.0, 0.0], [6, 3])
 
 

@@ -1,4 +1,4 @@
-"""Restitution models in space by name, and impacts of solids."""
+"""3D restitution models by name, and impacts of solids."""
 
 from functools import partial
 from typing import Any
@@ -26,7 +26,7 @@ _MODELS: dict[str, type[SpatialModel]] = {
 
 
 def spatial_models() -> dict[str, type[SpatialModel]]:
-    """Return the restitution models in space.
+    """Return the 3D restitution models.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def spatial_models() -> dict[str, type[SpatialModel]]:
 
 
 def spatial_model(model: str | SpatialModel) -> SpatialModel:
-    """Return a model in space by name.
+    """Return a 3D model by name.
 
     Parameters
     ----------
@@ -74,38 +74,38 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
 def impact_in_space(
     solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model: Any = DEFAULT_RESTITUTION
 ) -> SpatialRestitution:
-    """Return the result of an impact in space.
+    """Return the result of a 3D impact.
 
     Parameters
     ----------
     solid : Solid
-        The body, upright at the impact in its described position.
+        The body, which is upright at the impact.
     velocity : array_like, shape (3,)
-        Angular velocity before, along the axis and right-handed [rad/s].
+        Angular velocity before the impact, along the axis of rotation and right-handed [rad/s].
     pivot : Corner, Edge or array_like, shape (2,)
-        Pivot before the impact: a point (x, y) of the ground in the user's coordinates, a corner or an edge [m].
+        Pivot before the impact: a point (x, y) of the ground in coordinates of the user [m], a corner or an edge.
     onto : Corner, Edge or array_like, shape (2,)
-        Corner or edge of landing; a point (x, y) means a corner [m].
+        Corner or edge of landing. A point (x, y) means a corner [m].
     model : str or SpatialModel
         The model.
 
     Returns
     -------
     SpatialRestitution
-        Angular velocity after, energies, flags.
+        Angular velocity after the impact, energies, flags.
 
     Raises
     ------
     InvalidValueError
-        If the body does not rotate towards the ground, or a value is not finite.
+        If the body does not rotate towards the ground, or if a value is not finite.
     UnknownModelError
         If the name of the model is unknown.
     GeometryError
-        If pivot or landing point are not points of the base: above the ground, or outside the base.
+        If pivot or landing point are not points of the base, because they are above the ground or outside the base.
 
     Examples
     --------
-    A prism that rotates from one corner over its diagonal onto the opposite corner:
+    A prism rotates from one corner over its diagonal onto the opposite corner:
 
     >>> from rocking.bodies.solid import Solid, box
     >>> prism = Solid(box(1.0, 1.0, 4.0))
@@ -142,14 +142,14 @@ def _placed(solid: Solid) -> Placed:
 def edge_coefficient(
     solid: Solid, model: Any = DEFAULT_RESTITUTION, *, start: float = 0, onto: float | None = None
 ) -> float:
-    """Return the coefficient of restitution of a body that rotates from one edge of its base onto another.
+    """Return the coefficient of restitution of a body that rotates from one edge of its base onto another edge.
 
-    A free round base has no such impact: it rolls around its rim, and in the ideal model it conserves its energy at
-    the flat position (M. Srinivasan, A. Ruina, "Rocking and rolling: a can that appears to rock might actually roll",
-    2008). For a round base the result is the coefficient of a drum guided in one vertical plane. Do not use it for a
-    free drum, whose rolling the response in space computes.
+    A free round base has no such impact. It rolls around its rim, and the ideal model conserves its energy at the flat
+    position (M. Srinivasan, A. Ruina, "Rocking and rolling: a can that appears to rock might actually roll", 2008). For
+    a round base, the result is the coefficient of a drum that is guided in one vertical plane. Do not use this result
+    for a free drum; the 3D response computes its rolling.
 
-    For an impact on the parallel edge the result is the plane coefficient. For an impact from an edge e1 on an edge e2
+    For an impact on the parallel edge, the result is the plane coefficient. For an impact from an edge e1 on an edge e2
     that is not parallel, KED and horizontal momentum give ``|e1 . e2|`` times the coefficient of e2, because the
     horizontal velocities are ``omega z (e1 x n)``.
 
@@ -160,9 +160,9 @@ def edge_coefficient(
     model : str or SpatialModel
         The model.
     start : float
-        Index of the edge of rotation before; for a round base the direction of the tangent point [rad].
+        Index of the edge of rotation before the impact. For a round base, the direction of the tangent point [rad].
     onto : float, optional
-        Index of the edge of landing; by default that on the opposite side. For a round base a direction [rad].
+        Index of the edge of landing; by default the edge on the opposite side. For a round base, a direction [rad].
 
     Returns
     -------
@@ -208,7 +208,7 @@ def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
 
 
 def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatArray:
-    """Return the point at rest nearest to the landing, the start of the step [m]."""
+    """Return the start of the step: the point at rest that is nearest to the landing [m]."""
     if isinstance(start, Corner):
         return start.point
     target = onto.point if isinstance(onto, Corner) else sum(_ends(solid, onto), np.zeros(3)) / 2.0
@@ -222,7 +222,7 @@ def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatAr
 
 
 def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:
-    """Return the ends of the segment of a line in contact with the base [m]."""
+    """Return the ends of the segment of a line that is in contact with the base [m]."""
     base, along = solid.local_base, edge.direction
     assert isinstance(base, (SupportPolygon, RoundBase))
     points = np.atleast_2d(base.vertices if isinstance(base, SupportPolygon) else base.centre)
@@ -233,7 +233,7 @@ def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:
 
 
 def _gap_of_line(base: Base, edge: Edge) -> float:
-    """Return the distance of a line on the ground from the base; zero or negative for contact [m]."""
+    """Return the distance of a line on the ground from the base [m]; zero or negative for contact."""
     reach = base.radius if isinstance(base, RoundBase) else 0.0
     if isinstance(base, RoundBase):
         points = base.centre[None]

@@ -1,4 +1,4 @@
-"""KED in space, point by point: the paper's three stages with this project's closure for the direction."""
+"""KED in 3D for single mass points: the three stages of the paper, with a closure of this project for the direction."""
 
 import math
 from dataclasses import dataclass
@@ -18,11 +18,11 @@ _PLANE = 1e-14
 
 @dataclass(frozen=True)
 class SpatialKedPoint(SpatialModel):
-    """Kinetic energy distribution in space: momentum gives the direction, energy the magnitude.
+    """Kinetic energy distribution in 3D: momentum gives the direction, and energy gives the magnitude.
 
-    Stage 1 removes the vertical velocity of every mass point, ``v = P_h v_-``; stage 2 the component along the line to
-    the new corner, ``v'' = (1 - d d^T) v``, or all but rotation about the new edge. Energy alone does not determine the
-    direction in space; the closure of this project is ``I_B w* = Int s x v'' dm`` and
+    Stage 1 removes the vertical velocity of every mass point, ``v = P_h v_-``. Stage 2 removes the component along the
+    line to the new corner, ``v'' = (1 - d d^T) v``, or all motion except rotation about the new edge. Energy alone does
+    not determine the direction in 3D. The closure of this project is ``I_B w* = Int s x v'' dm`` and
     ``omega_+ = w* sqrt(2 T''/(w* . I_B w*))``. The factor is never below 1 (Cauchy-Schwarz), and a plane motion
     about an edge gives Eq. 17, Mao et al. 2024.
     """
@@ -65,7 +65,7 @@ def energy_left(impact: SpatialImpact) -> float:
 
 
 def _is_plane(impact: SpatialImpact, edge: Edge, size: float) -> bool:
-    """Return True for a plane motion about an edge, where Eq. 17 has one integral, exact for extrusions."""
+    """Return True for a plane motion about an edge. Eq. 17 then has one integral, which is exact for extrusions."""
     slow, across = _PLANE * impact.speed, np.cross(impact.up, edge.direction)
     upright = abs(impact.up[0]) + abs(impact.up[1]) <= _PLANE
     still = abs(dot(impact.landing_velocity, across)) <= slow * size

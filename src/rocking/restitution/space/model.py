@@ -1,4 +1,4 @@
-"""Base classes of restitution models in space: angular velocity after the impact, with reference and defects."""
+"""Base classes of 3D restitution models: angular velocity after the impact, reference and defects."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _TOUCH = 1e-12
 
 
 class SpatialFlag(Enum):
-    """Warning about an impact in space; the value is a sentence for reports."""
+    """Warning about a 3D impact. The value is a sentence for reports."""
 
     STOPS = "the model rotates the body into the ground: the body stops and does not step onto the new edge"
     PENETRATES = (
@@ -33,7 +33,7 @@ class SpatialFlag(Enum):
 
 @dataclass(frozen=True, eq=False)
 class SpatialRestitution:
-    """Result of a model for an impact in space.
+    """Result of a model for a 3D impact.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ class SpatialRestitution:
     impact : SpatialImpact
         The impact.
     raw_velocity : ndarray, shape (3,)
-        Angular velocity by the model's equation [rad/s].
+        Angular velocity by the equation of the model [rad/s].
     velocity : ndarray, shape (3,)
-        Angular velocity after the impact; zero for a body that stops [rad/s].
+        Angular velocity after the impact [rad/s]; zero for a body that stops.
     flags : tuple of SpatialFlag
         Warnings about the impact.
     """
@@ -57,7 +57,7 @@ class SpatialRestitution:
 
     @property
     def coefficient(self) -> float:
-        """Magnitude of the angular velocity after the impact over that before [-]."""
+        """Ratio of the magnitudes of the angular velocity after and before the impact [-]."""
         return norm(self.velocity) / self.impact.speed
 
     @property
@@ -72,12 +72,12 @@ class SpatialRestitution:
 
     @property
     def energy_ratio(self) -> float:
-        """Kinetic energy after over before [-]."""
+        """Ratio of the kinetic energies after and before the impact [-]."""
         return self.energy_after / self.energy_before
 
 
 class SpatialModel(ABC):
-    """Base class of restitution models in space.
+    """Base class of 3D restitution models.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class SpatialModel(ABC):
     domain : str
         Impacts to which the model applies.
     needs_solid : bool
-        True if the model needs the distribution of mass, in addition to mass, centre and inertia.
+        True if the model needs the distribution of mass in addition to mass, centre and inertia.
     """
 
     name: ClassVar[str]
@@ -105,7 +105,10 @@ class SpatialModel(ABC):
 
     @abstractmethod
     def angular_velocity(self, impact: SpatialImpact) -> FloatArray:
-        """Return the angular velocity by the model's equation about the corner or edge of landing, in any attitude.
+        """Return the angular velocity by the equation of the model, about the corner or edge of landing.
+
+        The body may have any attitude.
+
 
         Parameters
         ----------
@@ -136,7 +139,7 @@ class SpatialModel(ABC):
         return ()
 
     def turned(self, impact: SpatialImpact) -> FloatArray:
-        """Return `angular_velocity` after a check for finite values.
+        """Return `angular_velocity`. Raise an error if a value is not finite.
 
         Parameters
         ----------
@@ -166,8 +169,7 @@ class SpatialModel(ABC):
         Parameters
         ----------
         impact : SpatialImpact
-            The impact, with its matter for the flags. For a tilted body, or a body with moments only, use
-            `turned`.
+            The impact. The flags need its matter. For a tilted body, or a body with moments only, use `turned`.
 
         Returns
         -------
@@ -177,7 +179,7 @@ class SpatialModel(ABC):
         Raises
         ------
         InvalidValueError
-            If the body is tilted or has no matter, or a value is not finite.
+            If the body is tilted or has no matter, or if a value is not finite.
         """
         solid, _ = impact.standing_solid
         raw = self.turned(impact)
@@ -190,7 +192,7 @@ class SpatialModel(ABC):
 
 
 def least_rise(impact: SpatialImpact, velocity: FloatArray) -> float:
-    """Return the smallest vertical velocity of the base of an upright body that turns about its landing point [m/s]."""
+    """Return the smallest vertical velocity of the base [m/s] of an upright body that turns about its landing point."""
     solid, origin = impact.standing_solid
     base = solid.local_base
     points = base.vertices if isinstance(base, SupportPolygon) else middle_of_base(solid)[None, :2]
