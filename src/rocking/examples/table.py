@@ -238,7 +238,7 @@ _ALL = (
     _body("column", "pulse.csv", "3D: three eccentric marble drums as one body on a round base, 2.7 m high"),
     _body("showcase", "soft-soil.csv --scale 1.2", "a showcase by its size, weight and centre of mass, 1.95 m high"),
     _body("bookshelf", "far-field.csv", "a full bookshelf across its depth, by its centre of mass, 2.02 m high"),
-    _body("cask", "x=near-fault.csv", "3D: a loaded upright transport cask, 5.075 m high"),
+    _body("cask", "x=near-fault.csv --scale 1.2", "3D: a loaded upright transport cask, 5.075 m high"),
     _body("drum", "pulse.csv", "3D: the lowest drum of a Doric column, 0.95 m high"),
     _body("gravestone", _AXES, "3D: a gravestone of granite on its base, 1.2192 m high"),
     _body("barrel", "near-fault.csv --scale 1.8", "3D: a full barrel of wine on its end, 0.945 m high"),
