@@ -1,4 +1,4 @@
-"""Measured or computed centre of mass and moment of inertia, in place of those of the outline."""
+"""Measured or computed centre of mass and moment of inertia, which replace the values of the outline."""
 
 import math
 from dataclasses import dataclass, replace

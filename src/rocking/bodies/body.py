@@ -232,7 +232,7 @@ class Body(ABC):
 
     @property
     def known(self) -> Known | None:
-        """Known centre of mass and moment of inertia in place of those of the outline, or None."""
+        """Known centre of mass and moment of inertia, which replace the values of the outline, or None."""
         return None
 
     @property

@@ -219,7 +219,7 @@ class Section(Body):
         width, height : float
             Full axes of the ellipse [m].
         sides : int
-            Number of sides; the lowest one is the base [-].
+            Number of sides; the lowest side is the base [-].
         **options
             As for `from_points`.
 

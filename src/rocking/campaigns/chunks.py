@@ -103,7 +103,8 @@ class Plan:
 def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     """Return the bytes of a shard; they contain no time, place or machine.
 
-    Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all these.
+    The bytes contain in this order: magic word, version, length of the header, the header in JSON, the columns
+    (little-endian), and the SHA-256 of all of these.
     """
     count = chunk.last - chunk.first
     kinds = {name: values.dtype.newbyteorder("<") for name, values in arrays.items()}

@@ -168,7 +168,7 @@ def _write_through(path: Path, data: bytes) -> None:
 
 
 class FolderLock:
-    """The lock of a running campaign; the system releases it at the end of the process."""
+    """The lock of a running campaign. The system releases the lock at the end of the process."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / NAME
@@ -176,7 +176,7 @@ class FolderLock:
 
     def __enter__(self) -> "FolderLock":
         handle = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o666)
-        deadline = time.monotonic() + _PATIENCE  # a process that only checks the lock holds it for an instant
+        deadline = time.monotonic() + _PATIENCE  # a mere check also holds the lock for an instant
         while not _take(handle):
             if time.monotonic() > deadline:
                 runs = _text(handle)

@@ -122,7 +122,7 @@ class Done(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class WorkerTask:
-    """Data for workers; it can be pickled."""
+    """Data for workers, which can be pickled."""
 
     histories: Histories
     engine: str  # required engine with fingerprint

@@ -207,7 +207,7 @@ def _cause(code: int | None) -> str:
 
 @contextlib.contextmanager
 def _no_interruption() -> Iterator[None]:
-    """Block Ctrl-C for a new worker until it ignores the signal."""
+    """Block Ctrl-C for a new worker until the worker ignores the signal."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

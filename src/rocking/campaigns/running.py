@@ -332,7 +332,7 @@ class _CampaignRun:
                 self.meter.chunks += 1
 
     def merge(self, number: int) -> bool:
-        """Merge the pieces of a chunk if it is complete."""
+        """Merge the pieces of a complete chunk."""
         chunk, pieces = self.plan.chunk(number), self.earlier.pieces[number]
         if sum(piece.last - piece.first for piece in pieces) < chunk.last - chunk.first:
             return False

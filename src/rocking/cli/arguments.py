@@ -289,7 +289,7 @@ class Arguments:
         return {axis: self.motion_table(word, keys[axis]) for axis, word in along.items()}
 
     def of_body(self, motions: Sequence[str]) -> Tables:
-        """Return the table [motion] of the body: of a 3D body if it is a solid or has a motion along y."""
+        """Return the table [motion] of the body; a solid, or a body with a motion along y, has components by axis."""
         return self.components(motions) if self.solid or "y" in _along(motions) else self.one_motion(motions)
 
     @staticmethod

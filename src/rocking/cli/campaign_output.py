@@ -202,7 +202,7 @@ def _sentence(job_status: JobStatus) -> str:
 
 @contextmanager
 def bar(title: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show the progress, rate and remaining time: a bar on a terminal, otherwise a line every few seconds."""
+    """Show the progress, rate and remaining time by a bar on a terminal, or otherwise by a line every few seconds."""
     if quiet:
         yield lambda progress: None
         return

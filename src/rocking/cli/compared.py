@@ -74,12 +74,12 @@ def grouped(outcomes: Mapping[str, str], shown: Collection[str]) -> list[list[st
 
 
 def spanned(display: Display, name: str, values: Iterable[float | None]) -> str:
-    """Return the smallest and largest value of models; one number if both have the same text."""
+    """Return the smallest and largest value of models, or one number if both have equal texts."""
     numbers = [value for value in values if value is not None and not math.isnan(value)]
     ends = (min(numbers), max(numbers)) if numbers else (None,)
     return "-".join(dict.fromkeys(display.cell(name, end) for end in ends))
 
 
 def by_foot(display: Display, left: Iterable[float], right: Iterable[float]) -> str:
-    """Return coefficients of restitution of the left and right foot; one entry if both have the same text."""
+    """Return coefficients of restitution of the left and right foot, or one entry if both have equal texts."""
     return " / ".join(dict.fromkeys(spanned(display, "coefficient", foot) for foot in (left, right)))

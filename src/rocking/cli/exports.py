@@ -1,4 +1,4 @@
-"""`--output FILE`: the extension selects the kind of file; `--output NAME=FILE` names it."""
+"""Option `--output FILE`: the extension selects the kind of file. `--output NAME=FILE` states the kind."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

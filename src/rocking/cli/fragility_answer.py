@@ -359,7 +359,7 @@ def _motions_line(facts: dict[str, Any]) -> str:
 
 
 def _too_few(fit: "LognormalFit") -> str:
-    """Return the reason for a missing interval, too few motions used at several levels; else empty."""
+    """Return the reason for a missing interval (too few motions that are used at several levels), or an empty text."""
     return fit.counts.scarcity if fit.counts.is_clustered else ""
 
 

@@ -44,8 +44,8 @@ def keys(
 ) -> Options:
     """Return the options of keys of a table by name, with type, default and help of the fields.
 
-    kind: type of all options, by default that of the field. defaults: defaults of keys without one in files.
-    more: texts appended to the help, by key.
+    `kind` is the type of all options, by default the type of the field. `defaults` contains defaults of keys that have
+    no default in files. `more` contains texts that are appended to the help, by key.
     """
     options = {}
     for name in dict.fromkeys((*names, *more)):

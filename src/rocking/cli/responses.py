@@ -57,7 +57,7 @@ _IN_PYTHON = "simulate(body, motion, friction=...)"
 
 
 def answer_of(problem: ResponseProblem, display: Display, *, listed: bool, details: bool) -> "ResponseAnswer":
-    """Return the response to a problem, and those of other models: the listed ones, or the default comparison."""
+    """Return the response to a problem, and the responses of other models: listed models, or the default comparison."""
     response = problem.answer()
     if response.outcome is Outcome.FAILED:
         raise RockingError("there is no response: {reason}", reason=response.status.value)

@@ -17,7 +17,7 @@ from rocking.quantities import closely
 from rocking.restitution.space import SpatialModel, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3  # tolerance of parallel edges [rad], because coordinates in files are rounded
-MOST_EDGES = 16  # largest number of computed edges: those of smallest slenderness angle
+MOST_EDGES = 16  # largest number of computed edges, which have the smallest slenderness angles
 DIRECTIONS = 4  # number of rocking directions of a round base, from x towards y
 
 ROUND_BASE = (
@@ -57,7 +57,7 @@ class SolidAnswer:
 
     @property
     def left_out(self) -> int:
-        """Number of edges that are not computed, those of largest slenderness angle."""
+        """Number of edges that are not computed, which have the largest slenderness angles."""
         base = self.solid.base
         return len(base.vertices) - len(self.edges) if isinstance(base, SupportPolygon) else 0
 

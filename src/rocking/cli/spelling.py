@@ -72,7 +72,7 @@ def _stated(context: typer.Context, option: Option) -> str:
 
 
 def _named(context: typer.Context, parameter: Parameter) -> str:
-    """Return the typed option of a parameter, its key if typed with --set, else its name."""
+    """Return the typed option of a parameter, or its key if typed with --set, or otherwise its name."""
     if any(text.partition("=")[0].strip() == parameter.path for text in context.params.get("sets") or ()):
         return parameter.path
     name = _KEYS.get(parameter.path, parameter.name)

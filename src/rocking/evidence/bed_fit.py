@@ -33,7 +33,7 @@ _WITHOUT = (math.nan,) * 8 + (1.0,) * 8 + (0.0, 0.0)
 class FittedNumber:
     """One fitted number of an explanation."""
 
-    name: str  # name
+    name: str
     start: float  # initial value of the fit
     bounds: tuple[float, float]  # range
     sets: slice  # columns of the argument of `coefficients` with this value
@@ -43,7 +43,7 @@ class FittedNumber:
 class Physics:
     """One explanation, as a family of predictions."""
 
-    name: str  # short name
+    name: str  # short name of the explanation
     sentence: str  # explanation as a sentence
     parameters: tuple[FittedNumber, ...]  # the fitted numbers, without the number of points
 
@@ -149,7 +149,7 @@ def _by_group(name: str, start: float, bounds: tuple[float, float], columns: sli
 class BedFit:
     """One explanation at its maximum likelihood parameters."""
 
-    physics: Physics  # the explanation
+    physics: Physics  # the fitted explanation
     points: int  # maximum likelihood number of contact points of the table [-]
     values: dict[str, float]  # maximum likelihood parameters
     floor: float  # floor, slope: scatter around the prediction, as in `likelihood.scatter` [-]

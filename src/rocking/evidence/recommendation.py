@@ -21,7 +21,7 @@ LEGEND = (
     "kept: fraction of energy after two impacts, one on each foot. to half: impacts that halve the energy. bias, "
     "error: mean and root mean square of r minus the measurement."
 )
-"""Columns of the table, except those of r."""
+"""Columns of the table, except the columns of r."""
 APART = 3.92  # standard errors between two values, so that 97.5 % of measurements are nearer to the correct value
 
 

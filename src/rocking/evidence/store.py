@@ -64,7 +64,7 @@ def _once(sets: Sequence[tuple[str, DataSet]]) -> None:
 
 
 def add(path: Path) -> tuple[Path, DataSet, bool]:
-    """Check a file of measurements and copy it into the store; return the copy, its data, and True if it is new."""
+    """Check a file of measurements and copy it into the store; return the copy, its data, and True for a new file."""
     from rocking.evidence.measurement_file import read_measurements
 
     data = read_measurements(path)

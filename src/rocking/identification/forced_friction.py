@@ -1,4 +1,4 @@
-"""Coefficient of friction from half cycles with sliding: its evidence, with all other unknowns fitted again.
+"""Coefficient of friction from half cycles with sliding. All other unknowns are fitted for each tried coefficient.
 
 Friction has no moment about the foot, so an impact hardly depends on friction. The half cycle after the impact depends
 on friction. Therefore slip is computed through impacts.
@@ -121,7 +121,7 @@ def _continued_fits(
     steps: tuple[float, float, float],
     within: tuple[float, float, float],
 ) -> dict[float, tuple[Fit, float]]:
-    """Return fits and ln of their evidence, by ln of a known friction; each fit begins at the previous one.
+    """Return fits and ln of their evidence, by ln of a known friction; each fit begins at the previous fit.
 
     `noise_and_scatter` are those of the fits. `steps` are the start, the first step, and the ratio of successive steps.
     `within` are both ends, and the largest decrease of ln of the evidence.

@@ -43,12 +43,12 @@ class Posterior:
     """Weighted normal distributions of the unknowns, one per pair of scatter and noise in a grid of size g."""
 
     model: Model
-    weights: FloatArray  # shape (g,)
-    scatter: FloatArray  # shape (g,)
-    noise: FloatArray  # shape (g,)
-    u: FloatArray  # mean of the d unknowns, shape (g, d)
-    covariance: FloatArray  # shape (g, d, d)
-    residuals: FloatArray  # shape (g, m)
+    weights: FloatArray  # weights of the distributions, shape (g,)
+    scatter: FloatArray  # standard deviation of ln r at an impact, shape (g,)
+    noise: FloatArray  # standard deviation of the noise, shape (g,)
+    u: FloatArray  # means of the d unknowns, shape (g, d)
+    covariance: FloatArray  # covariances of the unknowns, shape (g, d, d)
+    residuals: FloatArray  # measured minus computed values, shape (g, m)
     evidence: float  # ln of the probability density of the measurement
     converged: bool
 

@@ -257,10 +257,10 @@ class Laplace:
     """The posterior for each pair of scatter and noise, as a normal distribution of the unknowns."""
 
     u: FloatArray  # unknowns at the maximum, shape (g, d)
-    covariance: FloatArray  # shape (g, d, d)
+    covariance: FloatArray  # covariances of the unknowns, shape (g, d, d)
     evidence: FloatArray  # ln of the probability density of the measurement, shape (g,)
-    residuals: FloatArray  # shape (g, m)
-    converged: BoolArray  # shape (g,)
+    residuals: FloatArray  # measured minus computed values, shape (g, m)
+    converged: BoolArray  # True after convergence, shape (g,)
 
 
 def laplace(model: Model, observer: Observer, scatter: FloatArray, noise: FloatArray, u: FloatArray) -> Laplace:

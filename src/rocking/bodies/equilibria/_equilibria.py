@@ -55,7 +55,8 @@ class Equilibria:
     surface : ndarray, shape (n, 3)
         All given points of the surface relative to the centre of mass, including points inside the hull [m].
     basins : dict of int to int
-        Index of the final pose of each stable facet of the hull; the indices of rings follow those of stable poses.
+        Index of the final pose of each stable facet of the hull. The indices of rings follow the indices of stable
+        poses.
     links : tuple of (int, int, Equilibrium)
         Two poses and the saddle between them, sorted by height.
 
@@ -152,7 +153,7 @@ class Equilibria:
         Returns
         -------
         tuple of Pass
-            Lowest pass to each neighbour, sorted by height; the indices of rings follow those of stable poses.
+            Lowest pass to each neighbour, sorted by height; the indices of rings follow the indices of stable poses.
         """
         self._check(pose)
         passes: dict[int, Pass] = {}

@@ -62,7 +62,7 @@ def base_tolerances(
     equilibria : Equilibria
         Equilibria of the body.
     pose : StablePose, optional
-        Pose of the body; the default is the pose that it reaches from -z downward.
+        Pose of the body; the default is the pose that the body reaches from -z downward.
     tolerances : sequence of float
         Largest heights of contact points above the ground [m].
 

@@ -207,7 +207,7 @@ class Polytope:
         raise GeometryError(_ENDLESS)
 
     def moved(self, shift: FloatArray) -> "Polytope":
-        """Return the polytope about a centre at a distance from the present one [m]."""
+        """Return the polytope about a centre that is shifted from the present centre [m]."""
         heights = self.heights - (self.normals * shift).sum(axis=1)
         other = Polytope(self.vertices - shift, self.normals, heights, self.ends, self.sides)
         other.__dict__.update({name: getattr(self, name) for name in ("along", "borders", "_by_facet")})
@@ -249,7 +249,7 @@ def _hull(points: FloatArray) -> Surface:
 
 
 def _closed(points: FloatArray, faces: IntArray) -> Surface | None:
-    """Return a surface with the neighbours of its triangles, or None if it is not closed like a sphere."""
+    """Return a surface with the neighbours of its triangles, or None for a surface that is not closed like a sphere."""
     start, end = np.roll(faces, -1, axis=1).ravel(), np.roll(faces, -2, axis=1).ravel()
     if len(faces) % 2 or np.count_nonzero(np.bincount(start)) != len(faces) // 2 + 2:
         return None

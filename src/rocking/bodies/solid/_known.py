@@ -1,4 +1,4 @@
-"""Checks of the moments of parts, and known moments in place of those of the parts."""
+"""Checks of the moments of parts, and known moments, which replace the moments of the parts."""
 
 import math
 from collections.abc import Sequence

@@ -11,8 +11,8 @@ _MOST_PAIRS = 2_000_000  # largest number of pairs of points and faces that are 
 
 def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
     """Return True for points inside a closed, oriented surface, shape (n,)."""
-    # Upward faces above a point count +1, downward faces -1; the sum is 1 inside. Points and faces are sorted into
-    # tiles of the plan, so only the faces near the vertical line of a point are checked.
+    # An upward face above a point adds 1, and a downward face subtracts 1; the sum is 1 inside. Points and faces are
+    # sorted into tiles of the plan, so only the faces near the vertical line of a point are checked.
     return winding(points, triangles) > 0.5
 
 

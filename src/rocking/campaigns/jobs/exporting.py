@@ -209,7 +209,7 @@ def checked(
     folder: JobFolder, path: str | os.PathLike[str], table: str | None, restitution: str | None,
     crossing_curves: Crossing | None, bootstrap: int | None = None,
 ) -> tuple[Path, str]:  # fmt: skip
-    """Return the path and table of an export, or refuse it."""
+    """Return the path and table of an export, or raise an error for an impossible export."""
     target = target_of(path)
     table = exports_of(folder)[0] if table is None else checks.one_of("table", table, ENDINGS)
     suffix = target.suffix.lower()

@@ -120,7 +120,7 @@ class Rounds:
         return {"rounds": self.number, "histories": self.histories}
 
     def compute(self, histories: Histories) -> Arrays:
-        """Return the results of the next round, from disk if it was computed before."""
+        """Return the results of the next round; results of an earlier computation are read from disk."""
         path, results = round_folder(self.folder, self.number), None
         with self._stopping():
             if self.between.requested():

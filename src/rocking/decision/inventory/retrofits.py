@@ -179,7 +179,7 @@ class _Subject:
         return {way: [Landings(body, models) for body in bodies] for way, bodies in self._bodies.items()}
 
     def searches(self) -> Iterator[_Search]:
-        """Yield the searches of measures, with the change without uplift in closed form."""
+        """Yield the searches of measures; the upper end is the change without uplift, in closed form."""
         planner = self.planner
         limits = np.array(
             [lengths_without_uplift(body, planner.strongest, 1.0, planner.gravity) for body in self._worst]

@@ -192,7 +192,7 @@ class SampledInSpace(SampledBodies):
 
 
 def _rotated(vectors: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return horizontal vectors rotated by angles about the vertical, from axes of the body to those of the ground."""
+    """Return horizontal vectors rotated by angles about the vertical: from axes of the body to axes of the ground."""
     c, s, (x, y) = np.cos(angle), np.sin(angle), vectors.T
     return np.column_stack([c * x - s * y, s * x + c * y])
 

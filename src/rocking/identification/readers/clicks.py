@@ -81,7 +81,7 @@ class HeardClicks:
 
 
 def find_clicks(sound: FloatArray, rate: float) -> HeardClicks:
-    """Return the clicks of a sound, including faint ones."""
+    """Return the clicks of a sound, including faint clicks."""
     sound = without_hum(sound, rate)
     filtered = emphasised(sound, rate)
     hop = max(1, round(rate * STEP))

@@ -1,4 +1,4 @@
-"""Detection of the impacts of one rocking body among many clicks, by the law of their times.
+"""Detection of the impacts of one rocking body among many clicks, by the law of the times of impacts.
 
 The time between impacts of a slender body is T_n = (2/p) atanh y_n, and y_n decreases by the coefficient of
 restitution: y_(n+1) = r y_n (Housner 1963). With unequal sides or a tilted floor, y_n alternates. The ratio to the last

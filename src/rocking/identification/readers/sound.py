@@ -99,7 +99,7 @@ def revised(
     last = numbers[-1] - int(np.cumsum(certainties)[::-1].argmax())
     kept = (orders <= last) & (certainties[orders] > MISSED)
     times, orders, members = times[kept], orders[kept], members[kept]
-    # only one more impact, because a second one would depend on an undetected impact
+    # only one more impact, because a second impact would depend on an undetected impact
     return _with_missed_impact(sharp, rate, times, orders, members, int(orders[-1]) + 1)
 
 

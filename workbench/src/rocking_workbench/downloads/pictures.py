@@ -182,7 +182,7 @@ def _reach(responses: Mapping[str, Response]) -> tuple[float, float]:
 
 
 def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
-    """Return colour and dash by label: those of the model, used once per family, otherwise spare ones."""
+    """Return colour and dash by label: the style of the model for the first of a family, otherwise a spare style."""
     looks: dict[str, dict[str, object]] = {}
     taken: set[str] = set()
     styles = model_styles()

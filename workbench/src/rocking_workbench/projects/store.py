@@ -199,7 +199,7 @@ class ProjectStore:
 
     @_alone
     def delete(self, project: str) -> Project:
-        """Delete a project; it can be restored for a limited time."""
+        """Delete a project, which can be restored for a limited time."""
         self.get(project)
         with self._changing() as database:
             database.execute(

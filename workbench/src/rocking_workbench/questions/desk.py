@@ -247,7 +247,7 @@ class QuestionDesk:
         self.runner.delete(self.runner.get(QuestionRun, question))
 
     def close(self) -> None:
-        """Stop the current run; it restarts with the next server."""
+        """Stop the current run, which restarts with the next server."""
         self.runner.close()
         self._let_go()
 

@@ -166,7 +166,7 @@ def outcomes_result(study: OpenStudy) -> dict[str, Any]:
 
 
 def findings_of(study: OpenStudy) -> dict[str, Any]:
-    """Return the summary of a study as a table, if it has one."""
+    """Return the summary of a study as a table, or no table for a study without a summary."""
     dataset = study.job.study.dataset(study.results)
     columns = AnswerRows.of_records(study.question.findings(study.job.problem, dataset)).columns
     about = {name: quantity(name) or Quantity(name, "", "") for name in columns}

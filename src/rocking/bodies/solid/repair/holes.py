@@ -119,7 +119,7 @@ def _not_closed(loops: list[IntArray], points: FloatArray, log: RepairLog) -> st
 
 
 def _is_bottom(points: FloatArray, faces: IntArray, ring: IntArray) -> bool:
-    """Return True for the rim of a bottom: it is nearly horizontal and low, and its outward normal points downwards."""
+    """Return True for the rim of a bottom: a nearly horizontal, low rim with a downward outward normal."""
     low, high, normal = points[:, 2].min(), points[:, 2].max(), _normal(points[ring])
     is_level = abs(normal[2]) >= _LEVEL * np.linalg.norm(normal)
     if not is_level or np.median(points[ring, 2]) - low > LOW * (high - low):

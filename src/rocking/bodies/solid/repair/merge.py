@@ -66,7 +66,7 @@ def remove_duplicates(faces: IntArray, log: RepairLog) -> IntArray:
     _, first, inverse = np.unique(numbered(np.stack([edge, high], axis=1)), return_index=True, return_inverse=True)
     if len(first) == len(faces):
         return faces
-    # faces with equal corners: those of the same orientation are one face, those of opposite orientation cancel
+    # of faces with equal corners, faces of equal orientation are one face, and faces of opposite orientation cancel
     net = np.bincount(inverse, weights=_parity(faces), minlength=len(first))
     sense = _parity(faces[first])
     keep = net != 0.0

@@ -214,7 +214,7 @@ def _overlap(first_shell: FloatArray, second_shell: FloatArray) -> bool:
     points = grid_points(low, high, _GRID)
     for shell in (first_shell, second_shell):
         points = points[inside(points, shell) | inside(points, shell[:, ::-1])]
-    # the common box must be smaller than the smaller shell: otherwise one shell contains the other
+    # if the common box is not smaller than the smaller shell, one shell contains the other
     volume_difference = np.prod(high - low) - np.prod(
         np.minimum(np.ptp(first_shell, axis=(0, 1)), np.ptp(second_shell, axis=(0, 1)))
     )

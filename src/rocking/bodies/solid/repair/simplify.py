@@ -48,7 +48,7 @@ def simplify(points: FloatArray, faces: IntArray, log: RepairLog) -> tuple[Float
 
 
 def _hull_distance(points: FloatArray, fewer: FloatArray, bound: float) -> float:
-    """Return the largest distance of a hull outside the hull of fewer points, or a lower bound below `bound` [m]."""
+    """Return the largest distance of points outside the hull of fewer points [m]; approximate up to `bound`."""
     from scipy.spatial import ConvexHull, cKDTree
 
     corners = points[ConvexHull(points).vertices]

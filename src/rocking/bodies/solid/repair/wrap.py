@@ -179,7 +179,7 @@ def _inside(across: IntArray, gate: FloatArray, radius: float) -> BoolArray:
 
 
 def _without_crumbs(inside: BoolArray, across: IntArray, volumes: FloatArray) -> BoolArray:
-    """Return True for cells inside, without small separate groups."""
+    """Return True for cells inside, but not for cells in small separate groups."""
     cell, side = np.nonzero(inside[:, None] & (across >= 0) & inside[across])
     labels = connected(len(across), cell, across[cell, side])
     room = np.bincount(labels, weights=np.where(inside, volumes, 0.0))

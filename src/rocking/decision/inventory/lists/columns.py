@@ -147,7 +147,7 @@ def _bare(tokens: Sequence[str]) -> tuple[list[str], str]:
     kept = list(tokens)
     while kept and kept[-1] in _FILLERS - UNITS.keys():
         kept.pop()
-    unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # last word: "foot width" has no unit
+    unit = UNITS[kept.pop()] if kept and kept[-1] in UNITS else ""  # not "foot width"
     return kept, unit
 
 
