@@ -84,7 +84,8 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
 def length(name: str, value: Any) -> float:
     """Return `value` as a valid length of a body [m]."""
     positive(name, value, "m")
-    return within(name, value, SMALLEST, LARGEST, unit="m", hint="check the unit")
+    result = within(name, value, SMALLEST, LARGEST, unit="m", hint="check the unit")
+    return value if isinstance(value, Assumed) else result
 
 
 def density(name: str, value: Any) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies._known import Known, density_of
-from rocking.bodies.body import DEFAULT_DENSITY, GROUND_TOLERANCE, Body, Interval, feet_of
+from rocking.bodies.body import DEFAULT_DENSITY, DEFAULT_DEPTH, GROUND_TOLERANCE, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError
@@ -27,11 +27,12 @@ class Block(Body):
     Parameters
     ----------
     width : float
-        Full width B = 2b [m].
+        Full width B = 2b, in the direction of the motion [m].
     height : float
         Full height H = 2h [m].
     depth : float
-        Depth out of the plane [m].
+        Depth out of the plane [m]. The motion does not act along the depth; `assumed` contains a note if a stated depth
+        is smaller than the width.
     density : float
         Density [kg/m3]; the default is that of plain concrete. The coefficient of restitution does not depend on the
         density.
@@ -95,7 +96,7 @@ class Block(Body):
         *,
         width: float,
         height: float,
-        depth: float = 1.0,
+        depth: float = DEFAULT_DEPTH,
         density: float = DEFAULT_DENSITY,
         mass: float | None = None,
         centre: tuple[float, float] | None = None,
@@ -248,7 +249,7 @@ class Block(Body):
         return Block(
             width=self.width * size,
             height=self.height * size,
-            depth=self.depth * size,
+            depth=type(self.depth)(self.depth * size),
             density=type(self.density)(self.density * density),
             feet=feet,
             **({} if known_moments is None else known_moments.arguments()),
@@ -256,6 +257,33 @@ class Block(Body):
 
     def with_feet(self, left: float, right: float) -> "Block":
         return self._changed(1.0, 1.0, self.known, (left, right))
+
+    @classmethod
+    def along_depth(cls, body: Body) -> "Block":
+        """Return the block with the motion of a body along its depth; its base has the full depth.
+
+        Parameters
+        ----------
+        body : Block or Section
+            Body with a depth.
+
+        Returns
+        -------
+        Block
+            Block with the mass, the height of the centre of mass and the moment of inertia of the body.
+
+        Examples
+        --------
+        >>> Block.along_depth(Block(width=0.8, height=2.0, depth=0.5)).width
+        0.5
+        """
+        moments, (_, low, _, high), depth = body.local_moments, body.local_box, body.depth
+        across = moments.mass * depth**2 / 12.0
+        known: dict[str, Any] = {"centre": (0.5 * depth, moments.y - low), "moment_of_inertia": across + moments.yy}
+        if isinstance(body, Block) and body.known is None:
+            known = {}
+        left, right = body.local_feet
+        return cls(width=depth, height=high - low, depth=right - left, mass=moments.mass, **known)
 
     def to_section(self) -> "Section":
         """Return the block as a `Section` of one region.

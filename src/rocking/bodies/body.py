@@ -78,6 +78,8 @@ Interval = tuple[float, float]
 
 DEFAULT_DENSITY = Assumed(2400.0)  # plain concrete [kg/m3]; without effect on restitution of a homogeneous body
 
+DEFAULT_DEPTH = Assumed(1.0)  # out of the plane [m]; no rotation depends on it
+
 GROUND_TOLERANCE = 1e-9
 """Tolerance of vertices on the ground and of feet on the base: distance / body size."""
 
@@ -147,6 +149,35 @@ class Body(ABC):
         left, right : float
             New positions of the feet in the user's coordinates [m].
         """
+
+    @property
+    def depth(self) -> float:
+        """Depth out of the plane, by default assumed [m]."""
+        return DEFAULT_DEPTH
+
+    @property
+    def is_weaker_along_depth(self) -> bool:
+        """True if uplift begins earlier along the stated depth than along the width."""
+        (left, right), x = self.local_feet, self.local_moments.x
+        is_stated = not isinstance(self.depth, Assumed)
+        return is_stated and 0.5 * self.depth < (1.0 - GROUND_TOLERANCE) * min(x - left, right - x)
+
+    @property
+    def depth_note(self) -> str:
+        """Note that the smaller resistance along the depth is not computed; empty if the width is the weaker side."""
+        if not self.is_weaker_along_depth:
+            return ""
+        (left, right), moments = self.local_feet, self.local_moments
+        facts = {
+            "width": right - left, "depth": self.depth, "limit": 0.5 * self.depth / moments.y,
+            "own": min(moments.x - left, right - moments.x) / moments.y,
+        }  # fmt: skip
+        return Message(
+            "only motion along the width of {width:.3g} m is computed. The depth of {depth:.3g} m is smaller: along "
+            "the depth uplift begins at {limit:.3g} g, along the width at {own:.3g} g. Exchange width and depth to "
+            "compute the motion along the depth",
+            facts,
+        )
 
     @property
     def mass(self) -> float:
@@ -239,7 +270,7 @@ class Body(ABC):
     def assumed(self) -> tuple[str, ...]:
         """Assumed values, as texts."""
         density = (Message("density {assumed}", {"assumed": text}) for text in assumed_density(self.densities))
-        return (*density, *(() if self.known is None else self.known.assumed))
+        return (*density, *(() if self.known is None else self.known.assumed), *filter(None, [self.depth_note]))
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import shapes
 from rocking.bodies._known import Known, density_of
-from rocking.bodies.body import DEFAULT_DENSITY, GROUND_TOLERANCE, Body, Interval, feet_of
+from rocking.bodies.body import DEFAULT_DENSITY, DEFAULT_DEPTH, GROUND_TOLERANCE, Body, Interval, feet_of
 from rocking.bodies.moments import PlaneMoments, combined_plane, ring_moments
 from rocking.bodies.region import Region, check_disjoint
 from rocking.conventions import FloatArray
@@ -28,7 +28,8 @@ class Section(Body):
     feet : (float, float), optional
         Positions of the left and right foot on the ground [m]; the default is the ends of the base.
     depth : float
-        Depth out of the plane [m].
+        Depth out of the plane [m]. The motion does not act along the depth; `assumed` contains a note if a stated depth
+        is smaller than the base.
     ground : float
         Height of the ground, equal to that of the lowest vertices [m].
     mass : float, optional
@@ -74,7 +75,7 @@ class Section(Body):
         regions: Sequence[Region],
         feet: tuple[float, float] | None = None,
         *,
-        depth: float = 1.0,
+        depth: float = DEFAULT_DEPTH,
         ground: float = 0.0,
         mass: float | None = None,
         centre: tuple[float, float] | None = None,
@@ -324,7 +325,7 @@ class Section(Body):
     ) -> "Section":
         section = object.__new__(Section)
         section.regions = tuple(region.mapped(change, density) for region in self.regions)
-        section._depth, section._size = self._depth * size, self._size * size
+        section._depth, section._size = type(self._depth)(self._depth * size), self._size * size
         section._known = self._known
         section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
         return section

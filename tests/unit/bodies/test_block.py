@@ -194,3 +194,33 @@ def test_single_point_above_the_foot_loses_nothing_and_on_the_ground_all():
     assert rk.coefficient_of_restitution(body, "ked") == pytest.approx(expected, rel=1e-13, abs=0.0)
     assert expected != pytest.approx(1.0, rel=1e-3)
     assert isinstance(GeometryError("x"), InvalidValueError)
+
+
+def test_note_of_a_weaker_depth():
+    """A stated depth below the width is noted with both uplift limits, depth/height and width/height of a block."""
+    facts = rk.Block(width=0.8, height=2.0, depth=0.5).depth_note.facts
+    assert (facts["width"], facts["depth"]) == (0.8, 0.5)
+    assert facts["limit"] == pytest.approx(0.5 / 2.0, rel=1e-14, abs=0.0)
+    assert facts["own"] == pytest.approx(0.8 / 2.0, rel=1e-14, abs=0.0)
+    inset = rk.Block(width=0.8, height=2.0, depth=0.5, feet=(0.2, 0.6))  # the base is narrower than the depth
+    unstated, points = rk.Block(width=1.2, height=2.0), rk.MassPoints([(0.0, 1.0)], [1.0], feet=(-2.0, 2.0))
+    for body in (inset, unstated, unstated.scaled(size=0.5), points, rk.Block(width=0.8, height=2.0, depth=0.8)):
+        assert body.depth_note == ""
+        assert not body.is_weaker_along_depth
+    block = rk.Block(width=0.8, height=2.0, depth=0.5)
+    for body in (block, block.scaled(size=2.0), block.to_section(), block.mirrored()):
+        assert body.assumed[-1] == body.depth_note != ""
+
+
+def test_block_along_the_depth():
+    """The body along its depth is that of the extruded solid, rotated by a quarter turn."""
+    section = rk.Section([
+        rk.Region([(0.0, 0.0), (1.0, 0.0), (0.7, 2.5), (0.3, 2.5)], density=2400.0),
+        rk.Region([(0.3, 2.5), (0.7, 2.5), (0.6, 3.0), (0.4, 3.0)], density=900.0),
+    ], depth=0.6)  # fmt: skip
+    side = rk.Block.along_depth(section).side("left")
+    turned = rk.Solid.from_section(section).in_plane(0.5 * math.pi).side("left")
+    along_width = section.side("left")
+    for name in ("half_width", "centre_height", "mass", "moment_of_inertia"):
+        assert getattr(side, name) == pytest.approx(getattr(turned, name), rel=1e-12, abs=0.0)
+    assert side.moment_of_inertia != pytest.approx(along_width.moment_of_inertia, rel=1e-2)

@@ -12,7 +12,7 @@ import numpy as np
 
 from rocking.bodies import shapes
 from rocking.bodies.block import Block
-from rocking.bodies.body import DEFAULT_DENSITY, Body
+from rocking.bodies.body import DEFAULT_DENSITY, DEFAULT_DEPTH, Body
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.wkt import regions_from_wkt
@@ -192,7 +192,7 @@ def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> S
             regions += _regions(region_table, units, folder)
         check_count(sum(len(ring) for region in regions for ring in region.rings))
     with located("section"):
-        depth = 1.0 if table.depth is None else table.depth * scale
+        depth = DEFAULT_DEPTH if table.depth is None else table.depth * scale
         options, feet = _known(table, scale), _pair(table.feet, scale)
         return Section(regions, feet, depth=depth, ground=table.ground * scale, **options)
 

@@ -51,7 +51,7 @@ class KnownTable(StrictTable):
 class ShapeTable(KnownTable):
     """Depth, density and feet of a 2D shape."""
 
-    depth: Positive | None = Field(None, description="depth out of the plane, default 1 m [unit of the file]")
+    depth: Positive | None = Field(None, description="depth, across the motion, default 1 m [unit of the file]")
     density: Positive | None = Field(None, description="density, default 2400 [kg/m3]")
     feet: Pair | None = Field(
         None, description="positions of the left and right foot, default: ends of the base [unit of the file]"
@@ -61,7 +61,7 @@ class ShapeTable(KnownTable):
 class BlockTable(ShapeTable):
     """A rectangle with feet at its corners or within its base."""
 
-    width: Positive = Field(description=f"full width {_FILE_UNIT}")
+    width: Positive = Field(description=f"full width, along the motion {_FILE_UNIT}")
     height: Positive = Field(description=f"full height {_FILE_UNIT}")
 
 

@@ -15,7 +15,7 @@ from rocking.bodies.solid.part import Part, footprint
 from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.surfaces import placed_points
 from rocking.bodies.solid.turned import Turned
-from rocking.conventions import FloatArray, g
+from rocking.conventions import Assumed, FloatArray, g
 from rocking.errors import GeometryError
 from rocking.messages import Message
 from rocking.portable import applied, dot, norm, times
@@ -182,7 +182,7 @@ def plane_body(parts: tuple[Part, ...], base: Base, moments: SolidMoments) -> Se
     silhouette = np.concatenate([ground, *(_points(part) for part in parts)])[:, [0, 2]]
     silhouette[:, 1] = np.maximum(silhouette[:, 1], 0.0)  # points within the tolerance lie on the ground
     outline = hull(silhouette).vertices
-    depth = float(np.ptp([part.box()[:, 1] for part in parts]))
+    depth = Assumed(np.ptp([part.box()[:, 1] for part in parts]))  # extent of the solid, not a second base
     x, _, z = moments.centre.tolist()
     polar = float(moments.second[0, 0] + moments.second[2, 2])
     moments_of_section: dict[str, Any] = {"mass": moments.mass, "centre": (x, z), "moment_of_inertia": polar}

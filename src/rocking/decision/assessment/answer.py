@@ -277,6 +277,8 @@ class BodyAssessment:
         Reason why a code method does not apply to the body or motions, by method.
     vertical : int
         Number of motions with a vertical component.
+    along_depth : BodyAssessment, optional
+        Margins of the block along a stated depth where uplift begins earlier than along the width.
     """
 
     body: Body
@@ -294,6 +296,7 @@ class BodyAssessment:
     standing: StandingSolid | None = None
     outside: Mapping[str, str] = field(default_factory=dict)
     vertical: int = 0
+    along_depth: "BodyAssessment | None" = None
 
     def exclusion(self, method: str) -> str:
         """Return the reason why a code method does not apply.
@@ -361,7 +364,30 @@ class BodyAssessment:
 
     @property
     def verdict(self) -> str:
-        """Outcome as a sentence."""
+        """Outcome as sentences, also along a depth that is the weaker side."""
+        if (other := self.along_depth) is None:
+            return self._outcome
+        left, right = other.body.feet
+        limit = other.body.uplift_acceleration / g
+        sides = {"width": other.body.depth, "depth": right - left, "limit": limit}
+        return Message.joined([
+            self._outcome,
+            Message(
+                "This result applies to motion along the width of {width:.3g} m. The depth of {depth:.3g} m is the "
+                "weaker side, with uplift at {limit:.3g} g. Along the depth:",
+                sides,
+            ),
+            other._outcome,
+            other.margin_sentence,
+        ])  # fmt: skip
+
+    @property
+    def directions(self) -> "tuple[BodyAssessment, ...]":
+        """The assessment, and that along a depth that is the weaker side."""
+        return (self,) if self.along_depth is None else (self, self.along_depth)
+
+    @property
+    def _outcome(self) -> str:
         with_all, with_some = (
             int((self.overturning_fraction == 1.0).sum()),
             int((self.overturning_fraction > 0.0).sum()),
@@ -538,7 +564,10 @@ class BodyAssessment:
     @property
     def sentences(self) -> tuple[str, ...]:
         """Outcome, margin, probability, causes and measures."""
-        return (self.verdict, self.margin_sentence, self.probability_sentence, *self.governing_factors, *self.measures)
+        margin = self.margin_sentence
+        if self.along_depth is not None:
+            margin = Message.joined([Message("Along the width:"), margin])
+        return (self.verdict, margin, self.probability_sentence, *self.governing_factors, *self.measures)
 
     @property
     def motion_count(self) -> str:
@@ -575,10 +604,7 @@ class BodyAssessment:
             "motions": [item.name for item in self.motions],
             "repairs": list(self.prediction.repairs),
             "record_index": self.records,
-            "lowest": {
-                "min_factor": self.lowest.factor, "model": self.lowest.model, "mirrored": self.lowest.mirrored,
-                "motion": self.motions[self.lowest.motion].name,
-            },
+            "lowest": self._lowest_answer,
             "uplift_factors": self.uplift_factors,
             "models": {name: item.answer() for name, item in self.models.items()},
             "refused": dict(self.refused),
@@ -589,4 +615,30 @@ class BodyAssessment:
             "remedies": self.remedies.answer(),
             "prediction": self.prediction.answer(),
             **({} if self.standing is None else {"solid": self.standing.answer()}),
+            **({} if self.along_depth is None else {"along_depth": self.along_depth.margins_answer()}),
         })  # fmt: skip
+
+    def margins_answer(self) -> Answer:
+        """Return outcome, uplift and margins without probability, code methods and measures.
+
+        Returns
+        -------
+        Answer
+            SI units; infinite without overturning, NaN without a value.
+        """
+        return Answer({
+            "body": repr(self.body),
+            "verdict": self._outcome,
+            "uplift_acceleration": min(self.body.side(foot, self.gravity).uplift_acceleration for foot in FEET),
+            "uplift_factors": self.uplift_factors,
+            "lowest": self._lowest_answer,
+            "models": {name: item.answer() for name, item in self.models.items()},
+        })  # fmt: skip
+
+    @property
+    def _lowest_answer(self) -> dict[str, Any]:
+        lowest = self.lowest
+        return {
+            "min_factor": lowest.factor, "model": lowest.model, "mirrored": lowest.mirrored,
+            "motion": self.motions[lowest.motion].name,
+        }  # fmt: skip

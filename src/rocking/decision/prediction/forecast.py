@@ -221,7 +221,8 @@ class Prediction(Exported):
     def sentences(self) -> tuple[str, ...]:
         """Verdict, other probabilities, effects of inputs, and predictability."""
         chance = self.chances["overturning"]
-        sentences = [self.verdict]
+        note = getattr(self.body, "depth_note", "")
+        sentences = [self.verdict, *([Message("Caution: {note}.", {"note": note})] if note else [])]
         if not math.isnan(chance.wide_low):
             interval = _between(chance.wide_low, chance.wide_high)
             sentences.append(
