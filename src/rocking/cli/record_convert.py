@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking import plausibility
+from rocking import checks, plausibility
 from rocking.answers import Answer, Display
 from rocking.cli import options
 from rocking.cli.exports import DRAWN, Export, Exports
@@ -70,6 +70,13 @@ def record_convert(
     units: options.RecordUnits = None,
     scale: Annotated[float | None, options.key(MotionKeys, "scale")] = None,
     sets: options.SetOfProcessing = None,
+    output_units: Annotated[
+        str | None,
+        typer.Option(
+            help="Unit in formats without a fixed unit: m/s2, gal, g. [default: unit of the record]",
+            rich_help_panel=options.OUTPUT,
+        ),
+    ] = None,
     output: Annotated[
         list[str] | None,
         options.output(
@@ -87,6 +94,8 @@ def record_convert(
     from rocking.spec.reading import CommandFiles, InputFiles, checked, tables_in
 
     exports = Exports.of(output, _kinds())
+    if output_units is not None:
+        output_units = checks.one_of("--output-units", output_units, ACCELERATION_UNITS)
     arguments = Arguments(context, "motion")
     file = document_file(context, record[0], ("motion",), ("record",)) if len(record) == 1 else None
     files = CommandFiles(Path()) if file is None else InputFiles(file.parent)
@@ -105,7 +114,7 @@ def record_convert(
     if not all(isinstance(motion, GroundMotion) for pair in pairs.values() for motion in pair):
         raise UsageError("Give a record file, got the pulse {pulse!r:.80}", pulse=record[0])
     # formats without a stated unit keep the unit of the file
-    unit = next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
+    unit = output_units or next(iter(pairs.values()))[0].metadata.get("unit", "m/s2")
     written = tuple(str(path) for _, path in exports.files)
     deliver(Conversion(pairs, unit, written), exports, as_json=as_json)
 

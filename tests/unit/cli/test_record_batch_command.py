@@ -186,6 +186,23 @@ def test_convert_keeps_its_source(run, tmp_path, word):
 
 
 @pytest.mark.slow
+def test_convert_to_another_unit(run, refuses, tmp_path):
+    """A record in gal is written in g or m/s2 with the unit in its header; without the option it keeps its unit."""
+    source = tmp_path / "site.csv"
+    source.write_text("time [s],acceleration [gal]\n0.00,0.0\n0.01,98.0665\n0.02,-49.03325\n0.03,0.0\n", "utf-8")
+    peaks = {}
+    for words, unit in (((), "gal"), (("--output-units", "G"), "g"), (("--output-units", "m/s2"), "m/s2")):
+        target = tmp_path / f"in_{unit.partition('/')[0]}.csv"
+        assert run("record", "convert", source, *words, "--output", target)[0] == 0
+        header, *rows = map(str.split, target.read_text("utf-8").splitlines())
+        assert header[-1] == f"[{unit}]"
+        peaks[unit] = max(float(row[-1]) for row in rows)
+        assert read_motion(target).peak == pytest.approx(0.980665, rel=1e-9)
+    assert peaks == pytest.approx({"gal": 98.0665, "g": 0.1, "m/s2": 0.980665}, rel=1e-9)
+    refuses(["record", "convert", source, "--output-units", "furlong"], "--output-units")
+
+
+@pytest.mark.slow
 def test_convert(run, folder, tmp_path):
     """A record goes through its steps into another format, drawn before and after, with what was done to it."""
     source, made = folder / "RSN0_A000.AT2", [tmp_path / name for name in ("new.at2", "new.png", "new.json")]
