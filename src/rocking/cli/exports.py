@@ -3,10 +3,13 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking.cli.spelling import UsageError
 from rocking.errors import MissingExtraError
+
+if TYPE_CHECKING:
+    from rocking.tables import Table
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -142,14 +145,26 @@ NETCDF = Export((".nc",), lambda answer, path: answer.result.to_netcdf(path), "h
 
 
 def write_dataset(dataset: Any, path: Path) -> None:
-    """Write an `xarray.Dataset` as netCDF, or as CSV with one row per cell, depending on the extension."""
-    from rocking.quantities import QUANTITIES
-    from rocking.tables import Column, Table, to_csv, to_netcdf
+    """Write an `xarray.Dataset` as netCDF, or as a table with one row per cell, depending on the extension."""
+    from rocking.tables import to_csv, to_excel, to_mat, to_netcdf
 
-    if path.suffix.lower() == ".nc":
+    ending = path.suffix.lower()
+    if ending == ".nc":
         to_netcdf(dataset, path)
-        return
-    dataset = dataset.drop_dims("point", errors="ignore")  # the CSV file does not contain the points of a refined map
+    elif ending == ".xlsx":
+        to_excel([("cells", _cells(dataset))], path, dataset.attrs, others=".nc or .csv")
+    elif ending == ".mat":
+        to_mat(_cells(dataset), path)
+    else:
+        to_csv(_cells(dataset), path, blank=False)
+
+
+def _cells(dataset: Any) -> "Table":
+    """Return a dataset as a table with one row per cell."""
+    from rocking.quantities import QUANTITIES
+    from rocking.tables import Column, Table
+
+    dataset = dataset.drop_dims("point", errors="ignore")  # the table does not contain the points of a refined map
     over = dataset["mode"]
     names = (*over.dims, *dataset.data_vars, *(name for name in dataset.coords if name not in over.dims))
     rows = {name: dataset[name].broadcast_like(over).transpose(*over.dims).values.ravel() for name in names}
@@ -157,7 +172,7 @@ def write_dataset(dataset: Any, path: Path) -> None:
     # names of restitutions have no unit
     units = {name: dataset[name].attrs.get("units", "") for name in names}
     columns = {str(name): Column(row, units[name], codes=codes[str(name)]) for name, row in rows.items()}
-    to_csv(Table("row", columns, no_unit="1"), path, blank=False)
+    return Table("row", columns, no_unit="1")
 
 
 def _write_dataset(answer: Any, path: Path) -> None:
@@ -165,7 +180,13 @@ def _write_dataset(answer: Any, path: Path) -> None:
 
 
 # files of results that are a dataset
-DATASET = {"picture": DRAWN, "csv": Export((".csv",), _write_dataset), "netcdf": Export((".nc",), _write_dataset)}
+DATASET = {
+    "picture": DRAWN,
+    "csv": Export((".csv",), _write_dataset),
+    "netcdf": Export((".nc",), _write_dataset),
+    "excel": Export((".xlsx",), _write_dataset, "openpyxl"),
+    "mat": Export((".mat",), _write_dataset),
+}
 
 
 def write_records(path: Path, records: list[dict[str, Any]]) -> None:

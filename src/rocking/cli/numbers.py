@@ -69,7 +69,11 @@ def value_of(field: "FieldInfo", option: str, value: Any) -> Any:
     """Return the value of an input-file key from the text of its option."""
     if not isinstance(value, str):
         return value
-    kind, (_, unit) = kinds_of(field)[0], meaning_and_unit(field.description or "")
+    kinds, (_, unit) = kinds_of(field), meaning_and_unit(field.description or "")
+    if kinds == [float, str]:  # a fraction, or an angle with its unit
+        number, angle_unit = checks.quantity(option, value, "rad")
+        return value if angle_unit else number
+    kind = kinds[0]
     if kind is float:
         return checks.quantity(option, value, unit)[0]
     if kind is Values:

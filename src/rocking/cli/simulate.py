@@ -279,15 +279,15 @@ def _peak(response: Any) -> dict[str, float]:
 
 def _check_share(alpha: float, initial_rotation: float, option: str) -> None:
     """Refuse an initial rotation above 90 degrees; warn above 1, which can be an angle in degrees; alpha [rad]."""
-    fraction = math.radians(initial_rotation) / alpha
     if abs(initial_rotation) * alpha >= 0.5 * math.pi:
         raise UsageError(
-            "{parameter} is a fraction of the slenderness angle, {slenderness_angle:.3g} degrees; got {free:g}. "
-            "For an angle of {free:g} degrees use {parameter} {share:.3g}",
-            parameter=option, slenderness_angle=math.degrees(alpha), free=initial_rotation, share=fraction,
+            "{parameter} is a fraction of the slenderness angle, {slenderness_angle:.3g} degrees, or an angle with "
+            "its unit, deg or rad; got {free:g}. For an angle of {free:g} degrees use {parameter} {free:g}deg",
+            parameter=option, slenderness_angle=math.degrees(alpha), free=initial_rotation,
         )  # fmt: skip
     if abs(initial_rotation) > 1.0:
         plausibility.warn([
-            f"an initial rotation of {initial_rotation:g} slenderness angles is beyond equilibrium and leads to "
-            f"overturning. For an angle of {initial_rotation:g} degrees use {option} {fraction:.3g}"
+            f"an initial rotation of {initial_rotation:.4g} slenderness angles, "
+            f"{math.degrees(initial_rotation * alpha):.3g} degrees, is beyond equilibrium and leads to overturning. "
+            f"Angles have a unit: {option} 5deg or 0.1rad"
         ])  # fmt: skip

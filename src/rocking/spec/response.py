@@ -63,13 +63,7 @@ class ResponseProblem:
     @property
     def balance_angle(self) -> float:
         """Slenderness angle on the side of `initial_rotation` [rad]."""
-        right = self.initial_rotation is None or self.initial_rotation > 0.0
-        if isinstance(self.body, PLANE_BODIES):
-            return self.body.side("right" if right else "left", self.settings.gravity).slenderness_angle
-        space = SpatialBody.of(self.body)
-        sign, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
-        ends = [space.radius] if space.round else (sign * space.vertices[:, 0]).tolist()
-        return math.atan2(max(ends) - sign * x, height)
+        return _balance_angle(self.body, right=self.initial_rotation is None or self.initial_rotation > 0.0)
 
     @property
     def rotation(self) -> float:
@@ -111,6 +105,24 @@ class ResponseProblem:
             return simulate(self.body, self.motion, law, scale=self.scale, **options)
 
 
+def _balance_angle(body: Any, *, right: bool) -> float:
+    """Return the slenderness angle of a body on one side, in 3D towards +x or -x [rad]."""
+    if isinstance(body, PLANE_BODIES):
+        return body.side("right" if right else "left").slenderness_angle
+    space = SpatialBody.of(body)
+    sign, (x, _, height) = 1.0 if right else -1.0, space.centre.tolist()
+    ends = [space.radius] if space.round else (sign * space.vertices[:, 0]).tolist()
+    return math.atan2(max(ends) - sign * x, height)
+
+
+def _in_slenderness_angles(rotation: float | str | None, body: Any) -> float | None:
+    """Return an initial rotation as a fraction of the slenderness angle; text: an angle with its unit."""
+    if not isinstance(rotation, str):
+        return rotation
+    angle, _ = checks.quantity("initial_rotation", rotation, "rad")
+    return angle / _balance_angle(body, right=angle > 0.0)
+
+
 def problem_of(
     tables: "ResponseTables", body: Any, motion: Any, *, scale: float | None = None, inputs: InputFiles | None = None
 ) -> ResponseProblem:
@@ -143,7 +155,7 @@ def problem_of(
         settings,
         engine=tables.settings.engine,
         assumed_friction=start.assumed_friction,
-        initial_rotation=start.initial_rotation,
+        initial_rotation=_in_slenderness_angles(start.initial_rotation, body),
         start_height=start.start_height or 0.0,
         start_velocity=tuple(start.start_velocity or ()),
         scale=scale if scale is not None else 1.0 if table is None else table.scale,

@@ -37,8 +37,9 @@ def test_json_is_the_python_call(answered):
 
 def test_page_and_files(printed, tmp_path):
     """A heading for every motion, a line for every slenderness; files are named and hold all digits."""
-    files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc")]
-    options = [word for pair in zip(("--output", "--output", "--output"), files, strict=True) for word in pair]
+    openpyxl, io = pytest.importorskip("openpyxl"), pytest.importorskip("scipy.io")
+    files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc", "a.xlsx", "a.mat")]
+    options = [word for file in files for word in ("--output", file)]
     out = printed(SINE, COSINE, *FEW, *options)
     lines = out.splitlines()
     for name in ("sine pulse, 3 m/s2, 0.8 s", "cosine pulse, 3 m/s2, 0.8 s"):
@@ -50,7 +51,12 @@ def test_page_and_files(printed, tmp_path):
         rows = list(csv.DictReader(file))
     motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
     found = rk.rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), geometric(1, 8, 9))
-    assert [float(row["peak_rotation [rad]"]) for row in rows] == found["peak_rotation"].values.ravel().tolist()
+    peaks = found["peak_rotation"].values.ravel().tolist()
+    assert [float(row["peak_rotation [rad]"]) for row in rows] == peaks
+    heading, *cells = openpyxl.load_workbook(files[3])["cells"].iter_rows(values_only=True)
+    column = heading.index("peak_rotation [rad]")
+    assert [row[column] for row in cells] == pytest.approx(peaks, rel=1e-15)
+    assert io.loadmat(files[4], simplify_cells=True)["rocking"]["peak_rotation"].tolist() == peaks
 
 
 @pytest.mark.parametrize(

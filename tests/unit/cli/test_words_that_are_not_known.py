@@ -1,5 +1,7 @@
 """What a user mistypes gets a sentence that says what was probably meant; capitals do not matter."""
 
+import json
+
 import pytest
 
 from rocking.bodies import Block
@@ -67,16 +69,20 @@ def test_nothing_is_guessed_from_far():
 
 @pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 def test_share_of_the_slenderness_angle(run):
-    """`--initial-rotation 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
+    """`--initial-rotation 10` is refused with the spelling of 10 degrees, which gives that angle."""
     code, _, err = run("simulate", *SIZE, "--initial-rotation", "10")
     alpha = Block(width=0.5, height=2.0).slenderness_angle
     share = 10.0 * 3.141592653589793 / 180.0 / alpha
     assert code == 2
-    assert f"For an angle of 10 degrees use --initial-rotation {share:.3g}" in err
-    assert run("simulate", *SIZE, "--initial-rotation", f"{share:.3g}")[0] == 0
-    # 5 alpha is no right angle, and doubted all the same: it can only fall
+    assert "--initial-rotation 10deg" in err
+    for angle in ("10deg", f"{share!r}", f"{share * alpha!r}rad"):
+        answer = json.loads(run("simulate", *SIZE, "--initial-rotation", angle, "--json")[1])
+        assert answer["initial_rotation"] == pytest.approx(share * alpha, rel=1e-12)
+    left = json.loads(run("simulate", *SIZE, "--set", "response.initial_rotation=-10deg", "--json")[1])
+    assert left["initial_rotation"] == pytest.approx(-share * alpha, rel=1e-12)
+    # 5 alpha is less than a right angle: a warning with the units of angles, no refusal
     code, _, err = run("simulate", *SIZE, "--initial-rotation", "5")
-    assert (code, f"For an angle of 5 degrees use --initial-rotation {0.5 * share:.3g}" in err) == (0, True)
+    assert (code, "--initial-rotation 5deg or 0.1rad" in err) == (0, True)
 
 
 def test_models_in_space_are_listed_and_shown(printed):

@@ -1,9 +1,11 @@
 """The file of one response."""
 
+import math
 from typing import Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from rocking import checks
 from rocking.conventions import DEFAULT_FRICTION, DEFAULT_RESTITUTION
 from rocking.errors import InvalidValueError
 from rocking.spec.fields import JobTable, key
@@ -15,8 +17,9 @@ from rocking.spec.settings_tables import BOUNCE_LAW, SettingsTable
 class ResponseTable(JobTable):
     """Initial state of the body, and contact with the ground."""
 
-    initial_rotation: float | None = key(
-        "without motion: initial rotation / slenderness angle, > 0 to the right (+x), < 0 to the left [-]"
+    initial_rotation: float | str | None = key(
+        "without motion: initial rotation / slenderness angle [-], or with unit: 5deg, 0.1rad; > 0 to the right (+x), "
+        "< 0 to the left"
     )
     friction: float | None = key("coefficient of friction; enables sliding [-]", None, gt=0.0)
     normal_restitution: float | None = key("with friction: coefficient of normal restitution [-]", None, ge=0.0)
@@ -32,6 +35,17 @@ class ResponseTable(JobTable):
         default_factory=lambda: DEFAULT_FRICTION,
         description="without friction: coefficient of friction for the sliding check, default 0.5 [-]",
     )
+
+    @field_validator("initial_rotation")
+    @classmethod
+    def _checked_rotation(cls, value: float | str | None) -> float | str | None:
+        """Return a number of slenderness angles, or the text of an angle with its unit."""
+        if not isinstance(value, str):
+            return value
+        rotation, unit = checks.quantity("rotation", value, "rad")
+        if unit and abs(rotation) >= 0.5 * math.pi:
+            raise InvalidValueError(parameter="rotation", allowed="in (-90, 90) deg", value=value)
+        return value if unit else rotation
 
     @property
     def dropped(self) -> bool:
