@@ -2,9 +2,12 @@
 
 import tomllib
 from pathlib import Path
+from typing import get_args
 
 import pytest
+from pydantic import BaseModel
 
+from rocking.bodies.formats.schema import BodyFile, RestraintTable
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
 from rocking.motions.intensity import MEASURES
@@ -28,6 +31,28 @@ def test_every_key_has_a_meaning():
     assert [row for row in rows if row.endswith("|  |")] == []
     assert "| `friction` | number | - |" in reference()["input_files"]
     assert "| `count` | integer |  |  | >= 1" in reference()["input_files"]
+
+
+def test_every_table_of_a_body_file_is_documented():
+    """Each table inside a body file has a section with a row per key; a table that is not listed is detected."""
+    page = reference()["body_files"]
+    tables = _inner_tables(BodyFile)
+    assert RestraintTable in tables
+    for table in tables:
+        rows = [f"| `{field.alias or key}` |" for key, field in table.model_fields.items()]
+        assert any(all(row in section for row in rows) for section in page.split("\n## ")[2:]), table
+    assert "\n## [[restraint]]" in page
+
+
+def _inner_tables(table):
+    """Return the classes of all tables inside a table."""
+    kinds, inner = [field.annotation for field in table.model_fields.values()], set()
+    while kinds:
+        kind = kinds.pop()
+        kinds += get_args(kind)
+        if isinstance(kind, type) and issubclass(kind, BaseModel) and not get_args(kind):
+            inner |= {kind, *_inner_tables(kind)}
+    return inner
 
 
 def test_the_keys_of_a_body_are_documented():

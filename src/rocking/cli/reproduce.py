@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking import checks
 from rocking.cli import options
 from rocking.cli.measurements import show_league
 from rocking.cli.page import Page, bar, print_json
@@ -18,14 +19,14 @@ if TYPE_CHECKING:
     from rocking.reports.document import Document
     from rocking.reports.paper_document import Reproduction
 
-GAIBOR = "gaibor-2026"
+MAO, GAIBOR = "mao-2024", "gaibor-2026"
 
 
 def reproduce(
     which: Annotated[
         list[str] | None,
         typer.Argument(
-            help=f"{GAIBOR}; or measurements for mao-2024: published, own, table1, S, M, L, or files (.toml, .csv)."
+            help=f"{GAIBOR}; or measurements for {MAO}: published, own, table1, S, M, L, or files (.toml, .csv)."
         ),
     ] = None,
     full: Annotated[bool, typer.Option("--full", help=f"All frequencies, starts and cells of {GAIBOR}.")] = False,
@@ -42,6 +43,9 @@ def reproduce(
     from rocking.evidence.store import selected
     from rocking.reports.paper_document import reproduce as recomputed
 
+    which = [name for name in which or () if name != MAO]
+    _check_names(which)
+
     with bar("recomputing tables and claims", quiet=as_json):
         result = recomputed(selected(which)) if which else recomputed()
     if as_json:
@@ -53,6 +57,22 @@ def reproduce(
         _write(paper_document(result), paper_figures(result.data), result.answer(), output, as_json)
     if not as_json:
         _show(result, details=details)
+
+
+def _check_names(names: "Sequence[str]") -> None:
+    """Refuse a name that is no paper, no set of measurements and no file."""
+    from rocking.evidence.store import GROUPS, OWN, PUBLISHED
+
+    papers, sets = (MAO, GAIBOR), (PUBLISHED, OWN, *GROUPS)
+    if GAIBOR in names:
+        raise UsageError("{name} accepts no other names", name=GAIBOR)
+    if unknown := next((name for name in names if name not in sets and not Path(name).suffix), None):
+        raise UsageError(
+            "unknown name {name!r:.60}. Papers: {papers}. Measurements for {paper}: {sets}, or a .toml or .csv file. "
+            "-o FOLDER writes all tables and figures of a paper",
+            name=unknown, papers=", ".join(papers), paper=MAO, sets=", ".join(sets),
+            hint=checks.nearest(unknown, (*papers, *sets)),
+        )  # fmt: skip
 
 
 def _gaibor(full: bool, output: Path | None, as_json: bool) -> None:

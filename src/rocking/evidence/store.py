@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from rocking import checks
 from rocking.errors import InvalidValueError, MeasurementError
 from rocking.evidence.measurements import GROUPS, DataSet, all_measurements, datasets, joined
 from rocking.tables.table import writing, written_whole
@@ -102,6 +103,7 @@ def selected(names: Sequence[str] = ()) -> DataSet:
             raise InvalidValueError(
                 "unknown measurements {name!r:.60}; use {names}, or a .toml or .csv file", name=choice,
                 names=", ".join((PUBLISHED, OWN, *published)),
+                hint=checks.nearest(choice, (PUBLISHED, OWN, *published)),
             )  # fmt: skip
     _once([(data.name, data) for data in sets])
     return sets[0] if len(sets) == 1 else joined(sets, "+".join(data.name for data in sets), "a selection")

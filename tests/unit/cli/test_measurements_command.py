@@ -60,3 +60,11 @@ def test_what_is_refused(refuses, own, tmp_path):
     refuses(["measurements", "calibrate", own], "at least 5 blocks are required, got 2")
     refuses(["measurements", "add", tmp_path / "none.csv"], "cannot be read")
     assert store.own_files() == []
+
+
+def test_a_name_that_cannot_be_reproduced_lists_the_papers(refuses):
+    """A refusal lists papers, sets and output; a near miss has a suggestion, and no other name has one."""
+    refuses(("reproduce", "figure8"), "Papers: mao-2024, gaibor-2026.")
+    refuses(("reproduce", "gaibor2026"), "did you mean 'gaibor-2026'?")
+    refuses(("reproduce", "publshed"), "did you mean 'published'?")
+    refuses(("reproduce", "published", "gaibor-2026"), "gaibor-2026 accepts no other names")

@@ -214,9 +214,7 @@ class BodyFile(StrictTable):
     regular_polygon: RegularPolygonTable | None = Field(None, description="regular polygon")
     section: SectionTable | None = Field(None, description="section of one or more polygons")
     mass_points: MassPointsTable | None = Field(None, description="body of mass points")
-    restraint: list[RestraintTable] | None = Field(
-        None, description="restraints, one table [[restraint]] per restraint"
-    )
+    restraint: list[RestraintTable] | None = Field(None, description="restraints, one table per restraint")
 
     @classmethod
     def _unknown(cls, key: str) -> InvalidValueError:
