@@ -217,6 +217,16 @@ class Message(str):
         return first
 
 
+def listed(texts: Iterable[str]) -> str:
+    """Return texts separated by semicolons, without empty texts and without full stops in front of semicolons.
+
+    >>> listed(["read from site.at2.", "", "scaled by 2."])
+    'read from site.at2; scaled by 2.'
+    """
+    *first, last = [*filter(None, map(str, texts))] or [""]
+    return "; ".join([*(text.rstrip(".") for text in first), last])
+
+
 def plain_texts(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return values for files. Messages are replaced by plain text.
 

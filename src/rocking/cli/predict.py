@@ -19,6 +19,7 @@ from rocking.cli.study import source_lines
 from rocking.decision.prediction.forecast import input_label
 from rocking.decision.prediction.likelihood import scale_words
 from rocking.errors import located
+from rocking.messages import listed
 from rocking.quantities import closely
 
 if TYPE_CHECKING:
@@ -276,6 +277,6 @@ class AssessmentAnswer:
         page.line()
         page.facts(source_lines(result.prediction.motions))
         page.line(scale_words())
-        assumed = "; ".join(result.prediction.assumed_values)
+        assumed = listed(result.prediction.assumed_values).rstrip(".")
         page.line(f"Assumed: {assumed}. Reasons and all references: -o report.pdf, or --json.")
         page.warn(result.prediction.repairs)

@@ -61,7 +61,8 @@ def reproduce(
 
 def _check_names(names: "Sequence[str]") -> None:
     """Refuse a name that is no paper, no set of measurements and no file."""
-    from rocking.evidence.store import GROUPS, OWN, PUBLISHED
+    from rocking.evidence.measurements import GROUPS
+    from rocking.evidence.store import OWN, PUBLISHED
 
     papers, sets = (MAO, GAIBOR), (PUBLISHED, OWN, *GROUPS)
     if GAIBOR in names:

@@ -17,6 +17,7 @@ from rocking.cli.page import Page, deliver
 from rocking.cli.spelling import UsageError
 from rocking.conventions import g
 from rocking.errors import located
+from rocking.messages import listed
 from rocking.quantities import closely
 from rocking.spec.bodies import body_for_motion
 from rocking.spec.fields import JobTable
@@ -168,7 +169,7 @@ class PlaneAnswer:
 
     def write_csv(self, path: Path) -> None:
         write_records(path, [
-            {"foot": foot, **row.answer().values, "warnings": "; ".join(row.warnings)}
+            {"foot": foot, **row.answer().values, "warnings": listed(row.warnings)}
             for foot, rows in self.impact.tables.items() for row in rows
         ])  # fmt: skip
 

@@ -11,6 +11,7 @@ from rocking.dynamics.parameters import COMPLEMENTARITY, is_none
 from rocking.dynamics.plane_frictional.base import Start, starts_of
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import listed
 from rocking.motions.components import in_plane
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Motion, Pulse
@@ -65,7 +66,7 @@ def dataset_of(
             "slenderness_angle": ("body", [side.slenderness_angle for side in sides], {"units": "rad"}),
             "frequency_parameter": ("body", [side.frequency_parameter for side in sides], {"units": "rad/s"}),
             "motion": [m.name for m in motions],
-            "motion_provenance": ("motion", ["; ".join(provenance_of(m)) for m in motions]),
+            "motion_provenance": ("motion", [listed(provenance_of(m)) for m in motions]),
             "restitution": axes["restitution"],
             **factors,
             **_coordinates(starts),

@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.exported import Exported
-from rocking.messages import Message
+from rocking.messages import Message, listed
 from rocking.motions.pulse import Motion, Pulse
 from rocking.motions.segments import Segments
 from rocking.motions.summary import provenance_of
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def motion_provenance(motion: Any) -> str:
     """Return the provenance of a motion as text."""
-    return "ground at rest" if motion is None else "; ".join(provenance_of(motion))
+    return "ground at rest" if motion is None else listed(provenance_of(motion))
 
 
 _ROUNDING = 1e-9

@@ -16,7 +16,7 @@ from rocking.exported import Exported
 from rocking.identification.design import Design
 from rocking.identification.measurement import ImpactTimes, RotationSeries
 from rocking.identification.posterior import Mixture
-from rocking.messages import Message
+from rocking.messages import Message, listed
 from rocking.quantities import Quantity
 from rocking.restitution import RestitutionModel, implied, models
 
@@ -402,7 +402,7 @@ class Identification(Exported):
         provenance: dict[str, Any] = {
             "source": self.source,
             "verdict": self.verdict,
-            "doubts": "; ".join(map(str, self.doubts)),
+            "doubts": listed(self.doubts),
         }
         for name in ("mean", "scatter", "frequency_parameter", "tilt"):
             provenance |= {f"{name}{end}": getattr(getattr(self, name), key) for key, end, _ in _ENDS}

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from rocking.conventions import FloatArray
 from rocking.errors import RockingError
+from rocking.messages import listed as in_one_line
 from rocking.motions.components import Components, rotd_pga
 from rocking.motions.formats.record_set import mapped
 from rocking.motions.intensity import MEASURES
@@ -136,7 +137,7 @@ def flatfile(
         dict.fromkeys(component.metadata.get("doubts", "") for component in record.parts if component is not None)
         for record, _ in kept
     )
-    columns["doubts"] = Column(text_array(["; ".join(filter(None, texts)) for texts in doubts]), "", "doubts")
+    columns["doubts"] = Column(text_array([in_one_line(texts) for texts in doubts]), "", "doubts")
     components = [next(component for component in record.parts if component is not None) for record, _ in kept]
     columns["time_step"] = Column(
         np.array([component.time_step for component in components]), "s", "step between samples"

@@ -9,7 +9,7 @@ import numpy as np
 from rocking import plausibility
 from rocking.answers import Answer
 from rocking.conventions import g
-from rocking.messages import Message
+from rocking.messages import Message, listed
 from rocking.motions.components import Components, leading
 from rocking.motions.intensity import measure, sampled
 from rocking.motions.pulse import Pulse
@@ -199,10 +199,10 @@ def condition(summaries: Sequence[MotionSummary]) -> str:
 def provenance_rows(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:
     """Return sources and processing steps as rows of motion and text. Steps common to all motions have one row."""
     if len(summaries) == 1:
-        return [(summaries[0].name, "; ".join(summaries[0].provenance))]
+        return [(summaries[0].name, listed(summaries[0].provenance))]
     shared, own = _shared(dict(enumerate(summary.provenance for summary in summaries)))
-    rows = [(summaries[index].name, "; ".join(lines)) for index, lines in own.items() if lines]
-    return [*rows, *([(f"all {len(summaries)} motions", "; ".join(shared))] if shared else [])]
+    rows = [(summaries[index].name, listed(lines)) for index, lines in own.items() if lines]
+    return [*rows, *([(f"all {len(summaries)} motions", listed(shared))] if shared else [])]
 
 
 def short_provenance(summaries: Sequence[MotionSummary]) -> list[tuple[str, str]]:

@@ -29,7 +29,7 @@ from rocking.exported import Exported
 from rocking.identification import Identification, IntervalEstimate, ModelComparison, identify, read_measurement
 from rocking.identification.readers.reader import ENDINGS, SOUNDS, TEXTS
 from rocking.identification.results import compared
-from rocking.messages import Message, by_key
+from rocking.messages import Message, by_key, listed
 from rocking.quantities import Quantity
 from rocking.spec.bodies import body_of
 from rocking.spec.construction import motion_of
@@ -167,7 +167,7 @@ class IdentificationProblem:
         except RockingError as error:
             return _row_of(_by_key(error.without_file(path.name)), ())
         if identification.refused:
-            return _row_of("; ".join(map(_by_key, identification.refused)), identification.doubts)
+            return _row_of(listed(map(_by_key, identification.refused)), identification.doubts)
         numbers = {f"coefficient_{foot}": identification.coefficients[foot] for foot in FEET}
         numbers |= {"coefficient": identification.mean}
         numbers |= {name: getattr(identification, name) for name in ("scatter", "frequency_parameter", "tilt")}

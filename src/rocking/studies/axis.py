@@ -339,7 +339,7 @@ def axis_of(axis: Any) -> Axis:
     name = checks.spelling(axis[0], all_axes)
     if name not in all_axes:
         raise InvalidValueError(
-            "Unknown axis {value}. Axes are {names}.", parameter="axis", value=name, names=", ".join(sorted(all_axes)),
+            "Unknown axis {value}. Axes are {names}", parameter="axis", value=name, names=", ".join(sorted(all_axes)),
             hint=checks.nearest(name, all_axes),
         )  # fmt: skip
     return all_axes[name](axis[1])

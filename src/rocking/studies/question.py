@@ -21,6 +21,7 @@ from rocking.dynamics.rolling.body import SpatialBody
 from rocking.dynamics.rows import Rows
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.messages import listed
 from rocking.motions.components import Components, together
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -105,7 +106,7 @@ class Question:
             "engine": mechanics_of(self.settings).engine_of_study(fast=bool(work)),
             "body": repr(self.body),
             "motion": motion.name,
-            "motion_provenance": "; ".join(provenance_of(motion)),
+            "motion_provenance": listed(provenance_of(motion)),
             "restitution": self.parameters.label,
             **origin_of(self.parameters.label),
             "seed": int(getattr(self.law, "seed", 0)),

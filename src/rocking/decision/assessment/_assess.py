@@ -29,6 +29,7 @@ from rocking.dynamics.mechanics import mechanics_for
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError, RockingError
 from rocking.evidence import restitution_distribution
+from rocking.messages import listed
 from rocking.motions.components import Components, components_of, rotated, with_vertical
 from rocking.motions.intensity import sampled
 from rocking.motions.motion import GroundMotion
@@ -447,7 +448,7 @@ def _margins(
             refused[name] = str(error)
     if not margins:
         raise InvalidValueError(
-            "no restitution model applies to this body: {reasons}", reasons="; ".join(refused.values())
+            "no restitution model applies to this body: {reasons}", reasons=listed(refused.values())
         )
     return margins, plane_margins, refused
 

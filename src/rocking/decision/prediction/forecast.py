@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray, percent
 from rocking.decision.prediction.likelihood import likelihood, scale_words
 from rocking.decision.prediction.model_error import MODEL_ERROR, evidence
 from rocking.exported import Exported
-from rocking.messages import Message
+from rocking.messages import Message, listed
 from rocking.motions.summary import MotionSummary, condition
 from rocking.quantities import with_units
 from rocking.statistics.shares import VarianceShare
@@ -328,7 +328,7 @@ class Prediction(Exported):
                 np.array([motion.peak_velocity for motion in self.motions]), "m/s", "peak velocity"
             ),
             "provenance": Column(
-                text_array(["; ".join(motion.provenance) for motion in self.motions]), "", "source and processing steps"
+                text_array([listed(motion.provenance) for motion in self.motions]), "", "source and processing steps"
             ),
         }
         for name, chance in self.chances.items():
@@ -344,8 +344,8 @@ class Prediction(Exported):
                 beside[f"{key}{end}"] = Column(np.array(values), "1", meaning)
         provenance = {
             "software": SOFTWARE, "body": repr(self.body), "verdict": self.verdict,
-            "assumed": "; ".join(self.assumed), "not_sampled": "; ".join(self.not_sampled),
-            "repairs": "; ".join(self.repairs), "likelihood_scale": scale_words(), "seed": self.seed,
+            "assumed": listed(self.assumed), "not_sampled": listed(self.not_sampled),
+            "repairs": listed(self.repairs), "likelihood_scale": scale_words(), "seed": self.seed,
             "sliding_beyond": self.sliding_beyond,
             **{f"probability_of_{name}": chance.value for name, chance in self.chances.items()},
         }  # fmt: skip

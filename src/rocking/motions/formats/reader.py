@@ -10,7 +10,7 @@ from pathlib import Path
 from rocking import checks, plausibility
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
-from rocking.messages import Message, Option
+from rocking.messages import Message, Option, listed
 from rocking.motions.components import with_vertical
 from rocking.motions.formats import directions
 from rocking.motions.formats.record import Component, Record, RecordFormat, Source
@@ -306,7 +306,7 @@ def _read(
     if not source.doubts:
         return record
     plausibility.warn(source.doubts)
-    return replace(record, metadata={**record.metadata, "doubts": "; ".join(source.doubts)})
+    return replace(record, metadata={**record.metadata, "doubts": listed(source.doubts)})
 
 
 def _motion(source: Source, record: Record, component: Component) -> GroundMotion:

@@ -12,6 +12,7 @@ from typing import Any
 
 from rocking import plausibility
 from rocking.errors import InvalidValueError, RecordError, RockingError
+from rocking.messages import listed
 from rocking.motions.components import Components, with_vertical
 from rocking.motions.formats.directions import (
     DOWN,
@@ -316,7 +317,7 @@ def _motions(path: Path, read: Read, left_out: list[tuple[str, Reason]], doubted
     if isinstance(motions, RockingError):
         left_out.append((str(path), motions))
         return []
-    metadata = {"file": path.name} | ({"doubts": "; ".join(texts)} if texts else {})
+    metadata = {"file": path.name} | ({"doubts": listed(texts)} if texts else {})
     return [replace(motion, metadata={**motion.metadata, **metadata}) for motion in motions]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from rocking.errors import InvalidValueError, located
+from rocking.messages import listed
 from rocking.spec.fields import JobTable, Numbers, Values
 from rocking.spec.question import BodyQuestion
 
@@ -59,7 +60,7 @@ class HistoriesQuestion(BodyQuestion):
             "frequency_parameter": along("body", frequency, "rad/s", "frequency parameter of the right side"),
         }
         if isinstance(motions, MotionList):
-            sources = ("; ".join(provenance_of(motions[k])) for k in range(len(motions)))
+            sources = (listed(provenance_of(motions[k])) for k in range(len(motions)))
             coordinates["motion_provenance"] = labels_along("motion", sources, "source of the motion")
         sizes = (len(motions), len(problem.bodies), scales.size, len(problem.restitutions))
         dims = dict(zip(("motion", "body", "scale", "restitution"), sizes, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
-from rocking.messages import Message, Option, plain_texts
+from rocking.messages import Message, Option, listed, plain_texts
 from rocking.motions.intensity import exchange_unit
 from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
 from rocking.statistics.lognormal import LognormalFit, difference_extremes, lognormal_probability
@@ -204,7 +204,7 @@ class FragilityModel:
             "end": ["low", "high"],
             "level": ("level", self.levels, {"units": unit, "long_name": self.im}),
         }
-        texts = {claim: "; ".join(f"{c.state}: {getattr(c, claim)}" for c in self.curves) for claim in CLAIMS}
+        texts = {claim: listed(f"{c.state}: {getattr(c, claim)}" for c in self.curves) for claim in CLAIMS}
         texts |= {f"without_curve {state}": reason for state, reason in self.without.items()}
         texts |= {"adjusted": self.adjusted} if self.adjusted else {}
         about = {"component": self.name, "im": self.im, "source": self.source, **texts, **self.about}

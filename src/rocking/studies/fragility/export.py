@@ -13,6 +13,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
+from rocking.messages import listed
 from rocking.motions.intensity import MEASURES, exchange_unit, spectral_measure, spectral_period
 from rocking.motions.summary import GROUND, words_on
 from rocking.statistics.goodness import STATISTICS
@@ -164,7 +165,7 @@ def fema_p58_table(
     rows = tuple(
         (
             model.name, description, f"DS{k}", curve.state, curve.median * size, curve.dispersion, demand, unit,
-            "sequential", "; ".join(filter(None, (quality, curve.method, curve.verdict, *about))), model.source, count,
+            "sequential", listed((quality, curve.method, curve.verdict, *about)), model.source, count,
         )
         for k, curve in enumerate(model.curves, 1)
     )  # fmt: skip

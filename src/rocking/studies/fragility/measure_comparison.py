@@ -11,6 +11,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import check_progress
 from rocking.errors import InvalidValueError, extra
+from rocking.messages import listed
 from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import regression
 from rocking.studies.fragility.cloud_analysis import MIN_ROTATION, CloudAnalysis, checked_min_rotation
@@ -142,7 +143,7 @@ def compare_measures(
         else:
             scores.append(_score(candidate, columns))
     if not scores:
-        raise InvalidValueError("no measure can be ranked: {reasons}", reasons="; ".join(left_out.values()))
+        raise InvalidValueError("no measure can be ranked: {reasons}", reasons=listed(left_out.values()))
     return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.min_rotation)
 
 

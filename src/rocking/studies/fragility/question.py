@@ -93,9 +93,9 @@ def _check_factors(subject: Subject, factors: FloatArray) -> None:
         value, unit = float(subject.intensities[worst]), subject.measure.unit
         raise InvalidValueError(
             "motion {motion!r:.80} has {measure} = {amount:.3g} {unit}. It needs a scale factor of {factor:.3g} to "
-            "reach the lowest level; at most {limit:g} is allowed.", motion=subject.motions[worst].name,
+            "reach the lowest level; at most {limit:g} is allowed", motion=subject.motions[worst].name,
             measure=subject.measure.name, amount=value, unit=unit, factor=lowest[worst], limit=_MOST_FACTOR,
-            hint="Check for a dead channel, or remove the motion.",
+            hint="check for a dead channel, or remove the motion",
         )  # fmt: skip
 
 
