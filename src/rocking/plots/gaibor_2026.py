@@ -10,7 +10,6 @@ from rocking.evidence.gaibor_2026 import (
     BASIN_AMPLITUDE,
     BASIN_FREQUENCY,
     BIFURCATIONS,
-    HIGHEST,
     MODELS,
     SLENDERNESS,
     TOP_SPEED,
@@ -77,17 +76,18 @@ def _bifurcations(result: GaiborReproduction, frequency: float) -> "Figure":
     """Draw the attractors of all starts over the amplitude, one row per slenderness and one column per model."""
     figure, panels = new_figure(DOUBLE, 8.6, rows=len(SLENDERNESS), columns=len(MODELS), sharex=True, sharey=True)
     grid = [(slenderness, model) for slenderness in SLENDERNESS for model in MODELS]
+    highest = max(float(result.case(*key, frequency).attractors[:, 0].max()) for key in grid)
     lines = {"fold": ("fold", ":"), "pitchfork": ("loss of symmetry", "--")}
     shown = set()
     for axes, (slenderness, model) in zip(panels, grid, strict=True):
         case = result.case(slenderness, model, frequency)
         axes.plot(*case.attractors.T, color=_color(model), ms=2.0, **DOTS)
         for name, (_, style) in lines.items():
-            if case.numbers[name] < HIGHEST:
+            if case.numbers[name] < highest:
                 shown.add(name)
                 axes.axvline(case.numbers[name], color=GREY, lw=0.6, ls=style)
         _title(axes, _of_model(result, slenderness, model))
-        axes.set_xlim(0.0, HIGHEST)
+        axes.set_xlim(0.0, 1.02 * highest)
     for axes in panels[-len(MODELS) :]:
         axes.set_xlabel(AMPLITUDE)
     figure.supylabel(r"rotation at the ends of periods $\theta / \alpha$ [-]", fontsize=8)
@@ -127,6 +127,7 @@ def _cascades(result: GaiborReproduction) -> "Figure":
         below.plot(amplitude[::64], exponent[::64], color=_color(model), lw=0.8)
         below.axhline(0.0, color=GREY, lw=0.6)
         below.set_xlabel(AMPLITUDE)
+        below.locator_params(axis="x", nbins=4)
         _title(above, _of_model(result, SLENDERNESS[0], model))
     panels[0].set_ylabel(r"rotation $\theta / \alpha$ [-]")
     panels[len(MODELS)].set_ylabel(EXPONENT)
@@ -153,8 +154,8 @@ def _thresholds(result: GaiborReproduction) -> "Figure":
     right.text(2.1, 0.2, r"$(h/b)^{-4}$", color=GREY, fontsize=7)
     right.set_xticks(SLENDERNESS, list(map(str, SLENDERNESS)))
     right.minorticks_off()
-    _title(left, "loss of symmetry, first period doubling")
-    _title(middle, "fold")
+    _title(left, f"loss of symmetry, doubling; frequency {result.effort.frequencies[0]:g} p")
+    _title(middle, f"fold; frequency {result.effort.frequencies[0]:g} p")
     _title(right, "loss of symmetry, against Housner")
     for axes, label in ((left, AMPLITUDE), (middle, AMPLITUDE), (right, "difference [%]")):
         axes.set(xlabel="slenderness h/b [-]", ylabel=label)
@@ -198,11 +199,13 @@ def _basins(result: GaiborReproduction) -> "Figure":
 
 
 CAPTIONS = {
-    "bifurcations": "Attractors over amplitude at frequency {value} p: rotation at the ends of periods, all starts.",
-    "exponents": "Largest Lyapunov exponent over amplitude at frequency {value} p, from rest. A gap is a body that "
-    "overturns, comes to rest or moves less than 0.01 alpha; a rest erases memory.",
+    "bifurcations": "Attractors over amplitude at frequency {value} p: rotation at the ends of periods, all starts. "
+    "Amplitudes without points: all starts overturn or come to rest.",
+    "exponents": "Largest Lyapunov exponent over amplitude at frequency {value} p, from rest, over 200 periods. A gap "
+    "is a body that overturns, comes to rest or moves less than 0.01 alpha; a rest erases memory.",
     "cascades": "Attractor and largest exponent after the second period doubling, followed until it overturns.",
-    "thresholds": "Loss of symmetry, first period doubling and fold over slenderness, and the difference from Housner.",
+    "thresholds": "Loss of symmetry (lower curves), first period doubling (upper curves) and fold over slenderness, "
+    "and the difference from Housner.",
     "prevalence": "Fraction of amplitudes with an attractor of several periods or chaos. Bars: one amplitude.",
     "basins": f"Basins at amplitude {BASIN_AMPLITUDE:g} and frequency {BASIN_FREQUENCY:g} p, with the overturning "
     "fraction of the cells.",

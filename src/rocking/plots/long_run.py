@@ -174,7 +174,7 @@ def basins_picture(results: Any) -> "Figure":
     matplotlib.figure.Figure
         One map per restitution for one amplitude or one speed; otherwise one curve per restitution.
     """
-    from scipy.stats import beta
+    from rocking.studies.longrun.basins import basin_stability
 
     shown = _by_restitution(results)
     sizes = next(iter(shown.values())).sizes
@@ -182,14 +182,10 @@ def basins_picture(results: Any) -> "Figure":
     if sizes["amplitude_ratio"] > 1 and upward == "speed_ratio":
         figure, (axes,) = new_figure(SINGLE, 2.4)
         for k, (label, data) in enumerate(shown.items()):
-            safe = (data["final_state"] != 0).sum(dim=("ground_phase", "speed_ratio")).values
-            number = data["final_state"][0].size
+            safe, low, high = np.transpose([basin_stability(kinds) for kinds in data["final_state"].values])
             x, style = data["amplitude_ratio"], look(k)
-            low, high = beta.ppf(0.025, safe, number - safe + 1), beta.ppf(0.975, safe + 1, number - safe)
-            axes.fill_between(
-                x, np.nan_to_num(low), np.nan_to_num(high, nan=1.0), color=style["color"], alpha=0.2, lw=0
-            )
-            axes.plot(x, safe / number, label=_name(label), **style)
+            axes.fill_between(x, low, high, color=style["color"], alpha=0.2, lw=0)
+            axes.plot(x, safe, label=_name(label), **style)
         axes.margins(x=0.0)
         colored = [(data, look(k)["color"]) for k, data in enumerate(shown.values())]
         _draw_thresholds(axes, [line for pair in colored for line in _thresholds_of(pair[0], _OF_BOUNDARIES, pair[1])])

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Literal
@@ -357,10 +357,8 @@ def branch_off(
     values, vectors = np.linalg.eig(orbit.jacobian)
     direction = np.real(vectors[:, np.argmin(np.abs(values + 1.0))])
     tangent = np.append(direction / np.linalg.norm(direction), 0.0)
-    double = PeriodicOrbit(
-        orbit.system, orbit.phase, orbit.speed, 2 * orbit.impacts, 2 * orbit.halves, orbit.jacobian @ orbit.jacobian,
-        orbit.peak, orbit.trough,
-    )  # fmt: skip
+    twice = orbit.jacobian @ orbit.jacobian
+    double = replace(orbit, impacts=2 * orbit.impacts, halves=2 * orbit.halves, jacobian=twice)
     curve = _Curve(double, (parameter,))
     point, offset = curve.start(double), 1e-3
     while True:

@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.studies.longrun.attractors import start_states
 from rocking.studies.longrun.system import DEFAULTS, NONE, HarmonicRocking, Numerics, over_periods
 
 ALIGNED = 60  # periods in which tangent vectors align before growth is counted
@@ -81,9 +82,11 @@ def lyapunov_exponents(
     """Return the exponents of orbits from times, rotations and velocities, shape (orbits, 3), or random states."""
     settled, kept = checks.whole("settled", settled, ALIGNED), checks.whole("kept", kept, 1)
     if starts is None:
-        draws = np.random.default_rng(checks.whole("seed", seed)).random((checks.whole("orbits", orbits, 1), 2))
-        times = draws[:, 0] * system.excitation.period
-        starts = np.column_stack([times, np.full(len(draws), 1e-12), draws[:, 1] * system.alpha * system.p])
+        number = 16 * checks.whole("orbits", orbits, 1)
+        draws = np.random.default_rng(checks.whole("seed", seed)).random((number, 2)) * [2.0 * math.pi, 1.0]
+        starts = start_states(system, draws)  # those that overturn at once are of no attractor
+        alive = over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == NONE
+        starts = starts[np.argsort(~alive, kind="stable")[:orbits]]
     result = over_periods(system, starts, settled=settled, kept=kept, vectors=2, numerics=numerics)
     duration = kept * system.excitation.period
     exponents = result.growth / duration

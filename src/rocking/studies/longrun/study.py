@@ -1,12 +1,11 @@
 """Long-run dynamics of one body with several restitution models as histories of a study."""
 
-import hashlib
 import json
 import math
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -16,6 +15,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import DEFAULT_RESTITUTION, FloatArray
+from rocking.dynamics.content import fields_of, hash_of
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.rows import Rows
 from rocking.outcome import UNCOUNTED
@@ -24,7 +24,7 @@ from rocking.studies.longrun import attractors, basins
 from rocking.studies.longrun import system as engine
 from rocking.studies.longrun.attractors import start_states
 from rocking.studies.longrun.continuation import Branch, branch_off, continue_orbit
-from rocking.studies.longrun.exponents import ALIGNED, LyapunovExponents, lyapunov_exponents
+from rocking.studies.longrun.exponents import LyapunovExponents, lyapunov_exponents
 from rocking.studies.longrun.orbits import OrbitNotFoundError, PeriodicOrbit, symmetric_orbit
 from rocking.studies.longrun.system import NONE, OVERTURNED, Harmonic, HarmonicRocking, Numerics, Parameter
 from rocking.studies.longrun.thresholds import thresholds_of
@@ -216,12 +216,8 @@ class Exponents(Task):
         return {"orbit": along("orbit", np.arange(self.orbits), "1", "index of the orbit")}
 
     def rows(self, system: HarmonicRocking, first: int, last: int, numerics: Numerics) -> Arrays:
-        draws = np.random.default_rng(self.seed).random((16 * self.orbits, 2)) * [2.0 * math.pi, 1.0]
-        starts = start_states(system, draws)  # those that overturn at once are of no attractor
-        alive = engine.over_periods(system, starts, kept=ALIGNED, numerics=numerics).ending == 0
-        starts = starts[np.argsort(~alive, kind="stable")[: self.orbits]]
-        options: Any = {"settled": self.settled, "kept": self.kept, "numerics": numerics}
-        result = lyapunov_exponents(system, starts=starts, **options)
+        options: Any = {name: getattr(self, name) for name in ("orbits", "settled", "kept", "seed")}
+        result = lyapunov_exponents(system, **options, numerics=numerics)
         exponents = result.by_orbit.T
         modes = np.where(np.isnan(exponents[0]), UNCOUNTED, -1)
         values = {"exponent": exponents[0], "second_exponent": exponents[1], "impact_rate": result.impact_rate}
@@ -392,11 +388,11 @@ class LongRunHistories(Histories):
     def content(self) -> dict[str, Any]:
         """Return systems and task as plain values, and a hash of the last digits of the engine."""
         systems = [
-            {"sides": system.sides.tolist(), "sine": system.sine.tolist(), "factors": system.factors.tolist(),
+            {"arrays": [hash_of(values) for values in (system.sides, system.sine, system.factors)],
              "linear": system.linear, "body": repr(system.body)} for system in self.systems
         ]  # fmt: skip
-        task = {entry.name: _plain(getattr(self.task, entry.name)) for entry in fields(self.task)}
-        return {"systems": systems, "task": {"kind": type(self.task).__name__, **task}, "digits": _digits()}
+        task = {"kind": type(self.task).__name__, **fields_of(self.task)}
+        return {"systems": systems, "task": task, "digits": _digits()}
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
         """Return the results of some rows; those of a task that is not cut are kept for the next call."""
@@ -425,17 +421,6 @@ class LongRunHistories(Histories):
 _SIDES = [f"{name}_{foot}" for name in ("alpha", "p", "r") for foot in ("right", "left")]
 
 
-def _plain(value: Any) -> Any:
-    values = value.tolist() if isinstance(value, np.ndarray) else list(value) if isinstance(value, tuple) else value
-    return _without_nan(values)
-
-
-def _without_nan(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    return None if isinstance(value, float) and np.isnan(value) else value
-
-
 @cache
 def _digits() -> str:
     """Return a hash of results of this machine: other processors may compute other last digits."""
@@ -443,14 +428,14 @@ def _digits() -> str:
 
     system = HarmonicRocking.of_ratios(Block(width=1.0, height=2.0), 1.5, 2.0, restitution=0.9)
     flights = engine.over_impacts(system, np.linspace(0.1, 6.0, 8), 0.5, 3)
-    return hashlib.sha256(flights.speed.tobytes() + flights.jacobian.tobytes()).hexdigest()[:16]
+    return hash_of(np.column_stack([flights.speed, flights.jacobian.reshape(-1, 4)]))
 
 
 def long_run_study(systems: Mapping[str, HarmonicRocking], task: Task) -> Study:
     """Return the study of a task for systems by the label of their restitution."""
     several = len(systems) > 1
     labels = {"restitution": labels_along("restitution", systems, "restitution")} if several else {}
-    coordinates = {**labels, **{name: _along(name, column) for name, column in task.coordinates.items()}}
+    coordinates = labels | {name: replace(column, dims=(name,)) for name, column in task.coordinates.items()}
     dims = {name: len(column.values) for name, column in coordinates.items()}
     first = next(iter(systems.values()))
     attributes = {
@@ -461,10 +446,6 @@ def long_run_study(systems: Mapping[str, HarmonicRocking], task: Task) -> Study:
     if "amplitude_ratio" in {*task.coordinates, *task.columns}:
         attributes["thresholds"] = json.dumps({label: thresholds_of(system) for label, system in systems.items()})
     return Study(LongRunHistories(systems=tuple(systems.values()), task=task), dims, coordinates, attributes)
-
-
-def _along(name: str, column: Column) -> Column:
-    return column if column.dims else Column(column.values, column.unit, column.meaning, dims=(name,))
 
 
 def systems_of(

@@ -139,13 +139,8 @@ class HarmonicRocking:
         """Slenderness angle [rad], p squared [1/s2] and coefficient of both feet, right first, shape (6,)."""
         right, left = self._parameters.right, self._parameters.left
         feet = ((right, left), (left, right))  # an impact ends the contact of one foot and lands on the other
-        return np.array(
-            [
-                x
-                for foot, other in feet
-                for x in (foot.slenderness_angle, foot.frequency_parameter**2, other.coefficient)
-            ]
-        )
+        sides = [(foot.slenderness_angle, foot.frequency_parameter**2, other.coefficient) for foot, other in feet]
+        return np.ravel(sides)
 
     @cached_property
     def _parameters(self) -> RockingParameters:
@@ -394,23 +389,19 @@ def over_impacts(
         *_tables(system, len(starts)), starts, ends, system.factors, impacts, _CODES[parameter], system.linear,
         math.pi / 2.0, numerics.rest_speed, numerics.step_error, numerics.threads,
     )  # fmt: skip
-    jacobian = np.empty((len(starts), 2, 2))
-    jacobian[:, 0, 0], jacobian[:, 0, 1] = ends[:, 4], ends[:, 5] * omega * rate
-    jacobian[:, 1, 0], jacobian[:, 1, 1] = ends[:, 7] / (omega * rate), ends[:, 8]
-    by_time, by_speed = ends[:, 6], ends[:, 9]
+    units = np.array([omega, 1.0 / rate])  # of phase and speed per time [s] and angular velocity [rad/s]
+    by_state = ends[:, [4, 5, 7, 8]].reshape(-1, 2, 2)
+    jacobian, by = by_state * np.divide.outer(units, units), ends[:, [6, 9]] * units
     if parameter == "amplitude":  # the engine's is relative
-        by = np.stack([by_time * omega, by_speed / rate], axis=1) / system.amplitude_ratio
+        by /= system.amplitude_ratio
     elif parameter == "frequency":  # at constant phase the start time changes with the frequency
-        shift = -starts[:, 0] / omega
-        by_omega = [ends[:, 0] + omega * (by_time + ends[:, 4] * shift), (by_speed + ends[:, 7] * shift) / rate]
-        by = np.stack(by_omega, axis=1) * system.p
-    else:
-        by = np.stack([by_time * omega, by_speed / rate], axis=1)
-    if parameter == "slenderness":  # speeds are in units of alpha p
-        by[:, 0] += jacobian[:, 0, 1] * speed / system.alpha
-        by[:, 1] += (jacobian[:, 1, 1] * speed - ends[:, 1] / rate) / system.alpha
-    ends_phase = ends[:, 0] * omega + sine[2]
+        by -= starts[:, :1] / omega * by_state[:, :, 0] * units
+        by[:, 0] += ends[:, 0]
+        by *= system.p
+    elif parameter == "slenderness":  # speeds are in units of alpha p
+        by += jacobian[:, :, 1] * speed[:, None] / system.alpha
+        by[:, 1] -= ends[:, 1] / rate / system.alpha
     return ImpactFlights(
-        ends_phase, ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10], ends[:, 12],
-        -ends[:, 11] / rate,
+        ends[:, 0] * omega + sine[2], ends[:, 1] / rate, ends[:, 3].astype(np.int64), jacobian, by, ends[:, 10],
+        ends[:, 12], -ends[:, 11] / rate,
     )  # fmt: skip

@@ -47,25 +47,7 @@ class SlenderThresholds:
 
 
 def slender_conditions(frequency: float, restitution: float) -> tuple[FloatArray, FloatArray]:
-    """Return the forced motion at an impact of the symmetric orbit of a slender body, linear in its speed.
-
-    Parameters
-    ----------
-    frequency : float
-        Circular frequency over p, above 0 [-].
-    restitution : float
-        Coefficient of restitution, in (0, 1] [-].
-
-    Returns
-    -------
-    at_zero, by_speed : ndarray
-        Forced rotation and its rate over the frequency at speed zero, and their change per speed, shape (2,) [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-    """
+    """Return forced rotation and rate over the frequency at an impact of the symmetric orbit: at speed 0, by speed."""
     w = checks.positive("frequency", frequency)
     r = checks.within("restitution", restitution, 0.0, 1.0, open_low=True)
     c, s = math.cosh(math.pi / w), math.sinh(math.pi / w)
