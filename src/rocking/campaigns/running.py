@@ -177,7 +177,7 @@ class Remaining(Iterator[Chunk]):
         ]
 
     def __next__(self) -> Chunk:
-        """Return the next piece; after the end, a later call may return a piece that was put back."""
+        """Return the next piece. After the end, a later call can return a piece that was put back."""
         if self._stop() or not self._free.any():
             raise StopIteration
         done = np.where(self._free > 0, 1.0 - self._free / np.diff(self._costs.edges), np.inf)

@@ -125,7 +125,7 @@ def refuse_more(count: int, most: int, text: str, hint: str = "") -> None:
 
 
 def check_size(table: BodyFile) -> None:
-    """Refuse a body that is too large, before it is built."""
+    """Refuse a body that is too large, before the body is built."""
     regions, holes, vertices = _polygons(table)
     refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "merge regions of equal density")
     refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "remove small holes")
@@ -136,7 +136,7 @@ def check_size(table: BodyFile) -> None:
 
 
 def check_file(content: bytes, name: str) -> None:
-    """Refuse a body file that is far too large, before it is read."""
+    """Refuse a body file that is much too large, before the file is read."""
     drawing = name.lower().endswith(".dxf")
     if drawing:
         way_out = "save the outline alone in a separate drawing"
@@ -148,7 +148,7 @@ def check_file(content: bytes, name: str) -> None:
 
 
 def check_record(content: bytes) -> None:
-    """Refuse a record file with too many numbers, before it is read."""
+    """Refuse a record file with too many numbers, before the file is read."""
     if _MINISEED.match(content):
         # number of samples in the headers; no further samples are decoded
         check_samples(

@@ -65,7 +65,7 @@ class Polytope:
 
     @cached_property
     def saddles(self) -> BoolArray:
-        """True for edges with a saddle: they contain the projection of the centre, as do both facets; shape (e,)."""
+        """True for edges with a saddle: edge and both facets contain the projection of the centre; shape (e,)."""
         is_saddle: BoolArray = (self.inward > 0.0).all(axis=1) & (self.beyond[:, 0] < 0.0) & (self.beyond[:, 1] > 0.0)
         return is_saddle
 
@@ -358,7 +358,7 @@ def _merged(corners: FloatArray, triangles: IntArray, beside: IntArray, slopes: 
 
 
 def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
-    """Return the indices of members sorted by value, and the first position of each value."""
+    """Return the indices of members sorted by value, and the first position of each value in this list."""
     from scipy.sparse import coo_matrix
 
     indices = np.arange(members.size)
@@ -368,7 +368,7 @@ def _grouped(members: IntArray, count: int) -> tuple[IntArray, IntArray]:
 
 
 def _listed(first: IntArray, groups: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the members of groups, by their positions in a sorted list, and the group number of each."""
+    """Return the group number of each member of some groups, and the position of each member in the sorted list."""
     sizes = first[groups + 1] - first[groups]
     owner = np.repeat(np.arange(len(groups)), sizes)
     index = np.arange(len(owner)) + np.repeat(first[groups] - np.cumsum(sizes) + sizes, sizes)

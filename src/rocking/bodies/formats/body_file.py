@@ -335,7 +335,7 @@ def _known_of(body: Block | Section, x: float, y: float) -> list[str]:
 
 
 def _coordinates(body: Section) -> tuple[list[str], _Coordinates, _Coordinates]:
-    """Return comments, and the user's coordinates by local x and by local y [m]."""
+    """Return comments for the file, the user's x by local x, and the user's y by local y [m]."""
     rings = [ring for region in body.regions for ring in region.rings]
     x = np.unique(np.concatenate([*(ring[:, 0] for ring in rings), body.local_feet]))
     y = np.unique(np.concatenate([ring[:, 1] for ring in rings]))
@@ -355,7 +355,7 @@ def _coordinates(body: Section) -> tuple[list[str], _Coordinates, _Coordinates]:
 
 
 def _placed(values: FloatArray, shift: float) -> _Coordinates:
-    """Return, by local value, the nearest number u with u - shift == value in floating point."""
+    """Return the nearest number u with u - shift == value in floating point, by local value."""
     return {value: next(_preimages(value, shift), value + shift) for value in values.tolist()}
 
 
@@ -369,7 +369,7 @@ def _preimages(value: float, shift: float) -> Iterator[float]:
 
 
 def _keep_middle(coordinates: _Coordinates, low: float, high: float, origin: float) -> None:
-    """Choose the ends of the box with a middle equal to the local origin to the last bit."""
+    """Choose ends of the box whose middle is equal to the local origin to the last bit."""
     for a in _preimages(low, origin):
         for b in _preimages(high, origin):
             if 0.5 * (a + b) == origin:

@@ -29,7 +29,7 @@ class Crossings:
 
 
 def find_crossings(triangles: FloatArray) -> Crossings:
-    """Return the crossing triangles; triangles with common corners or edges, and touching triangles do not cross."""
+    """Return the crossing triangles. Touching triangles, and triangles with common corners or edges, do not cross."""
     # Two triangles cross if each has corners on both sides of the other's plane, and if their segments of the common
     # line of both planes overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
     # 1e-6 of the size. Triangles in one plane, and triangles thinner than 1e-7 of the size, do not cross.
@@ -59,7 +59,7 @@ def find_crossings(triangles: FloatArray) -> Crossings:
 def _lines(
     triangles: FloatArray, normals: FloatArray, left: IntArray, right: IntArray, slack: float
 ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
-    """Return candidate pairs, and lengths and middles of their lines of intersection; lengths up to `slack` are 0."""
+    """Return candidate pairs, and lengths and middles of their lines of intersection. Lengths up to `slack` are 0."""
     first, keep = _heights(triangles[left], triangles[right, 0], normals[right], slack)
     left, right, first = left[keep], right[keep], first[keep]
     second, keep = _heights(triangles[right], triangles[left, 0], normals[left], slack)

@@ -1,4 +1,4 @@
-"""A script for `foreign`: the frames of a video by OpenCV, in grey and reduced size, with their times."""
+"""A script for `foreign`, which reads the frames of a video with OpenCV: grey, of reduced size, with their times."""
 
 from typing import Any
 

@@ -224,11 +224,11 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
     def tell() -> None:
-        with contextlib.suppress(RuntimeError):  # the event loop has ended
+        with contextlib.suppress(RuntimeError):  # the server has ended
             loop.call_soon_threadsafe(changed.set)
 
     async def send() -> None:
-        with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # closed during the message
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # the browser disconnected during a message
             while True:
                 changed.clear()
                 await socket.send_text(bytes(JsonAnswer({"studies": manager.overview()}).body).decode())
@@ -247,7 +247,7 @@ async def serve(manager: StudyManager, socket: WebSocket) -> None:
                 pass  # messages of the browser are ignored
         finally:
             sending.cancel()
-    except (WebSocketDisconnect, RuntimeError):  # closed before the connection was accepted
+    except (WebSocketDisconnect, RuntimeError):  # the browser disconnected early
         pass
     finally:
         manager.queue.listeners.discard((HostedStudy, tell))
